@@ -1,0 +1,49 @@
+// Every setting of a render, in one table: scene files, `-D key=value` and the help text all read it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace keyhole {
+
+/// Settings of a render. Ranges and meanings stand in visit_settings(), the only other place that lists them.
+struct Settings {
+    std::string method = "mps";
+    std::int64_t spp = 16;
+    std::int64_t seed = 1;
+    std::int64_t max_depth = 24;
+    std::int64_t brightness_samples = 400'000;
+    std::int64_t importons = 200'000;
+    std::int64_t chains = 1000;
+    std::int64_t mutations = 1'000'000;
+    std::int64_t photons = 200'000;
+    std::int64_t nearest = 60;
+    std::int64_t gather_rays = 4;
+    double p_bidirectional = 0.4;
+    double p_lens_subpath = 0.1;
+    double p_lens_perturbation = 0.3;
+};
+
+/// One line of the table. `Visitor` is called as visitor(key, member, minimum, maximum, help) for numbers and
+/// visitor(key, member, choices, help) for words; members are references into `settings`.
+template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
+    using I = std::int64_t;
+    visit("method", s.method, std::vector<std::string_view>{"mps", "path"}, "rendering method");
+    visit("spp", s.spp, I{1}, I{1} << 24, "samples per pixel");
+    visit("seed", s.seed, I{0}, I{1} << 53, "seed of all random streams");
+    visit("max_depth", s.max_depth, I{1}, I{30}, "most scatterings between light and eye");
+    visit("brightness_samples", s.brightness_samples, I{1000}, I{1} << 40, "path samples of stage one");
+    visit("importons", s.importons, I{1000}, I{1} << 30, "size of the importance map");
+    visit("chains", s.chains, I{1}, I{1} << 20, "Markov chains; their number never follows the threads");
+    visit("mutations", s.mutations, I{1}, I{1} << 50, "Metropolis steps over all chains");
+    visit("photons", s.photons, I{1}, I{1} << 30, "most photons kept in a pass");
+    visit("nearest", s.nearest, I{1}, I{10'000}, "photons in a radiance estimate");
+    visit("gather_rays", s.gather_rays, I{1}, I{1} << 16, "gather rays per sample of a pixel");
+    visit("p_bidirectional", s.p_bidirectional, 0.0, 1.0, "relative frequency of bidirectional proposals");
+    visit("p_lens_subpath", s.p_lens_subpath, 0.0, 1.0, "relative frequency of lens sub-path proposals");
+    visit("p_lens_perturbation", s.p_lens_perturbation, 0.0, 1.0, "relative frequency of lens perturbations");
+}
+
+} // namespace keyhole

@@ -1,0 +1,73 @@
+// Paths from a light to the eye, as plain values.
+#pragma once
+
+#include "core/inline_vector.h"
+#include "scene/bsdf.h"
+#include "scene/surface_point.h"
+
+namespace keyhole {
+
+/// Most scattering vertices a path may have between the light and the eye.
+constexpr int kMaxScatterings = 30;
+
+/// One vertex with all that is known of it. The fields below the line are filled in by measure().
+struct Vertex {
+    SurfacePoint point;
+    Bsdf bsdf;
+    Event event = Event::finite; ///< how light goes on here; finite at both ends of a path
+
+    // ---- measure() ----
+    Rgb value{0.0};            ///< emitted radiance at x0, scattering inside, camera importance at the eye
+    double pdf_from_light = 0; ///< density of this vertex when traced from its neighbour on the light's side
+    double pdf_from_eye = 0;   ///< density of this vertex when traced from its neighbour on the eye's side
+
+    bool specular() const { return is_specular(event); }
+};
+
+/// x[0] lies on an emitter, x.back() is the eye; between them light is scattered.
+///
+/// Densities and contribution follow the convention of measure.h, in which only their ratios mean anything where
+/// specular vertices take part.
+struct Path {
+    InlineVector<Vertex, kMaxScatterings + 2> x;
+    Vec2 image{0, 0};      ///< window point of the eye edge
+    Rgb contribution{0.0}; ///< f of measure.h
+    double target = 0;     ///< what a chain samples in proportion to; Y(contribution), or 0 outside the path set
+
+    int vertices() const { return static_cast<int>(x.size()); }
+    int edges() const { return vertices() - 1; }
+    /// Number of vertices between the light and the eye.
+    int scatterings() const { return vertices() - 2; }
+};
+
+/// Index of the n-th non-specular scattering vertex seen from the eye (n = 1: d1), or 0 if there are fewer.
+inline int nth_finite_from_eye(const Path& path, int n) {
+    for (int i = path.vertices() - 2; i > 0; --i) {
+        if (!path.x[static_cast<std::size_t>(i)].specular() && --n == 0) return i;
+    }
+    return 0;
+}
+
+/// Which photon map a path stores its light sub-path in.
+enum class PhotonKind { none, global, caustic };
+
+/// Where a path stores a photon: MATHEMATICS of the photon map, "storage point". Global: at d2, the second
+/// non-specular vertex from the eye. Caustic: at d1, when light came to it through specular vertices only.
+struct StoragePoint {
+    PhotonKind kind = PhotonKind::none;
+    int vertex = 0;
+};
+
+inline StoragePoint storage_point(const Path& path) {
+    if (const int d2 = nth_finite_from_eye(path, 2); d2 > 0) return {PhotonKind::global, d2};
+    const int d1 = nth_finite_from_eye(path, 1);
+    return d1 > 1 ? StoragePoint{PhotonKind::caustic, d1} : StoragePoint{};
+}
+
+/// The paths that stage two samples.
+enum class PathSet {
+    stored, ///< those that store a photon; the rest stage three has exactly
+    all,    ///< every path, for methods that draw them directly
+};
+
+} // namespace keyhole

@@ -1,0 +1,30 @@
+// What a Metropolis proposal is. Knows no rendering.
+#pragma once
+
+#include "core/rng.h"
+
+#include <optional>
+#include <string_view>
+
+namespace keyhole {
+
+/// Why a proposal made no state that could be evaluated. Counted in the ledger.
+enum class Failure { none, no_hit, blocked, outside_image, signature, no_light, length, count };
+
+/// One kind of proposal over states of type State. Immutable and thread-safe while chains run.
+template <class State> class Proposal {
+  public:
+    virtual ~Proposal() = default;
+    virtual std::string_view name() const = 0;
+
+    /// Relative frequency at state x; 0 where this kind can't move x.
+    virtual double suitability(const State& x) const = 0;
+
+    /// Draws y ~ T(x -> .), with its target evaluated. None: the proposal carries no light, for the reason in `why`.
+    virtual std::optional<State> propose(const State& x, Rng& rng, Failure& why) const = 0;
+
+    /// T(x -> y), summed over every way in which this kind makes y from x; the density in the measure of the target.
+    virtual double transition_density(const State& x, const State& y) const = 0;
+};
+
+} // namespace keyhole

@@ -1,0 +1,72 @@
+// A BSDF at a point: one of a closed set of models, with its shading frame. A value, so that paths can be copied.
+#pragma once
+
+#include "core/rng.h"
+#include "scene/bsdfs/diffuse.h"
+#include "scene/bsdfs/glass.h"
+#include "scene/bsdfs/mirror.h"
+#include "scene/scattering.h"
+#include "scene/surface_point.h"
+
+#include <variant>
+
+namespace keyhole {
+
+/// Scattering that absorbs everything: vertices without a surface have this.
+struct BlackBsdf {
+    static constexpr BsdfTraits traits() { return {}; }
+    static Rgb eval(const Vec3& /*to_light*/, const Vec3& /*to_eye*/) { return Rgb(0.0); }
+    static double pdf(const Vec3& /*from*/, const Vec3& /*to*/) { return 0; }
+    static std::optional<BsdfSample> sample(const Vec3& /*from*/, double, double, double) { return std::nullopt; }
+    static std::optional<DeltaScatter> delta(const Vec3& /*from*/, Event /*event*/) { return std::nullopt; }
+};
+
+/// A model in its shading frame. All directions are unit, in world space, and point away from the surface.
+/// To add a model: a file in bsdfs/ with these five members, and its name here.
+class Bsdf {
+  public:
+    using Model = std::variant<BlackBsdf, DiffuseBsdf, MirrorBsdf, GlassBsdf>;
+
+    Bsdf() = default;
+    Bsdf(const Frame& frame, const Model& model) : frame_(frame), model_(model) {}
+    Bsdf(const SurfacePoint& point, const Model& model) : frame_(point.ns), model_(model) {}
+
+    const Model& model() const { return model_; }
+    const Vec3& shading_normal() const { return frame_.n; }
+
+    BsdfTraits traits() const {
+        return std::visit([](const auto& m) { return m.traits(); }, model_);
+    }
+
+    /// Finite part f(to_light -> to_eye) [1/sr], for radiance; without a cosine.
+    Rgb eval(const Vec3& to_light, const Vec3& to_eye) const {
+        return std::visit([&](const auto& m) { return m.eval(frame_.to_local(to_light), frame_.to_local(to_eye)); },
+                          model_);
+    }
+
+    /// Density per solid angle with which sample() draws `to` by its finite part, having come along `from`.
+    double pdf(const Vec3& from, const Vec3& to) const {
+        return std::visit([&](const auto& m) { return m.pdf(frame_.to_local(from), frame_.to_local(to)); }, model_);
+    }
+
+    /// Draws a direction for a path that came along `from`, from either end. None: absorbed.
+    std::optional<BsdfSample> sample(const Vec3& from, SampleSource& source) const {
+        const double u0 = source.next(), u1 = source.next(), u2 = source.next();
+        auto s = std::visit([&](const auto& m) { return m.sample(frame_.to_local(from), u0, u1, u2); }, model_);
+        if (s) s->to = frame_.to_world(s->to);
+        return s;
+    }
+
+    /// The delta lobe of kind `event` seen from `from`; none where the model has none or it carries nothing.
+    std::optional<DeltaScatter> delta(const Vec3& from, Event event) const {
+        auto d = std::visit([&](const auto& m) { return m.delta(frame_.to_local(from), event); }, model_);
+        if (d) d->to = frame_.to_world(d->to);
+        return d;
+    }
+
+  private:
+    Frame frame_;
+    Model model_;
+};
+
+} // namespace keyhole

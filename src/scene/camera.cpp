@@ -1,0 +1,55 @@
+#include "scene/camera.h"
+
+#include "scene/warp.h"
+
+namespace keyhole {
+
+Camera::Camera(const CameraParameters& parameters, const ImageWindow& window)
+    : parameters_(parameters), window_(window) {
+    const double half = std::tan(static_cast<double>(parameters.fov_degrees) * kPi / 360);
+    const double pixel = 2 * half / std::min(window.width, window.height); // side of a pixel at distance 1
+    half_x_ = pixel * (window.width / 2.0 + window.margin);
+    half_y_ = pixel * (window.height / 2.0 + window.margin);
+}
+
+SurfacePoint Camera::eye(double u0, double u1) const {
+    SurfacePoint e;
+    e.site = Site::point;
+    e.ng = e.ns = parameters_.forward;
+    e.p = parameters_.origin;
+    if (has_lens()) {
+        const Vec2 d = uniform_disc(u0, u1) * parameters_.lens_radius;
+        e.p += parameters_.right * d.x + parameters_.up * d.y;
+    }
+    return e;
+}
+
+double Camera::eye_pdf() const {
+    const double r = parameters_.lens_radius;
+    return has_lens() ? 1 / (kPi * r * r) : 1.0;
+}
+
+Vec3 Camera::ray_direction(const SurfacePoint& eye, const Vec2& image) const {
+    const auto x = static_cast<float>((2.0 * image.x - 1) * half_x_);
+    const auto y = static_cast<float>((1 - 2.0 * image.y) * half_y_);
+    const Vec3 through = parameters_.forward + parameters_.right * x + parameters_.up * y;
+    if (!has_lens()) return through.normalized();
+    return (through * parameters_.focus_distance - (eye.p - parameters_.origin)).normalized();
+}
+
+std::optional<Vec2> Camera::image_point(const SurfacePoint& eye, const Vec3& w) const {
+    const float c = w.dot(parameters_.forward);
+    if (c <= 0) return std::nullopt;
+    Vec3 through = w / c; // on the plane at distance 1
+    if (has_lens()) through += (eye.p - parameters_.origin) / parameters_.focus_distance;
+    const double x = through.dot(parameters_.right) / half_x_, y = through.dot(parameters_.up) / half_y_;
+    if (!(std::abs(x) < 1 && std::abs(y) < 1)) return std::nullopt;
+    return Vec2(static_cast<float>((x + 1) / 2), static_cast<float>((1 - y) / 2));
+}
+
+double Camera::direction_pdf(const Vec3& w) const {
+    const double c = w.dot(parameters_.forward);
+    return c > 0 ? 1 / (4 * half_x_ * half_y_ * c * c * c) : 0.0;
+}
+
+} // namespace keyhole

@@ -1,0 +1,38 @@
+// What the BSDFs have in common: kinds of events, and what sampling returns.
+#pragma once
+
+#include "core/vec.h"
+
+#include <cstdint>
+#include <optional>
+
+namespace keyhole {
+
+/// How light goes on at a vertex. `finite` is D of the path notation; the other two are S.
+enum class Event : std::uint8_t { finite, reflect, transmit };
+
+inline bool is_specular(Event e) { return e != Event::finite; }
+
+/// A direction drawn by a BSDF, in the frame of the arguments it was drawn with.
+struct BsdfSample {
+    Vec3 to;          ///< unit, away from the surface
+    Event event;
+    double pdf;       ///< finite: density per solid angle; specular: probability of this event
+};
+
+/// One delta lobe seen from a given direction.
+struct DeltaScatter {
+    Vec3 to;            ///< where light that comes from (or goes to) `from` goes to (or comes from)
+    Rgb coefficient;    ///< fraction of the power that takes this lobe; the same from either side
+    double probability; ///< with which sample() takes this event
+    double eta;         ///< refractive index on the side of `to` over that on the side of `from`; 1 for reflection
+};
+
+/// What the renderer may leave out for a BSDF that lacks it.
+struct BsdfTraits {
+    bool finite = false;          ///< has a D part
+    bool delta = false;           ///< has S parts
+    bool near_lambertian = false; ///< its finite part may be served from cached irradiance
+};
+
+} // namespace keyhole

@@ -1,0 +1,81 @@
+// The scene: geometry behind Embree, materials, emitters and the camera. Immutable once built.
+#pragma once
+
+#include "scene/camera.h"
+#include "scene/emitter.h"
+#include "scene/shape.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace keyhole {
+
+/// Everything that a scene is built from. Loaders fill one in.
+struct SceneDescription {
+    std::vector<Shape> shapes;
+    std::vector<std::unique_ptr<Emitter>> emitters; ///< those without geometry; area lights follow from shapes
+    CameraParameters camera;
+    ImageWindow window;
+};
+
+/// What Embree answers a ray with, before anything is looked up.
+struct RawHit {
+    std::uint32_t shape, primitive;
+    float u, v, t;
+};
+
+/// Thread-safe. Rays never start on a surface themselves: callers pass SurfacePoints, whose offset keeps a ray off its
+/// own surface (an error bound after Pharr, Jakob and Humphreys, not a constant of the scene).
+class Scene {
+  public:
+    /// @throws InputError for geometry that can't be rendered (bad indices, non-finite positions, nothing at all).
+    explicit Scene(SceneDescription description);
+    ~Scene();
+    Scene(const Scene&) = delete;
+    Scene& operator=(const Scene&) = delete;
+
+    /// The first place seen from `from` along unit direction `w`. With an environment, a miss is a point at infinity.
+    std::optional<SurfacePoint> trace(const SurfacePoint& from, const Vec3& w) const;
+
+    /// Whether nothing stands between two points. At most one of them is infinite.
+    bool visible(const SurfacePoint& a, const SurfacePoint& b) const;
+
+    const Camera& camera() const { return camera_; }
+    void set_window(const ImageWindow& window) { camera_ = Camera(camera_.parameters(), window); }
+
+    const std::vector<std::unique_ptr<Emitter>>& emitters() const { return emitters_; }
+    const Emitter& emitter(std::uint32_t i) const { return *emitters_[i]; }
+    /// By power; empty if nothing emits.
+    const EmitterDistribution& emitter_distribution() const { return emitter_distribution_; }
+    const std::vector<Shape>& shapes() const { return shapes_; }
+    /// Union of what the materials may do.
+    const BsdfTraits& traits() const { return traits_; }
+
+    /// Bounding box of the geometry, world space.
+    const Vec3& lower() const { return lower_; }
+    const Vec3& upper() const { return upper_; }
+
+    std::size_t triangle_count() const;
+
+    /// The point at barycentric coordinates (u, v) of a triangle (weights of its second and third corner), or in
+    /// direction (u, v) of a sphere.
+    SurfacePoint surface_point(std::uint32_t shape, std::uint32_t primitive, float u, float v) const;
+
+  private:
+    struct Embree;
+
+    SurfacePoint sphere_point(std::uint32_t shape, const Vec3& unit_normal) const;
+
+    std::vector<Shape> shapes_;
+    std::vector<std::unique_ptr<Emitter>> emitters_;
+    EmitterDistribution emitter_distribution_;
+    std::vector<std::uint32_t> emitter_of_shape_;
+    Camera camera_;
+    BsdfTraits traits_;
+    Vec3 lower_{0, 0, 0}, upper_{0, 0, 0};
+    std::unique_ptr<Embree> embree_;
+};
+
+} // namespace keyhole

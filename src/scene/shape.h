@@ -1,0 +1,43 @@
+// Geometry, as plain data.
+#pragma once
+
+#include "core/vec.h"
+#include "scene/material.h"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <variant>
+#include <vector>
+
+namespace keyhole {
+
+/// Indexed triangles in world space. The outside of a triangle is where its corners run anticlockwise.
+struct TriangleMesh {
+    std::vector<Vec3> positions;
+    std::vector<Vec3> normals; ///< unit, one per position; or empty: flat
+    std::vector<Vec2> uvs;     ///< one per position; or empty
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// A sphere in world space. The outside is away from the centre, or towards it if `inward`.
+struct Sphere {
+    Vec3 center{0, 0, 0};
+    float radius = 1;
+    bool inward = false;
+};
+
+/// What a surface emits, for shapes that are area lights.
+struct SurfaceEmission {
+    Rgb radiance{0.0};      ///< W/(m^2 sr), the same in all directions and everywhere
+    bool two_sided = false; ///< otherwise on the outside only
+};
+
+/// Geometry with its material and, for area lights, its emission.
+struct Shape {
+    std::variant<TriangleMesh, Sphere> geometry;
+    std::shared_ptr<const Material> material;
+    std::unique_ptr<SurfaceEmission> emission;
+};
+
+} // namespace keyhole

@@ -1,0 +1,73 @@
+// A point that a path may have as a vertex: on a surface, a point in space, or infinitely far away.
+#pragma once
+
+#include "core/vec.h"
+
+#include <cstdint>
+
+namespace keyhole {
+
+class Material;
+
+/// What kind of place a SurfacePoint is; it decides which factors a geometry term has.
+enum class Site : std::uint8_t {
+    surface,  ///< on geometry: cosine and area measure
+    point,    ///< a point in space (pinhole, point light): no cosine
+    infinite, ///< a direction (environment, distant light): `ng` points from there to the scene
+};
+
+/// A place in world space with what scattering and emission need to know of it. Plain value.
+struct SurfacePoint {
+    static constexpr std::uint32_t kNone = ~0u;
+
+    Vec3 p{0, 0, 0};                ///< world position
+    Vec3 ng{0, 0, 0};               ///< unit geometric normal; its side is the shape's outside
+    Vec3 ns{0, 0, 0};               ///< unit shading normal, in the hemisphere of ng
+    Vec3 tangent{1, 0, 0};          ///< unit, perpendicular to ns, along increasing u where there is a parametrisation
+    Vec2 uv{0, 0};                  ///< texture coordinates
+    float offset = 0;               ///< bound on the error of p along ng; ray origins move by this much
+    Site site = Site::surface;
+    std::uint32_t shape = kNone;     ///< index of the shape in the scene
+    std::uint32_t primitive = kNone; ///< triangle within the shape
+    std::uint32_t emitter = kNone;   ///< index of the emitter that this point belongs to
+    const Material* material = nullptr;
+
+    bool is_emitter() const { return emitter != kNone; }
+
+    /// |cos| between the geometric normal and a unit direction; 1 where the site has no surface.
+    double abs_cos(const Vec3& w) const {
+        return site == Site::surface ? std::abs(static_cast<double>(ng.dot(w))) : 1.0;
+    }
+
+    /// Where a ray that leaves this point along `w` may start without meeting its own surface.
+    Vec3 ray_origin(const Vec3& w) const { return site == Site::surface ? p + ng * (w.dot(ng) < 0 ? -offset : offset) : p; }
+};
+
+/// Unit direction from `a` towards `b`. At least one of the two is not infinite.
+inline Vec3 direction(const SurfacePoint& a, const SurfacePoint& b) {
+    if (b.site == Site::infinite) return -b.ng;
+    if (a.site == Site::infinite) return a.ng;
+    return (b.p - a.p).normalized();
+}
+
+/// Geometry term G(a,b) of an edge without its visibility: cos cos / r^2 [1/m^2], with the factors left out that a
+/// point or an infinite end doesn't have. 0 for coinciding points.
+inline double geometry_term(const SurfacePoint& a, const SurfacePoint& b) {
+    const Vec3 w = direction(a, b);
+    const double cosines = a.abs_cos(w) * b.abs_cos(w);
+    if (a.site == Site::infinite || b.site == Site::infinite) return cosines;
+    const double r2 = Imath::V3d(b.p - a.p).length2();
+    return r2 > 0 ? cosines / r2 : 0.0;
+}
+
+/// Turns a density per solid angle at `from`, in the direction of `to`, into one in the coordinates of `to`: area on a
+/// surface; solid angle stays for an infinite point. From an infinite point the density is one over the area of its beam.
+inline double solid_angle_to_area(double pdf, const SurfacePoint& from, const SurfacePoint& to) {
+    if (to.site == Site::infinite) return pdf;
+    const double c = to.abs_cos(direction(from, to));
+    if (from.site == Site::infinite) return pdf * c;
+    const double r2 = Imath::V3d(to.p - from.p).length2();
+    return r2 > 0 ? pdf * c / r2 : 0.0;
+}
+
+} // namespace keyhole
