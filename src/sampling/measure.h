@@ -26,6 +26,9 @@ ScatterValue scatter(const SurfacePoint& point, const Bsdf& bsdf, Event event, c
 /// assumed). x, the events and `image` are the input. Veach 1997, chapter 8.
 void measure(const Scene& scene, Path& path);
 
+/// measure(), and the target of a chain that samples `set`.
+void evaluate(const Scene& scene, Path& path, PathSet set);
+
 /// Density of the emitter point x0 as a first vertex from the light: choice of emitter times its point density.
 double emitter_point_pdf(const Scene& scene, const SurfacePoint& point);
 

@@ -12,11 +12,12 @@ namespace keyhole {
 /// A vertex at `point` with its BSDF looked up.
 Vertex make_vertex(const SurfacePoint& point);
 
-/// x0 on an emitter chosen by power. None if nothing emits.
-std::optional<Vertex> sample_emitter(const Scene& scene, SampleSource& source);
-
-/// Direction in which light leaves x0.
-EmitterDirection sample_emission(const Scene& scene, const Vertex& x0, SampleSource& source);
+/// x0 on an emitter chosen by power, with its density (choice times point). None if nothing emits.
+struct EmitterVertex {
+    Vertex vertex;
+    double pdf;
+};
+std::optional<EmitterVertex> sample_emitter(const Scene& scene, SampleSource& source);
 
 /// The eye vertex.
 Vertex sample_eye(const Scene& scene, SampleSource& source);
@@ -24,7 +25,21 @@ Vertex sample_eye(const Scene& scene, SampleSource& source);
 /// The next vertex along `w`; none where nothing is hit.
 std::optional<Vertex> next_vertex(const Scene& scene, const Vertex& from, const Vec3& w);
 
-/// Continues from `v`, reached along `from` (pointing back), by sampling its BSDF: sets v.event and returns the direction.
-std::optional<Vec3> continue_walk(Vertex& v, const Vec3& from, SampleSource& source);
+/// Which end of a path a walk comes from. Radiance is scaled by glass and importance by shading normals.
+enum class From { eye, light };
+
+/// Where a walk goes on from a vertex.
+struct Continuation {
+    Vec3 w;       ///< unit
+    Event event;
+    Rgb weight;   ///< factor of the walk's throughput: scattering times cosine over density
+    double pdf;   ///< per solid angle; probability of the event where specular
+};
+
+/// Samples the BSDF at `v`, reached along `back` (unit, pointing back). None: absorbed.
+std::optional<Continuation> continue_walk(const Vertex& v, const Vec3& back, From from, SampleSource& source);
+
+/// Probability that continue_walk() takes a finite event, and with that a vertex counts as D.
+double finite_probability(const Vertex& v, const Vec3& back);
 
 } // namespace keyhole

@@ -20,12 +20,6 @@ struct SceneDescription {
     ImageWindow window;
 };
 
-/// What Embree answers a ray with, before anything is looked up.
-struct RawHit {
-    std::uint32_t shape, primitive;
-    float u, v, t;
-};
-
 /// Thread-safe. Rays never start on a surface themselves: callers pass SurfacePoints, whose offset keeps a ray off its
 /// own surface (an error bound after Pharr, Jakob and Humphreys, not a constant of the scene).
 class Scene {
@@ -59,14 +53,8 @@ class Scene {
 
     std::size_t triangle_count() const;
 
-    /// The point at barycentric coordinates (u, v) of a triangle (weights of its second and third corner), or in
-    /// direction (u, v) of a sphere.
-    SurfacePoint surface_point(std::uint32_t shape, std::uint32_t primitive, float u, float v) const;
-
   private:
     struct Embree;
-
-    SurfacePoint sphere_point(std::uint32_t shape, const Vec3& unit_normal) const;
 
     std::vector<Shape> shapes_;
     std::vector<std::unique_ptr<Emitter>> emitters_;

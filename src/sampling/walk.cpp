@@ -1,0 +1,59 @@
+#include "sampling/walk.h"
+
+#include "sampling/measure.h"
+
+#include <algorithm>
+
+namespace keyhole {
+
+Vertex make_vertex(const SurfacePoint& point) {
+    Vertex v;
+    v.point = point;
+    if (point.material != nullptr) v.bsdf = point.material->bsdf(point);
+    return v;
+}
+
+std::optional<EmitterVertex> sample_emitter(const Scene& scene, SampleSource& source) {
+    const EmitterDistribution& distribution = scene.emitter_distribution();
+    if (distribution.empty()) return std::nullopt;
+    const std::uint32_t i = distribution.sample(source.next());
+    auto [point, pdf] = scene.emitter(i).sample_point(source);
+    point.emitter = i;
+    return EmitterVertex{make_vertex(point), distribution.probability(i) * pdf};
+}
+
+Vertex sample_eye(const Scene& scene, SampleSource& source) {
+    Vertex v;
+    const double u0 = source.next(), u1 = source.next();
+    v.point = scene.camera().eye(u0, u1);
+    return v;
+}
+
+std::optional<Vertex> next_vertex(const Scene& scene, const Vertex& from, const Vec3& w) {
+    const auto point = scene.trace(from.point, w);
+    if (!point) return std::nullopt;
+    return make_vertex(*point);
+}
+
+std::optional<Continuation> continue_walk(const Vertex& v, const Vec3& back, From from, SampleSource& source) {
+    const auto s = v.bsdf.sample(back, source);
+    if (!s || !(s->pdf > 0)) return std::nullopt;
+    const bool eye = from == From::eye;
+    const ScatterValue value =
+        scatter(v.point, v.bsdf, s->event, eye ? s->to : back, eye ? back : s->to);
+    const double pdf = eye ? value.pdf_to_light : value.pdf_to_eye;
+    if (!(pdf > 0)) return std::nullopt;
+    return Continuation{s->to, s->event, value.value * (v.point.abs_cos(s->to) / pdf), s->pdf};
+}
+
+double finite_probability(const Vertex& v, const Vec3& back) {
+    const BsdfTraits traits = v.bsdf.traits();
+    if (!traits.finite) return 0;
+    if (!traits.delta) return 1;
+    double p = 1;
+    for (const Event e : {Event::reflect, Event::transmit})
+        if (const auto d = v.bsdf.delta(back, e)) p -= d->probability;
+    return std::max(0.0, p);
+}
+
+} // namespace keyhole

@@ -1,0 +1,78 @@
+#include "scene/emitters/area.h"
+
+#include "core/error.h"
+#include "scene/geometry.h"
+#include "scene/warp.h"
+
+namespace keyhole {
+namespace {
+
+class AreaEmitter final : public Emitter {
+  public:
+    AreaEmitter(const Shape& shape, std::uint32_t index) : shape_(shape), index_(index), area_(surface_area(shape)) {
+        if (!(area_ > 0)) throw InputError("an emitting shape has no area");
+        if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) {
+            std::vector<double> areas(mesh->triangles.size());
+            for (std::uint32_t i = 0; i < areas.size(); ++i) areas[i] = triangle_area(*mesh, i);
+            triangles_ = EmitterDistribution(areas);
+        }
+    }
+
+    double power() const override {
+        return luminance(shape_.emission->radiance) * area_ * kPi * (shape_.emission->two_sided ? 2 : 1);
+    }
+    bool is_delta() const override { return false; }
+
+    EmitterPoint sample_point(SampleSource& source) const override {
+        const double u0 = source.next(), u1 = source.next(), u2 = source.next();
+        SurfacePoint s;
+        if (const auto* sphere = std::get_if<Sphere>(&shape_.geometry)) {
+            s = sphere_point(*sphere, uniform_sphere(u1, u2));
+        } else {
+            const Vec2 b = uniform_triangle(u1, u2);
+            s = triangle_point(std::get<TriangleMesh>(shape_.geometry), triangles_.sample(u0), b.x, b.y);
+        }
+        s.shape = index_;
+        s.material = shape_.material.get();
+        return {s, 1 / area_};
+    }
+    double point_pdf(const SurfacePoint& /*point*/) const override { return 1 / area_; }
+
+    EmitterDirection sample_direction(const SurfacePoint& point, SampleSource& source) const override {
+        double u0 = source.next();
+        const double u1 = source.next();
+        bool back = false;
+        if (shape_.emission->two_sided) {
+            u0 *= 2;
+            back = u0 >= 1;
+            if (back) u0 -= 1;
+        }
+        const Vec3 local = cosine_hemisphere(u0, u1);
+        const Vec3 w = Frame(point.ng).to_world(back ? -local : local);
+        return {w, direction_pdf(point, w)};
+    }
+    double direction_pdf(const SurfacePoint& point, const Vec3& w) const override {
+        const double c = point.ng.dot(w);
+        if (shape_.emission->two_sided) return std::abs(c) * kInvPi / 2;
+        return c > 0 ? c * kInvPi : 0.0;
+    }
+    Rgb radiance(const SurfacePoint& point, const Vec3& w) const override {
+        const bool lit = shape_.emission->two_sided || point.ng.dot(w) > 0;
+        return lit ? shape_.emission->radiance : Rgb(0.0);
+    }
+    const char* kind() const override { return "area"; }
+
+  private:
+    const Shape& shape_;
+    std::uint32_t index_;
+    double area_;
+    EmitterDistribution triangles_;
+};
+
+} // namespace
+
+std::unique_ptr<Emitter> make_area_emitter(const Shape& shape, std::uint32_t index) {
+    return std::make_unique<AreaEmitter>(shape, index);
+}
+
+} // namespace keyhole

@@ -1,0 +1,72 @@
+#include "scene/geometry.h"
+
+namespace keyhole {
+namespace {
+
+Vec3 absolute(const Vec3& v) { return {std::abs(v.x), std::abs(v.y), std::abs(v.z)}; }
+
+/// Bounds both the rounding of an interpolated position and that of the next intersection test, relative to the sizes
+/// of the numbers that went in (Pharr, Jakob, Humphreys, "Managing Rounding Error": gamma_7 is 4e-7 in float).
+constexpr float kRelativeError = 1.5e-6f;
+
+} // namespace
+
+SurfacePoint triangle_point(const TriangleMesh& mesh, std::uint32_t triangle, float u, float v) {
+    const auto& [ia, ib, ic] = mesh.triangles[triangle];
+    const Vec3 &a = mesh.positions[ia], &b = mesh.positions[ib], &c = mesh.positions[ic];
+    const float w = 1 - u - v;
+    SurfacePoint s;
+    s.p = a * w + b * u + c * v;
+    s.ng = (b - a).cross(c - a).normalized();
+    s.offset = kRelativeError * absolute(s.ng).dot(absolute(a) * w + absolute(b) * u + absolute(c) * v);
+    s.ns = s.ng;
+    s.primitive = triangle;
+    if (!mesh.normals.empty()) {
+        s.ns = (mesh.normals[ia] * w + mesh.normals[ib] * u + mesh.normals[ic] * v).normalized();
+        if (s.ns.length2() == 0) s.ns = s.ng;
+        if (s.ns.dot(s.ng) < 0) s.ns = -s.ns;
+    }
+    s.uv = Vec2(u, v);
+    Vec3 along = b - a;
+    if (!mesh.uvs.empty()) {
+        const Vec2 &ta = mesh.uvs[ia], &tb = mesh.uvs[ib], &tc = mesh.uvs[ic];
+        s.uv = ta * w + tb * u + tc * v;
+        const float det = (tb.x - ta.x) * (tc.y - ta.y) - (tc.x - ta.x) * (tb.y - ta.y);
+        if (det != 0) along = ((b - a) * (tc.y - ta.y) - (c - a) * (tb.y - ta.y)) / det;
+    }
+    s.tangent = (along - s.ns * along.dot(s.ns)).normalized();
+    return s;
+}
+
+SurfacePoint sphere_point(const Sphere& sphere, const Vec3& outward) {
+    SurfacePoint s;
+    s.p = sphere.center + outward * sphere.radius;
+    s.ng = s.ns = sphere.inward ? -outward : outward;
+    s.offset = kRelativeError * (absolute(s.ng).dot(absolute(sphere.center)) + sphere.radius);
+    s.primitive = 0;
+    const float phi = std::atan2(outward.y, outward.x);
+    s.uv = Vec2(static_cast<float>((phi < 0 ? phi + 2 * kPi : phi) / (2 * kPi)),
+                static_cast<float>(std::acos(std::clamp(outward.z, -1.0f, 1.0f)) / kPi));
+    s.tangent = Vec3(-outward.y, outward.x, 0).normalized();
+    if (s.tangent.length2() == 0) s.tangent = Vec3(1, 0, 0);
+    return s;
+}
+
+double triangle_area(const TriangleMesh& mesh, std::uint32_t triangle) {
+    const auto& [a, b, c] = mesh.triangles[triangle];
+    const Imath::V3d e(mesh.positions[b] - mesh.positions[a]), f(mesh.positions[c] - mesh.positions[a]);
+    return e.cross(f).length() / 2;
+}
+
+double surface_area(const Shape& shape) {
+    if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) {
+        const double r = sphere->radius;
+        return 4 * kPi * r * r;
+    }
+    const auto& mesh = std::get<TriangleMesh>(shape.geometry);
+    double area = 0;
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) area += triangle_area(mesh, i);
+    return area;
+}
+
+} // namespace keyhole

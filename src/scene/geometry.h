@@ -1,0 +1,21 @@
+// Points on shapes.
+#pragma once
+
+#include "scene/shape.h"
+#include "scene/surface_point.h"
+
+namespace keyhole {
+
+/// The point with barycentric coordinates (1-u-v, u, v) on a triangle. Fills in everything but shape and emitter.
+SurfacePoint triangle_point(const TriangleMesh& mesh, std::uint32_t triangle, float u, float v);
+
+/// The point of a sphere in direction `outward` (unit) from its centre.
+SurfacePoint sphere_point(const Sphere& sphere, const Vec3& outward);
+
+/// Area of a triangle [m^2].
+double triangle_area(const TriangleMesh& mesh, std::uint32_t triangle);
+
+/// Area of a shape [m^2].
+double surface_area(const Shape& shape);
+
+} // namespace keyhole
