@@ -15,8 +15,11 @@ struct FilePosition {
     /// `file:line:column`, leaving out what is unknown.
     std::string to_string() const {
         std::string s = file;
-        if (line > 0) s += ":" + std::to_string(line);
-        if (line > 0 && column > 0) s += ":" + std::to_string(column);
+        for (const int number : {line, line > 0 ? column : 0}) {
+            if (number <= 0) continue;
+            s += ':';
+            s += std::to_string(number);
+        }
         return s;
     }
 };

@@ -34,6 +34,33 @@ inline Path complete_path(const Scene& scene, const EyeWalk& walk, const Vertex&
     return path;
 }
 
+/// Power heuristic with exponent 2 of a technique against one other (Veach 1997, eq. 9.13).
+inline double mis_power(double pdf, double other) {
+    if (!(pdf > 0)) return 0;
+    const double r = other / pdf;
+    return 1 / (1 + r * r);
+}
+
+/// Next-event estimation at the last vertex of the walk.
+template <class Sink>
+void next_event(const Scene& scene, const EyeWalk& walk, const Vec3& back, const Rgb& throughput, LightClass light,
+                SampleSource& source, Sink& sink) {
+    const auto x0 = sample_emitter(scene, source);
+    if (!x0 || !(x0->pdf > 0)) return;
+    const Vertex& v = walk.back();
+    const Vec3 to_light = direction(v.point, x0->vertex.point);
+    const ScatterValue s = scatter(v.point, v.bsdf, Event::finite, to_light, back);
+    const Emitter& emitter = scene.emitter(x0->vertex.point.emitter);
+    const Rgb value = throughput * s.value * emitter.radiance(x0->vertex.point, -to_light) *
+                      (geometry_term(v.point, x0->vertex.point) / x0->pdf);
+    if (is_black(value)) return;
+    const double weight =
+        emitter.is_delta() ? 1.0
+                           : mis_power(x0->pdf, solid_angle_to_area(s.pdf_to_light, v.point, x0->vertex.point));
+    if (!scene.visible(v.point, x0->vertex.point)) return;
+    sink.contribution(walk, x0->vertex, value * weight, light);
+}
+
 /// Traces one path from `image` (window point), with at most `max_scatterings` vertices between light and eye.
 ///
 /// Tells `sink`:
@@ -92,33 +119,6 @@ void trace_path(const Scene& scene, const Vec2& image, int max_scatterings, Samp
         w = next->w;
         pdf = next->pdf;
     }
-}
-
-/// Power heuristic with exponent 2 of a technique against one other (Veach 1997, eq. 9.13).
-inline double mis_power(double pdf, double other) {
-    if (!(pdf > 0)) return 0;
-    const double r = other / pdf;
-    return 1 / (1 + r * r);
-}
-
-/// Next-event estimation at the last vertex of the walk.
-template <class Sink>
-void next_event(const Scene& scene, const EyeWalk& walk, const Vec3& back, const Rgb& throughput, LightClass light,
-                SampleSource& source, Sink& sink) {
-    const auto x0 = sample_emitter(scene, source);
-    if (!x0 || !(x0->pdf > 0)) return;
-    const Vertex& v = walk.back();
-    const Vec3 to_light = direction(v.point, x0->vertex.point);
-    const ScatterValue s = scatter(v.point, v.bsdf, Event::finite, to_light, back);
-    const Emitter& emitter = scene.emitter(x0->vertex.point.emitter);
-    const Rgb value = throughput * s.value * emitter.radiance(x0->vertex.point, -to_light) *
-                      (geometry_term(v.point, x0->vertex.point) / x0->pdf);
-    if (is_black(value)) return;
-    const double weight =
-        emitter.is_delta() ? 1.0
-                           : mis_power(x0->pdf, solid_angle_to_area(s.pdf_to_light, v.point, x0->vertex.point));
-    if (!scene.visible(v.point, x0->vertex.point)) return;
-    sink.contribution(walk, x0->vertex, value * weight, light);
 }
 
 } // namespace keyhole

@@ -3,13 +3,18 @@
 
 #include "core/rng.h"
 
+#include <array>
+#include <cstddef>
 #include <optional>
 #include <string_view>
 
 namespace keyhole {
 
 /// Why a proposal made no state that could be evaluated. Counted in the ledger.
-enum class Failure { none, no_hit, blocked, outside_image, signature, no_light, length, count };
+enum class Failure : std::uint8_t { absorbed, no_hit, blocked, outside_image, signature, no_light, length, unchanged };
+constexpr std::size_t kFailures = 8;
+constexpr std::array<std::string_view, kFailures> kFailureNames{"absorbed",  "no_hit",   "blocked", "outside_image",
+                                                                "signature", "no_light", "length",  "unchanged"};
 
 /// One kind of proposal over states of type State. Immutable and thread-safe while chains run.
 template <class State> class Proposal {
@@ -20,10 +25,10 @@ template <class State> class Proposal {
     /// Relative frequency at state x; 0 where this kind can't move x.
     virtual double suitability(const State& x) const = 0;
 
-    /// Draws y ~ T(x -> .), with its target evaluated. None: the proposal carries no light, for the reason in `why`.
+    /// Draws y ~ T(x -> .) with its target evaluated. None: no light can be carried, for the reason in `why`.
     virtual std::optional<State> propose(const State& x, Rng& rng, Failure& why) const = 0;
 
-    /// T(x -> y), summed over every way in which this kind makes y from x; the density in the measure of the target.
+    /// T(x -> y), summed over every way in which this kind makes y from x, in the measure of the target.
     virtual double transition_density(const State& x, const State& y) const = 0;
 };
 

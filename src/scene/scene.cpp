@@ -13,6 +13,10 @@
 namespace keyhole {
 namespace {
 
+/// How far along a connecting edge blockers count. The end is offset from its surface by the error of its position; what
+/// this leaves room for is the relative error of the distance itself.
+constexpr float kEdgeEnd = 1 - 1e-5f;
+
 /// Distances differ in their last bits between instruction sets; pinning one makes pictures portable (and avx2 is the
 /// faster one for single rays).
 const char* device_config() { return __builtin_cpu_supports("avx2") != 0 ? "isa=avx2" : ""; }
@@ -184,7 +188,7 @@ bool Scene::visible(const SurfacePoint& a, const SurfacePoint& b) const {
     ray.dir_y = d.y;
     ray.dir_z = d.z;
     ray.tnear = 0;
-    ray.tfar = bounded ? 1.0f : std::numeric_limits<float>::infinity();
+    ray.tfar = bounded ? kEdgeEnd : std::numeric_limits<float>::infinity();
     ray.time = 0;
     ray.mask = ~0u;
     ray.flags = 0;

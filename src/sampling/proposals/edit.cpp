@@ -1,0 +1,83 @@
+#include "sampling/proposals/edit.h"
+
+namespace keyhole {
+namespace {
+
+/// The direction in which a sub-path leaves its end.
+Vec3 first_direction(const Scene& scene, const Vertex& end, From from, const Vec2& image, SampleSource& source) {
+    if (from == From::eye) return scene.camera().ray_direction(end.point, image);
+    return scene.emitter(end.point.emitter).sample_direction(end.point, source).w;
+}
+
+} // namespace
+
+bool grow(const Scene& scene, SubPath& walk, From from, const Vec2& image, bool kept, SampleSource& source,
+          Failure& why) {
+    Vertex& v = walk.back();
+    Vec3 w;
+    if (walk.size() == 1) {
+        w = first_direction(scene, v, from, image, source);
+    } else {
+        const auto next = continue_walk(v, direction(v.point, walk[walk.size() - 2].point), from, source);
+        if (!next) return why = Failure::absorbed, false;
+        if (kept && is_specular(next->event)) return why = Failure::signature, false;
+        v.event = next->event;
+        w = next->w;
+    }
+    const auto hit = next_vertex(scene, v, w);
+    if (!hit) return why = Failure::no_hit, false;
+    walk.push_back(*hit);
+    return true;
+}
+
+void assemble(Path& path, const SubPath& light, const SubPath& eye) {
+    path.x = light;
+    for (std::size_t i = eye.size(); i-- > 0;) path.x.push_back(eye[i]);
+}
+
+std::optional<Path> join(const Scene& scene, PathSet set, const SubPath& light, const SubPath& eye, const Vec2& image,
+                         Failure& why) {
+    std::optional<Path> y(std::in_place);
+    assemble(*y, light, eye);
+    y->image = image;
+    evaluate(scene, *y, set);
+    if (y->target > 0 && !scene.visible(light.back().point, eye.back().point)) return why = Failure::blocked, std::nullopt;
+    return y;
+}
+
+bool retrace(const Scene& scene, SubPath& walk, Vec3 w, const Path& x, int first, int last, Failure& why) {
+    const int step = first <= last ? 1 : -1;
+    for (int i = first;; i += step) {
+        const auto hit = next_vertex(scene, walk.back(), w);
+        if (!hit) return why = Failure::no_hit, false;
+        walk.push_back(*hit);
+        Vertex& v = walk.back();
+        v.event = x.x[static_cast<std::size_t>(i)].event;
+        if (i == last) {
+            v.event = Event::finite;
+            return v.bsdf.traits().finite || (why = Failure::signature, false);
+        }
+        const auto lobe = v.bsdf.delta(-w, v.event);
+        if (!lobe) return why = Failure::signature, false;
+        w = lobe->to;
+    }
+}
+
+double retrace_density_from_eye(const Path& y, int first, int last) {
+    double density = y.x[static_cast<std::size_t>(first)].pdf_from_eye;
+    for (int i = first - 1; i >= last; --i) {
+        const Vertex& specular = y.x[static_cast<std::size_t>(i) + 1];
+        const auto lobe = specular.bsdf.delta(direction(specular.point, y.x[static_cast<std::size_t>(i) + 2].point), specular.event);
+        density *= lobe ? y.x[static_cast<std::size_t>(i)].pdf_from_eye / lobe->probability : 0.0;
+    }
+    return density;
+}
+
+bool same_events(const Path& x, const Path& y) {
+    if (x.x.size() != y.x.size()) return false;
+    for (std::size_t i = 0; i < x.x.size(); ++i)
+        if (x.x[i].event != y.x[i].event) return false;
+    return true;
+}
+
+} // namespace keyhole

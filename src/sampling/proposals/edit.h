@@ -1,0 +1,68 @@
+// What the proposals share: comparing paths, growing sub-paths, joining them.
+#pragma once
+
+#include "sampling/measure.h"
+#include "sampling/proposal.h"
+#include "sampling/walk.h"
+
+namespace keyhole {
+
+/// A sub-path that grows away from its end: [0] is the light or the eye.
+using SubPath = InlineVector<Vertex, kMaxScatterings + 2>;
+
+inline bool same_place(const Vertex& a, const Vertex& b) {
+    return a.point.p == b.point.p && a.event == b.event && a.point.emitter == b.point.emitter;
+}
+
+/// Number of leading vertices that two paths have in common.
+inline int common_prefix(const Path& x, const Path& y) {
+    const std::size_t most = std::min(x.x.size(), y.x.size());
+    std::size_t i = 0;
+    while (i < most && same_place(x.x[i], y.x[i])) ++i;
+    return static_cast<int>(i);
+}
+
+/// Number of trailing vertices that two paths have in common, apart from their first `prefix`.
+inline int common_suffix(const Path& x, const Path& y, int prefix) {
+    const int most = std::min(x.vertices(), y.vertices()) - prefix;
+    int i = 0;
+    while (i < most && same_place(x.x[x.x.size() - 1 - static_cast<std::size_t>(i)],
+                                  y.x[y.x.size() - 1 - static_cast<std::size_t>(i)]))
+        ++i;
+    return i;
+}
+
+/// Whether an edge between these two can be made by joining rather than by tracing.
+inline bool joinable(const Vertex& a, const Vertex& b) { return !a.specular() && !b.specular(); }
+
+/// Index of d1 if the edge on its light side is joinable, which makes everything from d1 to the eye a lens sub-path
+/// that can be replaced; 0 otherwise.
+inline int lens_subpath_start(const Path& path) {
+    const int d1 = nth_finite_from_eye(path, 1);
+    return d1 > 0 && !path.x[static_cast<std::size_t>(d1) - 1].specular() ? d1 : 0;
+}
+
+/// Adds the vertex that `walk` meets next, sampling the event at its last vertex; from the eye alone along `image`.
+/// `kept`: the last vertex belongs to the old path, where it scatters finitely, and must go on doing so.
+bool grow(const Scene& scene, SubPath& walk, From from, const Vec2& image, bool kept, SampleSource& source,
+          Failure& why);
+
+/// Path from a light sub-path and an eye sub-path, in order from the light.
+void assemble(Path& path, const SubPath& light, const SubPath& eye);
+
+/// The evaluated path that joins the last vertices of two sub-paths; none if the joint is blocked.
+std::optional<Path> join(const Scene& scene, PathSet set, const SubPath& light, const SubPath& eye, const Vec2& image,
+                         Failure& why);
+
+/// Adds to `walk` the vertices that a ray along `w` meets, to correspond to x[first], ..., x[last] in this order (towards
+/// the light if last < first). Those before the last take the specular events that x has there; the last is finite.
+bool retrace(const Scene& scene, SubPath& walk, Vec3 w, const Path& x, int first, int last, Failure& why);
+
+/// Density of y[first], ..., y[last] (last <= first, all but the last specular) when retraced from the eye's side, over
+/// that of the direction that leads to y[first]: specular events are prescribed, not chosen.
+double retrace_density_from_eye(const Path& y, int first, int last);
+
+/// Whether two paths have the same vertices specular in the same way.
+bool same_events(const Path& x, const Path& y);
+
+} // namespace keyhole

@@ -1,0 +1,69 @@
+// LS, lens sub-path: a new image point and a new eye sub-path, traced through specular vertices to the first that is
+// not, joined to the kept light sub-path (Veach 1997, section 11.3.3).
+#include "sampling/proposals/edit.h"
+#include "sampling/proposals/registry.h"
+
+namespace keyhole {
+namespace {
+
+class LensSubpath final : public Proposal<Path> {
+  public:
+    explicit LensSubpath(const ProposalContext& context)
+        : scene_(*context.scene), set_(context.set), max_vertices_(context.max_scatterings + 2) {}
+
+    std::string_view name() const override { return "lens_subpath"; }
+    double suitability(const Path& x) const override { return lens_subpath_start(x) > 0 ? 1 : 0; }
+    std::optional<Path> propose(const Path& x, Rng& rng, Failure& why) const override;
+    double transition_density(const Path& x, const Path& y) const override;
+
+  private:
+    /// Traces from the eye to a non-specular vertex; at most `room` vertices, the eye included.
+    bool trace_eye(SubPath& eye, const Vec2& image, int room, Rng& rng, Failure& why) const;
+
+    const Scene& scene_;
+    PathSet set_;
+    int max_vertices_;
+};
+
+bool LensSubpath::trace_eye(SubPath& eye, const Vec2& image, int room, Rng& rng, Failure& why) const {
+    eye.push_back(sample_eye(scene_, rng));
+    Vec3 w = scene_.camera().ray_direction(eye[0].point, image);
+    while (static_cast<int>(eye.size()) < room) {
+        const auto hit = next_vertex(scene_, eye.back(), w);
+        if (!hit) return why = Failure::no_hit, false;
+        eye.push_back(*hit);
+        Vertex& v = eye.back();
+        if (!v.bsdf.traits().delta) return true;
+        const auto next = continue_walk(v, -w, From::eye, rng);
+        if (!next) return why = Failure::absorbed, false;
+        if (!is_specular(next->event)) return true;
+        v.event = next->event;
+        w = next->w;
+    }
+    return why = Failure::length, false;
+}
+
+std::optional<Path> LensSubpath::propose(const Path& x, Rng& rng, Failure& why) const {
+    const int d1 = lens_subpath_start(x);
+    SubPath light, eye;
+    for (int i = 0; i < d1; ++i) light.push_back(x.x[static_cast<std::size_t>(i)]);
+    const Vec2 image(static_cast<float>(rng.next()), static_cast<float>(rng.next()));
+    if (!trace_eye(eye, image, max_vertices_ - d1, rng, why)) return std::nullopt;
+    return join(scene_, set_, light, eye, image, why);
+}
+
+double LensSubpath::transition_density(const Path& x, const Path& y) const {
+    const int d1 = lens_subpath_start(y);
+    if (d1 == 0 || d1 != lens_subpath_start(x)) return 0;
+    double density = 1;
+    for (std::size_t i = static_cast<std::size_t>(d1); i < y.x.size(); ++i) density *= y.x[i].pdf_from_eye;
+    // At d1 the walk also had to choose to stop.
+    const Vertex& last = y.x[static_cast<std::size_t>(d1)];
+    return density * finite_probability(last, direction(last.point, y.x[static_cast<std::size_t>(d1) + 1].point));
+}
+
+} // namespace
+
+PathProposal make_lens_subpath(const ProposalContext& context) { return std::make_unique<LensSubpath>(context); }
+
+} // namespace keyhole

@@ -1,0 +1,22 @@
+#include "sampling/proposals/registry.h"
+
+namespace keyhole {
+namespace {
+
+constexpr ProposalKind kKinds[] = {
+    {make_bidirectional, &Settings::p_bidirectional},
+    {make_lens_subpath, &Settings::p_lens_subpath},
+    {make_lens_perturbation, &Settings::p_lens_perturbation},
+};
+
+} // namespace
+
+std::span<const ProposalKind> proposal_kinds() { return kKinds; }
+
+Mixture<Path> make_mixture(const ProposalContext& context, const Settings& settings) {
+    Mixture<Path> mixture;
+    for (const ProposalKind& kind : kKinds) mixture.add(kind.make(context), settings.*kind.weight);
+    return mixture;
+}
+
+} // namespace keyhole

@@ -1,0 +1,44 @@
+#include "scene/emitters/point.h"
+
+#include "scene/warp.h"
+
+namespace keyhole {
+namespace {
+
+class PointEmitter final : public Emitter {
+  public:
+    PointEmitter(const Vec3& position, const Rgb& intensity) : position_(position), intensity_(intensity) {}
+
+    double power() const override { return 4 * kPi * luminance(intensity_); }
+    bool is_delta() const override { return true; }
+
+    EmitterPoint sample_point(SampleSource& /*source*/) const override {
+        SurfacePoint point;
+        point.p = position_;
+        point.site = Site::point;
+        return {point, 1.0};
+    }
+    double point_pdf(const SurfacePoint& /*point*/) const override { return 1; }
+
+    EmitterDirection sample_direction(const SurfacePoint& point, SampleSource& source) const override {
+        const double u0 = source.next(), u1 = source.next();
+        const Vec3 w = uniform_sphere(u0, u1);
+        return {w, direction_pdf(point, w)};
+    }
+    double direction_pdf(const SurfacePoint& /*point*/, const Vec3& /*w*/) const override { return kInvPi / 4; }
+
+    Rgb radiance(const SurfacePoint& /*point*/, const Vec3& /*w*/) const override { return intensity_; }
+    const char* kind() const override { return "point"; }
+
+  private:
+    Vec3 position_;
+    Rgb intensity_;
+};
+
+} // namespace
+
+std::unique_ptr<Emitter> make_point_emitter(const Vec3& position, const Rgb& intensity) {
+    return std::make_unique<PointEmitter>(position, intensity);
+}
+
+} // namespace keyhole

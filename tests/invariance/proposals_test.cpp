@@ -1,0 +1,47 @@
+// Every kind of proposal alone, on scenes that differ in what paths they have.
+#include "support/invariance.h"
+#include "support/test_scenes.h"
+
+#include <gtest/gtest.h>
+
+namespace keyhole {
+namespace {
+
+struct SceneCase {
+    const char* name;
+    std::unique_ptr<Scene> (*make)();
+};
+
+const SceneCase kScenes[] = {
+    {"DiffuseBox", test::diffuse_box},
+    {"MirrorGlassBox", [] { return test::mirror_glass_box(); }},
+    {"ThinLens", [] { return test::mirror_glass_box(0.1f); }},
+    {"PointLight", test::point_light_box},
+    {"TwoRooms", [] { return test::two_rooms(0.5f); }},
+    {"Furnace", [] { return test::furnace(0.6); }},
+};
+
+class Proposal_LeavesTheTargetAlone : public testing::TestWithParam<std::tuple<std::size_t, std::size_t>> {};
+
+TEST_P(Proposal_LeavesTheTargetAlone, Alone) {
+    const auto [kind, scene_index] = GetParam();
+    const auto scene = kScenes[scene_index].make();
+    const ProposalContext context{scene.get(), PathSet::stored, 8};
+    Mixture<Path> mixture;
+    mixture.add(proposal_kinds()[kind].make(context), 1);
+    const test::Invariance result = test::measure_invariance(*scene, mixture, PathSet::stored, 60'000, 11);
+    EXPECT_GT(result.ledger.at(0).accepted, 1000u);
+    EXPECT_EQ(result.ledger.at(0).nan, 0u);
+    EXPECT_LT(result.worst(), 4) << result.report();
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, Proposal_LeavesTheTargetAlone,
+                         testing::Combine(testing::Range<std::size_t>(0, 3), testing::Range<std::size_t>(0, std::size(kScenes))),
+                         [](const auto& info) {
+                             static const auto scene = test::diffuse_box();
+                             const auto kind = proposal_kinds()[std::get<0>(info.param)].make({scene.get()});
+                             return std::string(kind->name()) + "_" + kScenes[std::get<1>(info.param)].name;
+                         });
+
+} // namespace
+} // namespace keyhole

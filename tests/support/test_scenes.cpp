@@ -1,0 +1,130 @@
+#include "support/test_scenes.h"
+
+#include "scene/emitters/point.h"
+
+namespace keyhole::test {
+
+SceneMaker& SceneMaker::rectangle(const Vec3& corner, const Vec3& u, const Vec3& v, const MaterialPtr& m,
+                                  const Rgb& radiance, bool two_sided) {
+    Shape s;
+    TriangleMesh mesh;
+    mesh.positions = {corner, corner + u, corner + u + v, corner + v};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    s.geometry = mesh;
+    s.material = m;
+    if (!is_black(radiance)) s.emission = std::make_unique<SurfaceEmission>(SurfaceEmission{radiance, two_sided});
+    d_.shapes.push_back(std::move(s));
+    return *this;
+}
+
+SceneMaker& SceneMaker::sphere(const Vec3& center, float radius, const MaterialPtr& m) {
+    Shape s;
+    s.geometry = Sphere{center, radius, false};
+    s.material = m;
+    d_.shapes.push_back(std::move(s));
+    return *this;
+}
+
+SceneMaker& SceneMaker::room(const Vec3& lo, const Vec3& hi, const MaterialPtr& m, const Rgb& radiance) {
+    const Vec3 e = hi - lo, x(e.x, 0, 0), y(0, e.y, 0), z(0, 0, e.z);
+    rectangle(lo, z, x, m, radiance);          // floor, faces up
+    rectangle(lo + y, x, z, m, radiance);      // ceiling
+    rectangle(lo, x, y, m, radiance);          // back, faces +z
+    rectangle(lo + z, y, x, m, radiance);      // front
+    rectangle(lo, y, z, m, radiance);          // left, faces +x
+    return rectangle(lo + x, z, y, m, radiance); // right
+}
+
+SceneMaker& SceneMaker::emitter(std::unique_ptr<Emitter> e) {
+    d_.emitters.push_back(std::move(e));
+    return *this;
+}
+
+SceneMaker& SceneMaker::camera(const Vec3& from, const Vec3& to, float fov, float lens_radius, float focus) {
+    CameraParameters c;
+    c.origin = from;
+    c.forward = (to - from).normalized();
+    c.right = c.forward.cross(Vec3(0, 1, 0)).normalized();
+    c.up = c.right.cross(c.forward);
+    c.fov_degrees = fov;
+    c.lens_radius = lens_radius;
+    c.focus_distance = focus;
+    d_.camera = c;
+    return *this;
+}
+
+SceneMaker& SceneMaker::window(int width, int height, float margin) {
+    d_.window = {width, height, margin};
+    return *this;
+}
+
+std::unique_ptr<Scene> SceneMaker::build() { return std::make_unique<Scene>(std::move(d_)); }
+
+namespace {
+
+/// Walls of [-1,1] x [0,2] x [-1,3] with a red left wall, and the camera that all boxes share.
+SceneMaker box_shell(const MaterialPtr& right, float lens_radius = 0) {
+    const auto white = make_diffuse(Rgb(0.75)), red = make_diffuse(Rgb(0.75, 0.25, 0.2));
+    SceneMaker m;
+    m.rectangle({-1, 0, -1}, {0, 0, 4}, {2, 0, 0}, white)
+        .rectangle({-1, 2, -1}, {2, 0, 0}, {0, 0, 4}, white)
+        .rectangle({-1, 0, -1}, {2, 0, 0}, {0, 2, 0}, white)
+        .rectangle({-1, 0, 3}, {0, 2, 0}, {2, 0, 0}, white)
+        .rectangle({-1, 0, -1}, {0, 2, 0}, {0, 0, 4}, red)
+        .rectangle({1, 0, -1}, {0, 0, 4}, {0, 2, 0}, right)
+        .camera({0, 1, 2.9f}, {0, 0.95f, -1}, 42, lens_radius, 2.5f)
+        .window(64, 48);
+    return m;
+}
+
+void add_light(SceneMaker& m) {
+    m.rectangle({-0.1f, 1.95f, -0.1f}, {0.2f, 0, 0}, {0, 0, 0.2f}, make_diffuse(Rgb(0.0)), Rgb(60.0));
+}
+
+} // namespace
+
+std::unique_ptr<Scene> diffuse_box() {
+    SceneMaker m = box_shell(make_diffuse(Rgb(0.2, 0.4, 0.7)));
+    add_light(m);
+    m.sphere({-0.45f, 0.4f, -0.4f}, 0.4f, make_diffuse(Rgb(0.5)));
+    return m.build();
+}
+
+std::unique_ptr<Scene> mirror_glass_box(float lens_radius) {
+    SceneMaker m = box_shell(make_mirror(Rgb(0.9)), lens_radius);
+    add_light(m);
+    m.sphere({-0.45f, 0.4f, -0.4f}, 0.4f, make_mirror(Rgb(0.9)));
+    m.sphere({0.35f, 0.4f, 0.5f}, 0.4f, make_glass(1.5));
+    return m.build();
+}
+
+std::unique_ptr<Scene> point_light_box() {
+    SceneMaker m = box_shell(make_diffuse(Rgb(0.2, 0.4, 0.7)));
+    m.emitter(make_point_emitter({0.2f, 1.7f, 0.3f}, Rgb(2.0, 1.8, 1.5)));
+    m.sphere({-0.45f, 0.4f, -0.4f}, 0.4f, make_mirror(Rgb(0.9)));
+    return m.build();
+}
+
+std::unique_ptr<Scene> furnace(double rho) {
+    SceneMaker m;
+    m.room({-1, -1, -1}, {1, 1, 1}, make_diffuse(Rgb(rho)), Rgb(1.0));
+    m.camera({0, 0, 0.9f}, {0, 0, -1}, 60).window(32, 32);
+    return m.build();
+}
+
+std::unique_ptr<Scene> two_rooms(float slit) {
+    const auto white = make_diffuse(Rgb(0.75));
+    SceneMaker m;
+    m.room({-2, 0, -4}, {2, 2.5f, 4}, white);
+    const float a = 1.2f, b = 1.2f + slit;
+    for (const float z : {0.0f, -0.1f}) { // two leaves of the partition, each two-sided
+        m.rectangle({-2, 0, z}, {a + 2, 0, 0}, {0, 2.5f, 0}, white);
+        m.rectangle({b, 0, z}, {2 - b, 0, 0}, {0, 2.5f, 0}, white);
+    }
+    m.rectangle({a, 0, -0.1f}, {0, 0, 0.1f}, {0, 2.5f, 0}, white).rectangle({b, 0, -0.1f}, {0, 2.5f, 0}, {0, 0, 0.1f}, white);
+    m.rectangle({-1.6f, 2.45f, -2.6f}, {0.8f, 0, 0}, {0, 0, 0.8f}, make_diffuse(Rgb(0.0)), Rgb(200.0));
+    m.camera({-1.5f, 1.4f, 3.7f}, {0.7f, 1, 0}, 58).window(64, 48);
+    return m.build();
+}
+
+} // namespace keyhole::test

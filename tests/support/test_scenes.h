@@ -1,0 +1,44 @@
+// Small scenes for tests.
+#pragma once
+
+#include "scene/scene.h"
+
+#include <memory>
+
+namespace keyhole::test {
+
+using MaterialPtr = std::shared_ptr<const Material>;
+
+/// Collects shapes; build() makes the scene.
+class SceneMaker {
+  public:
+    SceneMaker& rectangle(const Vec3& corner, const Vec3& u, const Vec3& v, const MaterialPtr& m,
+                          const Rgb& radiance = Rgb(0.0), bool two_sided = false);
+    SceneMaker& sphere(const Vec3& center, float radius, const MaterialPtr& m);
+    /// Six walls of [lower, upper] that face inwards.
+    SceneMaker& room(const Vec3& lower, const Vec3& upper, const MaterialPtr& m, const Rgb& radiance = Rgb(0.0));
+    SceneMaker& emitter(std::unique_ptr<Emitter> e);
+    SceneMaker& camera(const Vec3& from, const Vec3& to, float fov, float lens_radius = 0, float focus = 1);
+    SceneMaker& window(int width, int height, float margin = 0);
+    std::unique_ptr<Scene> build();
+
+  private:
+    SceneDescription d_;
+};
+
+/// A closed room of 2 x 2 x 4 m, diffuse and coloured, with a small light under the ceiling.
+std::unique_ptr<Scene> diffuse_box();
+
+/// The same with a mirror wall, a mirror ball at the rear and a glass ball in front.
+std::unique_ptr<Scene> mirror_glass_box(float lens_radius = 0);
+
+/// diffuse_box() lit by a point light.
+std::unique_ptr<Scene> point_light_box();
+
+/// Closed box of albedo `rho` whose walls all emit 1 W/(m^2 sr): radiance is 1 / (1 - rho) everywhere.
+std::unique_ptr<Scene> furnace(double rho);
+
+/// Two diffuse rooms joined by a slit of the given width [m]; the light is in the far one.
+std::unique_ptr<Scene> two_rooms(float slit);
+
+} // namespace keyhole::test
