@@ -1,0 +1,23 @@
+// Triangle meshes from files of other programs.
+#pragma once
+
+#include "scene/shape.h"
+
+#include <string>
+
+namespace keyhole {
+
+/// Reads all triangles of an OBJ, PLY, glTF or GLB file as one mesh, with the placements that the file gives its parts.
+/// Materials, cameras, lights, lines and points in the file are left out; so are triangles without area. Normals are
+/// those of the file, unit; if only some of its parts have normals, the others get smooth ones.
+/// @throws InputError "path: ..." for a missing, unknown, broken or empty file, positions that are not finite or beyond
+/// 1e12, indices out of range, and more than kMaxMeshTriangles triangles.
+TriangleMesh import_mesh(const std::string& path);
+
+constexpr std::size_t kMaxMeshTriangles = std::size_t{1} << 26;
+
+/// Gives every position the mean of the normals of its triangles, weighted by their angle there (Thuermer and Wuethrich
+/// 1998).
+void smooth_normals(TriangleMesh& mesh);
+
+} // namespace keyhole

@@ -1,0 +1,24 @@
+// Scene files. Their format is described in docs/scene-format.md.
+#pragma once
+
+#include "core/settings.h"
+#include "scene/load/settings_text.h"
+#include "scene/scene.h"
+
+#include <string>
+#include <vector>
+
+namespace keyhole {
+
+/// What a scene file says.
+struct LoadedScene {
+    SceneDescription description;
+    Settings settings;
+};
+
+/// Reads a scene file, the files it includes and its meshes.
+/// @param overrides `key=value` settings, applied in order after those of the file.
+/// @throws InputError "file:line:column: what was found, what was expected" for every mistake in the files.
+LoadedScene load_scene(const std::string& path, const std::vector<std::string>& overrides = {});
+
+} // namespace keyhole

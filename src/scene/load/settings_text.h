@@ -1,0 +1,24 @@
+// Settings from text: the `render:` section of scene files, and `key=value` of the command line.
+#pragma once
+
+#include "core/settings.h"
+
+#include <optional>
+#include <string>
+
+namespace keyhole {
+
+/// Why a setting was refused.
+struct SettingError {
+    bool in_key; ///< the key is at fault, else the value
+    std::string message;
+};
+
+/// Sets one setting, checked against visit_settings(). Whole numbers may be written 1e6 or with k, M or G for powers of
+/// a thousand. Leaves `settings` as they are on an error.
+std::optional<SettingError> set_setting(Settings& settings, const std::string& key, const std::string& value);
+
+/// Applies one `key=value`. @throws InputError with what was found and what was expected.
+void apply_override(Settings& settings, const std::string& key_equals_value);
+
+} // namespace keyhole

@@ -1,0 +1,150 @@
+#include "scene/load/yaml_shapes.h"
+
+#include "scene/geometry.h"
+#include "scene/load/suggest.h"
+#include "scene/load/yaml_reader.h"
+#include "scene/load/yaml_transform.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace keyhole {
+namespace {
+
+constexpr int kMaxGroupDepth = 64; // bounds the recursion below
+
+bool has_bounded_positions(const Geometry& geometry) {
+    const auto bounded = [](const Vec3& p) {
+        constexpr float kMost = 1e13f; // a margin around kCoordinate; products of lengths stay finite
+        return std::abs(p.x) <= kMost && std::abs(p.y) <= kMost && std::abs(p.z) <= kMost;
+    };
+    if (const auto* s = std::get_if<Sphere>(&geometry)) return bounded(s->center) && bounded(Vec3(s->radius));
+    for (const Vec3& p : std::get<TriangleMesh>(geometry).positions)
+        if (!bounded(p)) return false;
+    return true;
+}
+
+/// Emission of a shape in its final place: power follows from its area. Null where nothing is emitted.
+std::unique_ptr<SurfaceEmission> read_emission(const YamlNode& node, double area) {
+    const MapReader map(node, "an emission", {"radiance", "power", "two_sided"});
+    const YamlNode *radiance = map.find("radiance"), *power = map.find("power");
+    if ((radiance == nullptr) == (power == nullptr))
+        fail(node, fmt::format("found {} of 'radiance' and 'power', expected one", radiance ? "both" : "neither"));
+    auto emission = std::make_unique<SurfaceEmission>();
+    emission->two_sided = map.boolean("two_sided", false);
+    // A Lambertian emitter of radiance L sends out pi L from each unit of area of each side.
+    emission->radiance = radiance != nullptr
+                             ? read_color(*radiance, kLight)
+                             : read_color(*power, kLight) / (kPi * area * (emission->two_sided ? 2 : 1));
+    if (is_black(emission->radiance)) return nullptr;
+    return emission;
+}
+
+std::size_t count_triangles(const Geometry& geometry) {
+    const auto* mesh = std::get_if<TriangleMesh>(&geometry);
+    return mesh != nullptr ? mesh->triangles.size() : 0;
+}
+
+} // namespace
+
+void ShapeReader::read_groups(const YamlNode& section) {
+    for (const auto& [key, value] : read_names(section, "lists of shapes")) {
+        read_list(*value, "shapes");
+        const auto [entry, fresh] = groups_.try_emplace(key->text, Group{key, value});
+        if (!fresh)
+            fail(*key, fmt::format("found the group '{}' again, expected another name (first at {})", key->text,
+                                   entry->second.key->position().to_string()));
+    }
+}
+
+void ShapeReader::read_shapes(const YamlNode& section) { read_list_of_shapes(section, {}); }
+
+void ShapeReader::check_unused_groups() {
+    const std::size_t count = shapes_.size();
+    for (auto& [name, group] : groups_)
+        if (!group.used) read_named_group(group, *group.key, {});
+    shapes_.resize(count);
+}
+
+void ShapeReader::read_list_of_shapes(const YamlNode& list, const Placement& placement) {
+    if (placement.depth > kMaxGroupDepth)
+        fail(list, fmt::format("found groups nested more than {} deep, expected fewer levels", kMaxGroupDepth));
+    for (const auto& item : read_list(list, "shapes")) read_shape(*item, placement);
+}
+
+void ShapeReader::read_shape(const YamlNode& node, const Placement& placement) {
+    std::vector<std::string_view> types = geometry_types();
+    types.insert(types.end(), {"group", "instance"});
+    const std::string type = read_type(node, "a shape", types);
+    if (type == "group") return read_group(node, placement);
+    if (type == "instance") return read_instance(node, placement);
+
+    Shape shape;
+    shape.geometry = read_geometry(type, node, meshes_);
+    const MapReader map(node, "a shape");
+    const Placement own = inherit(map, placement);
+    transform_geometry(shape.geometry, own.to_world);
+    if (map.boolean("flip", false)) flip(shape.geometry);
+    const double area = surface_area(shape);
+    if (!has_bounded_positions(shape.geometry))
+        fail(node, "found a shape too large or too far, expected it within 1e13");
+    if (!(area > 0)) fail(node, "found a shape without area, expected one that can be seen");
+
+    const YamlNode* emission = map.find("emission");
+    if (emission != nullptr) shape.emission = read_emission(*emission, area);
+    shape.material = own.material;
+    if (!shape.material) {
+        if (emission == nullptr) fail(node, fmt::format("found a {} without 'material', expected that key", type));
+        shape.material = make_diffuse(Rgb(0.0)); // a lamp that reflects nothing
+    }
+    triangles_ += count_triangles(shape.geometry);
+    shapes_.push_back(std::move(shape));
+    check_limits(node);
+}
+
+void ShapeReader::read_group(const YamlNode& node, const Placement& placement) {
+    const MapReader map(node, "a group", {"type", "shapes", "transform", "material"});
+    read_list_of_shapes(map.at("shapes"), inherit(map, placement));
+}
+
+void ShapeReader::read_instance(const YamlNode& node, const Placement& placement) {
+    const MapReader map(node, "an instance", {"type", "group", "transform", "material"});
+    const YamlNode& reference = map.at("group");
+    const std::string name = read_string(reference, "the name of a group");
+    const auto found = groups_.find(name);
+    if (found == groups_.end()) {
+        std::vector<std::string_view> names;
+        for (const auto& [other, group] : groups_) names.push_back(other);
+        fail(reference, fmt::format("found the unknown group '{}', {}", name, expected_one_of(name, names)));
+    }
+    read_named_group(found->second, reference, inherit(map, placement));
+}
+
+void ShapeReader::read_named_group(Group& group, const YamlNode& user, const Placement& placement) {
+    if (group.open) fail(user, fmt::format("found the group '{}' within itself, expected no cycle", group.key->text));
+    group.used = group.open = true;
+    read_list_of_shapes(*group.shapes, placement);
+    group.open = false;
+}
+
+ShapeReader::Placement ShapeReader::inherit(const MapReader& map, const Placement& placement) const {
+    Placement own = placement;
+    ++own.depth;
+    if (const YamlNode* transform = map.find("transform")) {
+        own.to_world = read_transform(*transform) * placement.to_world;
+        if (!(regularity(own.to_world) > 1e-12))
+            fail(*transform,
+                 "found a transform that is singular with those around it, expected one that can be inverted");
+    }
+    if (const YamlNode* material = map.find("material")) own.material = materials_.resolve(*material);
+    return own;
+}
+
+void ShapeReader::check_limits(const YamlNode& node) const {
+    if (shapes_.size() > kMaxShapes) fail(node, fmt::format("found more than {} shapes, expected fewer", kMaxShapes));
+    if (triangles_ > kMaxTriangles)
+        fail(node, fmt::format("found more than {} triangles, expected fewer", kMaxTriangles));
+}
+
+} // namespace keyhole

@@ -1,0 +1,67 @@
+// Shapes in scene files.
+#pragma once
+
+#include "scene/load/geometry_transform.h"
+#include "scene/load/yaml_materials.h"
+#include "scene/load/yaml_primitives.h"
+#include "scene/shape.h"
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace keyhole {
+
+class MapReader;
+
+/// Limits on what groups of groups may multiply to.
+constexpr std::size_t kMaxShapes = std::size_t{1} << 20;
+constexpr std::size_t kMaxTriangles = std::size_t{1} << 27;
+
+/// Reads lists of shapes and puts them into world space. Holds the named groups and the meshes already imported.
+class ShapeReader {
+  public:
+    explicit ShapeReader(const MaterialTable& materials) : materials_(materials) {}
+
+    /// Notes the groups of a `groups:` section. @throws InputError for names already taken.
+    void read_groups(const YamlNode& section);
+
+    /// Appends the shapes of a `shapes:` section. @throws InputError for mistakes, with their positions.
+    void read_shapes(const YamlNode& section);
+
+    /// Reads the groups that nothing used and forgets their shapes, so that mistakes in them don't lie in wait.
+    void check_unused_groups();
+
+    std::vector<Shape> take_shapes() { return std::move(shapes_); }
+    bool empty() const { return shapes_.empty(); }
+
+  private:
+    /// What the shapes in a group inherit.
+    struct Placement {
+        Transform to_world;
+        std::shared_ptr<const Material> material; ///< for those without one; may be null
+        int depth = 0;                            ///< groups around
+    };
+    struct Group {
+        YamlPtr key, shapes;
+        bool used = false;
+        bool open = false; ///< being read, so that an instance of it would be within itself
+    };
+
+    void read_list_of_shapes(const YamlNode& list, const Placement& placement);
+    void read_shape(const YamlNode& node, const Placement& placement);
+    void read_instance(const YamlNode& node, const Placement& placement);
+    void read_group(const YamlNode& node, const Placement& placement);
+    Placement inherit(const MapReader& map, const Placement& placement) const;
+    void read_named_group(Group& group, const YamlNode& user, const Placement& placement);
+    void check_limits(const YamlNode& node) const;
+
+    const MaterialTable& materials_;
+    std::map<std::string, Group> groups_;
+    MeshCache meshes_;
+    std::vector<Shape> shapes_;
+    std::size_t triangles_ = 0;
+};
+
+} // namespace keyhole
