@@ -1,0 +1,51 @@
+// Densities from the nearest photons.
+#pragma once
+
+#include "photonmap/photon_map.h"
+#include "photonmap/surface_patches.h"
+
+namespace keyhole {
+
+/// What is to have the right expectation: the density, for a picture, or its reciprocal, for dividing by the density.
+enum class Unbiased {
+    /// (k-1) / A_k: the k-th photon sets the region's border and doesn't count. Exact in expectation for photons
+    /// thrown with locally uniform density, also where max_radius cuts the region off.
+    density,
+    /// k / A_k: A_k / k has the expectation of the reciprocal density (Booth 2007, Suykens 2000). Where max_radius cuts
+    /// in,
+    /// n / A, which has no such property: no photon at all is a possible outcome.
+    reciprocal,
+};
+
+struct DensityEstimate {
+    Rgb value{0.0};  ///< [1/m^2] times the unit of power times that of the weight
+    int photons = 0; ///< that went into it
+    double area = 0; ///< of the region [m^2]
+};
+
+/// Sum over the region's photons of weight(photon) * power / area, constant kernel.
+///
+/// With `weight` the BSDF for light from photon.direction() this is reflected radiance. Power is flux through the
+/// geometric surface: where the shading normal differs, a weight that agrees with path tracing has the factor |wi.ns| /
+/// |wi.ng| (measure.h). The area is that of the surface inside the region if `patches` are given, otherwise that of the
+/// disc, which is too large at edges. k = 1 under Unbiased::density is always 0. A region without area (all photons on
+/// one spot) yields 0.
+template <class Weight>
+DensityEstimate estimate_density(const PhotonMap& map, const PhotonQuery& query, Unbiased unbiased,
+                                 const SurfacePatches* patches, Weight&& weight) {
+    const Neighbourhood near = map.nearest(query);
+    const double radius2 = near.radius2;
+    DensityEstimate e;
+    e.area = patches != nullptr ? patches->area(query.region, std::sqrt(radius2)) : kPi * radius2;
+    if (!(e.area > 0)) return e;
+    const std::size_t first = near.full && unbiased == Unbiased::density ? 1 : 0;
+    for (const Neighbour& n : near.found.subspan(first)) {
+        const Photon& photon = map[n.index];
+        e.value += weight(photon) * photon.power();
+    }
+    e.value /= e.area;
+    e.photons = static_cast<int>(near.found.size() - first);
+    return e;
+}
+
+} // namespace keyhole

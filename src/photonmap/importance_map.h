@@ -1,0 +1,45 @@
+// The visual importance of light that arrives at a surface, estimated from importons.
+#pragma once
+
+#include "photonmap/density_estimate.h"
+#include "scene/bsdf.h"
+#include "scene/surface_point.h"
+
+namespace keyhole {
+
+struct ImportanceOptions {
+    int k = 50;                               ///< importons in an estimate
+    float max_radius;                         ///< [m]; bounds how far importance can leak
+    Unbiased unbiased = Unbiased::reciprocal; ///< photon power divides by importance
+    const SurfacePatches* patches = nullptr;  ///< for the area at edges; null: the disc's. Must outlive the map.
+};
+
+/// Immutable and thread-safe.
+class ImportanceMap {
+  public:
+    ImportanceMap(std::vector<Photon> importons, const ImportanceOptions& options)
+        : map_(std::move(importons)), options_(options) {}
+
+    struct Importance {
+        Rgb value{0.0};    ///< E, [1/W] up to the scale of the importons' power
+        int importons = 0; ///< found; 0 means that nothing is known here, not that E is zero
+    };
+
+    /// E(d2, to_light) = integral of fs(d2) G(d2, d1) fs(d1) ... over all ways on to the eye: the sum over importons
+    /// near `d2` of scattering from `to_light` (unit, away from the surface) into the importon's direction, times its
+    /// importance, over the area. `bsdf` is that at `d2`.
+    ///
+    /// Importance arrives through the geometric surface, so the scattering carries the shading-normal factor
+    /// |wi.ns| / |wi.ng| at d2, as a path's vertex value does (measure.h): E times the photon's own f is then the
+    /// contribution of the path. Only importons on the side of `to_light` count, since finite BSDFs only reflect.
+    Importance importance(const SurfacePoint& d2, const Bsdf& bsdf, const Vec3& to_light) const;
+
+    const PhotonMap& map() const { return map_; }
+    std::size_t bytes() const { return map_.bytes(); }
+
+  private:
+    PhotonMap map_;
+    ImportanceOptions options_;
+};
+
+} // namespace keyhole

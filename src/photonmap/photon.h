@@ -1,0 +1,35 @@
+// What a photon map stores: a photon, or its adjoint, an importon.
+#pragma once
+
+#include "photonmap/quantised.h"
+
+namespace keyhole {
+
+/// Light that arrived at a surface, in 24 bytes. An importon has the same form: `direction` is then towards the eye's
+/// side, and `power` the RGB importance that arrived from there.
+class Photon {
+  public:
+    /// `ng` is the geometric normal, of either orientation; `direction` is unit and points away from the surface to
+    /// where the light came from. `power` [W, or importance] is finite and not negative.
+    Photon(const Vec3& position, const Vec3& ng, const Vec3& direction, const Rgb& power)
+        : position_(position), power_(power), direction_(direction), normal_(ng.dot(direction) < 0 ? -ng : ng) {}
+
+    const Vec3& position() const { return position_; }
+    /// Geometric normal on the side that the light arrived at, so that the two sides of a sheet are told apart.
+    const OctahedralVector<std::int8_t>& normal() const { return normal_; }
+    Vec3 direction() const { return direction_.decode(); }
+    Rgb power() const { return power_.decode(); }
+    void set_power(const Rgb& power) { power_ = SharedExponentRgb(power); }
+
+    bool operator==(const Photon&) const = default;
+
+  private:
+    Vec3 position_;
+    SharedExponentRgb power_;
+    OctahedralVector<std::int16_t> direction_;
+    OctahedralVector<std::int8_t> normal_;
+};
+
+static_assert(sizeof(Photon) == 24);
+
+} // namespace keyhole

@@ -1,0 +1,61 @@
+// Photons with an index that finds the nearest ones.
+#pragma once
+
+#include "photonmap/photon.h"
+#include "photonmap/surface_region.h"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace keyhole {
+
+struct PhotonQuery {
+    SurfaceRegion region;
+    float max_radius; ///< [m], finite
+    int k;            ///< most photons wanted, > 0
+};
+
+/// A photon found. Ordered by distance, equal distances by index.
+struct Neighbour {
+    float distance2; ///< SurfaceRegion::distance2
+    std::uint32_t index;
+
+    bool operator<(const Neighbour& o) const {
+        return distance2 != o.distance2 ? distance2 < o.distance2 : index < o.index;
+    }
+};
+
+/// The photons of a region, in no order except that the farthest comes first if `full`. Valid until the next query of
+/// the same thread.
+struct Neighbourhood {
+    std::span<const Neighbour> found;
+    bool full;     ///< k photons lie within max_radius: the region ends at the farthest; otherwise at max_radius
+    float radius2; ///< squared radius of the region [m^2]
+};
+
+/// A kd-tree over photons (nanoflann). Photons are kept in the order of its leaves. Immutable and thread-safe; the same
+/// photons in the same order give the same map.
+class PhotonMap {
+  public:
+    explicit PhotonMap(std::vector<Photon> photons);
+    ~PhotonMap();
+    PhotonMap(PhotonMap&&) noexcept;
+    PhotonMap& operator=(PhotonMap&&) noexcept;
+
+    /// The k nearest photons of the query's region. Photons of other surfaces are turned away inside the search: they
+    /// neither count nor narrow it. Allocates nothing after a thread's first query of that k.
+    Neighbourhood nearest(const PhotonQuery& query) const;
+
+    std::span<const Photon> photons() const;
+    const Photon& operator[](std::uint32_t i) const { return photons()[i]; }
+    /// Memory of photons and index [bytes].
+    std::size_t bytes() const;
+
+  private:
+    struct Index;
+    std::unique_ptr<Index> index_;
+};
+
+} // namespace keyhole

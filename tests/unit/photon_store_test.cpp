@@ -1,0 +1,109 @@
+#include "photonmap/photon_store.h"
+
+#include "core/statistics.h"
+#include "photon_support.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+namespace keyhole {
+namespace {
+
+using namespace photon_test;
+
+constexpr std::size_t kRegions = 4;
+
+Photon photon_in(std::size_t region, double where) {
+    const Vec3 p(static_cast<float>(region), static_cast<float>(where), 0);
+    return {p, Vec3(0, 0, 1), Vec3(0, 0, 1), Rgb(1, 0.5, static_cast<double>(region))};
+}
+
+/// Deposits with weights over four decades, a third as much on average from region to region.
+std::array<double, kRegions> fill(PhotonStore& store, int deposits) {
+    Rng rng = make_rng(7);
+    std::array<double, kRegions> total{};
+    for (int i = 0; i < deposits; ++i) {
+        const std::size_t region = rng.below(kRegions);
+        const double weight = std::pow(10.0, 3 * rng.next() - 0.5 * static_cast<double>(region));
+        store.deposit(photon_in(region, rng.next()), weight);
+        total[region] += weight;
+    }
+    return total;
+}
+
+TEST(PhotonStore, KeepsTheExpectationOfEveryRegionUnderItsCeiling) {
+    constexpr std::size_t capacity = 100;
+    constexpr double scale = 1e-3;
+    for (const double initial : {0.0, 1e-6, 300.0}) {
+        std::array<RunningStats, kRegions> power;
+        std::array<double, kRegions> expected{};
+        for (std::uint64_t seed = 0; seed < 1500; ++seed) {
+            PhotonStore store(capacity, initial, make_rng(100 + seed));
+            const std::size_t bytes = store.bytes();
+            expected = fill(store, 100 * static_cast<int>(capacity));
+            ASSERT_LE(store.size(), capacity);
+            ASSERT_EQ(store.bytes(), bytes);
+            std::vector<Photon> photons;
+            store.release_into(photons, scale);
+            ASSERT_LE(photons.size(), capacity);
+            std::array<double, kRegions> sum{};
+            for (const Photon& p : photons) sum[static_cast<std::size_t>(p.position().x)] += p.power().x;
+            for (std::size_t i = 0; i < kRegions; ++i) power[i].add(sum[i]);
+        }
+        for (std::size_t i = 0; i < kRegions; ++i) {
+            EXPECT_LT(std::abs(power[i].mean() - expected[i] * scale), 4 * power[i].standard_error())
+                << "region " << i << ": " << power[i].mean() << " for " << expected[i] * scale;
+            EXPECT_LT(power[i].standard_error(), 0.1 * power[i].mean());
+        }
+    }
+}
+
+TEST(PhotonStore, KeepsEverythingAsItIsWhileThereIsRoom) {
+    PhotonStore store(1000, 0, make_rng(0));
+    const auto expected = fill(store, 1000);
+    std::vector<Photon> photons;
+    store.release_into(photons, 2);
+    EXPECT_EQ(photons.size(), 1000u);
+    std::array<double, kRegions> sum{};
+    for (const Photon& p : photons) sum[static_cast<std::size_t>(p.position().x)] += p.power().x;
+    for (std::size_t i = 0; i < kRegions; ++i) EXPECT_NEAR(sum[i], 2 * expected[i], 4e-4 * expected[i]);
+    EXPECT_EQ(store.bytes(), 0u);
+}
+
+TEST(PhotonStore, UsesMostOfItsCapacityWhenItThins) {
+    PhotonStore store(1000, 0, make_rng(0));
+    fill(store, 100'000);
+    std::vector<Photon> photons;
+    store.release_into(photons, 1);
+    EXPECT_GT(photons.size(), 400u);
+}
+
+TEST(PhotonStore, MergesWhatAStandingChainDeposits) {
+    // The current state and one proposal after another, as a chain deposits them; all proposals are rejected.
+    PhotonStore store(1000, 0, make_rng(0));
+    for (int i = 0; i < 50; ++i) {
+        store.deposit(photon_in(0, 0.5), 0.75);
+        store.deposit(photon_in(1, i), 0.25);
+    }
+    std::vector<Photon> photons;
+    store.release_into(photons, 1);
+    ASSERT_EQ(photons.size(), 51u);
+    double largest = 0;
+    for (const Photon& p : photons) largest = std::max(largest, p.power().x);
+    EXPECT_EQ(largest, 37.5);
+}
+
+TEST(PhotonStore, DependsOnDepositsAndSeedAlone) {
+    std::vector<Photon> photons[3];
+    for (std::size_t i = 0; i < 3; ++i) {
+        PhotonStore store(100, 0, make_rng(i == 2 ? 1 : 0));
+        fill(store, 10'000);
+        store.release_into(photons[i], 1);
+    }
+    EXPECT_EQ(photons[0], photons[1]);
+    EXPECT_NE(photons[0], photons[2]);
+}
+
+} // namespace
+} // namespace keyhole

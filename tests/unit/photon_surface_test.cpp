@@ -1,0 +1,121 @@
+#include "core/statistics.h"
+#include "photon_support.h"
+#include "photonmap/disc_area.h"
+#include "photonmap/surface_patches.h"
+#include "scene/warp.h"
+
+#include <gtest/gtest.h>
+
+namespace keyhole {
+namespace {
+
+using namespace photon_test;
+using Imath::V2d;
+
+const Vec3 kUp(0, 0, 1);
+
+/// Part of a uniform sample that fulfils a test, times the whole.
+template <class Test> RunningStats monte_carlo(int n, double whole, Rng& rng, Test&& test) {
+    RunningStats stats;
+    for (int i = 0; i < n; ++i) {
+        const double u = rng.next(), v = rng.next();
+        stats.add(test(u, v) ? whole : 0.0);
+    }
+    return stats;
+}
+
+TEST(DiscTriangleArea, AgreesWithMonteCarlo) {
+    Rng rng = make_rng(0);
+    const auto coordinate = [&] { return 4 * rng.next() - 2; };
+    for (int i = 0; i < 200; ++i) {
+        const V2d a(coordinate(), coordinate()), b(coordinate(), coordinate()), c(coordinate(), coordinate());
+        const double r = 0.2 + 1.5 * rng.next(), area = std::abs((b - a).cross(c - a)) / 2;
+        const RunningStats truth = monte_carlo(20'000, area, rng, [&](double u, double v) {
+            const Vec2 w = uniform_triangle(u, v);
+            return (a + (b - a) * w.x + (c - a) * w.y).length() <= r;
+        });
+        ASSERT_LE(std::abs(disc_triangle_area(a, b, c, r) - truth.mean()), 5 * truth.standard_error() + 1e-9) << i;
+    }
+}
+
+TEST(DiscTriangleArea, IsExactInClosedCases) {
+    const V2d a(-9, -9), b(9, -9), c(0, 20);
+    EXPECT_DOUBLE_EQ(disc_triangle_area(a, b, c, 1), kPi);
+    EXPECT_DOUBLE_EQ(disc_triangle_area(c, b, a, 1), kPi);
+    EXPECT_DOUBLE_EQ(disc_triangle_area({0, 0}, {1, 0}, {0, 1}, 2), 0.5);
+    EXPECT_NEAR(disc_triangle_area({0, 0}, {9, 0}, {0, 9}, 1), kPi / 4, 1e-14);
+    EXPECT_NEAR(disc_triangle_area({0, 0}, {9, 0}, {9, 9}, 1), kPi / 8, 1e-14);
+    EXPECT_NEAR(disc_triangle_area({-9, 0}, {9, 0}, {0, 9}, 1), kPi / 2, 1e-14);
+    EXPECT_NEAR(disc_triangle_area({2, 2}, {3, 2}, {2, 3}, 1), 0, 1e-14);
+    EXPECT_EQ(disc_triangle_area({0, 0}, {1, 1}, {2, 2}, 1), 0);
+}
+
+TEST(SurfacePatches, SumsNeighboursToTheWhole) {
+    std::vector<Shape> shapes;
+    shapes.push_back(shape_of(kUnitSquare, 17));
+    const SurfacePatches patches(shapes);
+    EXPECT_NEAR(patches.area({Vec3(0.5f, 0.43f, 0), kUp}, 0.3), kPi * 0.09, 1e-7);
+    EXPECT_NEAR(patches.area({Vec3(0.5f, 0.43f, 0), -kUp}, 0.3), kPi * 0.09, 1e-7);
+    EXPECT_NEAR(patches.area({Vec3(0, 0.5f, 0), kUp}, 0.3), kPi * 0.045, 1e-7);
+    EXPECT_NEAR(patches.area({Vec3(0, 0, 0), kUp}, 0.3), kPi * 0.0225, 1e-7);
+    EXPECT_NEAR(patches.area({Vec3(0.5f, 0.5f, 0), kUp}, 5), 1, 1e-6);
+    EXPECT_EQ(patches.area({Vec3(0.5f, 0.5f, 0.5f), kUp}, 0.3), 0);
+    EXPECT_EQ(patches.area({Vec3(0.5f, 0.5f, 0), Vec3(1, 0, 0)}, 0.3), 0);
+}
+
+TEST(SurfacePatches, MeasuresTiltedSurfacesLikeTheSearchDoes) {
+    // A roof whose halves are tilted by 20 degrees, seen from a point of its left half near the ridge.
+    const auto height = static_cast<float>(std::tan(20 * kPi / 180));
+    const Rectangle halves[] = {{{-1, -1, 0}, {1, 0, height}, {0, 2, 0}},
+                                {{0, -1, height}, {1, 0, -height}, {0, 2, 0}}};
+    std::vector<Shape> shapes;
+    for (const Rectangle& half : halves) shapes.push_back(shape_of(half, 4));
+    const SurfacePatches patches(shapes);
+    for (const Vec3& normal : {halves[0].normal(), kUp}) {
+        const SurfaceRegion region{halves[0].at(0.97, 0.5), normal};
+        for (const double r : {0.05, 0.2, 0.8}) {
+            Rng rng = make_rng(0);
+            double mean = 0, variance = 0;
+            for (const Rectangle& half : halves) {
+                const RunningStats s = monte_carlo(400'000, half.area(), rng, [&](double u, double v) {
+                    return region.distance2(half.at(u, v)) <= r * r && region.accepts(half.normal());
+                });
+                mean += s.mean();
+                variance += s.standard_error() * s.standard_error();
+            }
+            EXPECT_NEAR(patches.area(region, r), mean, 4 * std::sqrt(variance)) << r;
+        }
+    }
+}
+
+TEST(SurfacePatches, MeasuresTheCapOfASphere) {
+    std::vector<Shape> shapes(1);
+    shapes[0].geometry = Sphere{Vec3(0), 2, true};
+    const SurfacePatches patches(shapes);
+    const SurfaceRegion region{Vec3(0, 0, 2), -kUp};
+    for (const double r : {0.1, 0.5, 3.0}) {
+        Rng rng = make_rng(0);
+        const RunningStats truth = monte_carlo(2'000'000, 16 * kPi, rng, [&](double u, double v) {
+            const Vec3 out = uniform_sphere(u, v);
+            return region.distance2(out * 2.0f) <= r * r && region.accepts(-out);
+        });
+        EXPECT_NEAR(patches.area(region, r), truth.mean(), 4 * truth.standard_error()) << r;
+    }
+    EXPECT_NEAR(patches.area(region, 0.001), kPi * 1e-6, 1e-10);
+}
+
+TEST(SurfacePatches, HoldsDoubledSurfacesToTheDisc) {
+    std::vector<Shape> shapes;
+    for (int i = 0; i < 2; ++i) shapes.push_back(shape_of(kUnitSquare));
+    EXPECT_NEAR(SurfacePatches(shapes).area({Vec3(0.5f, 0.5f, 0), kUp}, 0.3), kPi * 0.09, 1e-7);
+}
+
+TEST(SurfacePatches, LeavesOutWhatHoldsNoPhotons) {
+    std::vector<Shape> shapes;
+    shapes.push_back(shape_of(kUnitSquare));
+    shapes[0].material = make_mirror(Rgb(1.0));
+    EXPECT_EQ(SurfacePatches(shapes).area({Vec3(0.5f, 0.5f, 0), kUp}, 0.3), 0);
+}
+
+} // namespace
+} // namespace keyhole

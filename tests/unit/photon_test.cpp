@@ -1,0 +1,81 @@
+#include "photonmap/photon.h"
+
+#include "core/rng.h"
+#include "core/statistics.h"
+#include "scene/warp.h"
+
+#include <gtest/gtest.h>
+
+namespace keyhole {
+namespace {
+
+Rng make_rng(std::uint64_t index) { return {1, StreamPurpose::test, index}; }
+
+double angle_in_degrees(const Vec3& a, const Vec3& b) {
+    return std::atan2(static_cast<double>(a.cross(b).length()), static_cast<double>(a.dot(b))) * 180 / kPi;
+}
+
+template <class Int> double largest_error_in_degrees() {
+    Rng rng = make_rng(0);
+    double largest = 0;
+    for (int i = 0; i < 300'000; ++i) {
+        const Vec3 v = uniform_sphere(rng.next(), rng.next());
+        largest = std::max(largest, angle_in_degrees(v, OctahedralVector<Int>(v).decode()));
+    }
+    return largest;
+}
+
+TEST(OctahedralVector, KeepsItsPromisedErrors) {
+    EXPECT_LT(largest_error_in_degrees<std::int16_t>(), 0.0037);
+    EXPECT_LT(largest_error_in_degrees<std::int8_t>(), 0.95);
+}
+
+TEST(OctahedralVector, KeepsAxesExactly) {
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const float sign : {-1.0f, 1.0f}) {
+            Vec3 v(0);
+            v[axis] = sign;
+            EXPECT_EQ(OctahedralVector<std::int8_t>(v).decode(), v);
+            EXPECT_EQ(OctahedralVector<std::int16_t>(v).decode(), v);
+        }
+    }
+}
+
+TEST(SharedExponentRgb, RoundsWithinItsBoundAndWithoutBias) {
+    Rng rng = make_rng(1);
+    RunningStats error[3];
+    for (int i = 0; i < 300'000; ++i) {
+        const double magnitude = std::pow(10.0, 140 * rng.next() - 70);
+        const Rgb c = Rgb(rng.next(), rng.next(), rng.next()) * magnitude;
+        const Rgb back = SharedExponentRgb(c).decode();
+        const double largest = std::max({c.x, c.y, c.z});
+        for (int k = 0; k < 3; ++k) {
+            const double e = (back[k] - c[k]) / largest;
+            ASSERT_LE(std::abs(e), 0x1p-13);
+            error[k].add(e);
+        }
+    }
+    for (const RunningStats& e : error) EXPECT_LT(std::abs(e.mean()), 4 * e.standard_error());
+}
+
+TEST(SharedExponentRgb, HandlesTheEndsOfItsRange) {
+    const auto round_trip = [](double x) { return SharedExponentRgb(Rgb(x, 0, 0)).decode().x; };
+    EXPECT_EQ(round_trip(0.0), 0.0);
+    EXPECT_EQ(round_trip(1.0), 1.0);
+    EXPECT_EQ(round_trip(0x1p-255), 0x1p-255);
+    EXPECT_EQ(round_trip(0x1p-300), 0.0);
+    EXPECT_EQ(round_trip(0x1p254), 0x1p254);
+    EXPECT_NEAR(round_trip(0x1p300) / 0x1p255, 1.0, 1e-3);
+    // All mantissa bits set: rounds up into the next exponent.
+    EXPECT_EQ(round_trip(std::nextafter(2.0, 0.0)), 2.0);
+}
+
+TEST(Photon, TurnsItsNormalToTheSideOfTheLight) {
+    const Vec3 up(0, 0, 1), slanted = Vec3(1, 2, 3).normalized();
+    EXPECT_EQ(Photon(Vec3(0), up, slanted, Rgb(1.0)).normal().decode(), up);
+    EXPECT_EQ(Photon(Vec3(0), -up, slanted, Rgb(1.0)).normal().decode(), up);
+    EXPECT_EQ(Photon(Vec3(0), up, -slanted, Rgb(1.0)).normal().decode(), -up);
+}
+
+} // namespace
+} // namespace keyhole
