@@ -165,8 +165,14 @@ std::vector<Mistake> mistakes() {
         in_shape("{type: mesh, material: white, file: @empty.obj}", "empty.obj: found"),
         in_shape("{type: mesh, material: white, file: @points.obj}", "points.obj: found"),
         in_shape("{type: mesh, material: white, file: @junk.ply}", "junk.ply: found a broken mesh"),
+        in_shape("{type: mesh, material: white, file: @endless.ply}", "endless.ply: found a broken mesh (its header"),
+        in_shape("{type: mesh, material: white, file: @huge.ply}",
+                 "found 'element vertex 4000000000' in a file of 58 bytes"),
+        in_shape("{type: mesh, material: white, file: @cornerless.ply}",
+                 "cornerless.ply: found a face without corners"),
         in_shape("{type: mesh, material: white, file: @nan.ply}", "nan.ply: found the coordinate nan"),
-        in_shape("{type: mesh, material: white, file: @index.ply}", "index.ply: found"),
+        in_shape("{type: mesh, material: white, file: @index.ply}",
+                 "index.ply: found a broken mesh (Validation failed"),
         // Transforms.
         in_transform("@3", "a list of transforms"),
         in_transform("[@{scale: 1, rotate: [1, 0, 0, 1]}]", "found 2 transforms in one map"),
@@ -239,6 +245,9 @@ class SceneYamlErrors : public testing::Test {
         directory.write("empty.obj", "");
         directory.write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
         directory.write("junk.ply", "ply\nformat nonsense\n\x01\x02\x03");
+        directory.write("endless.ply", "ply\nformat ascii 1.0\nelement vertex 3\n0 0 0\n1 0 0\n");
+        directory.write("huge.ply", "ply\nformat ascii 1.0\nelement vertex 4000000000\nend_header\n");
+        directory.write("cornerless.ply", kPlyHead + "0 0 0\n1 0 0\n0 1 0\n0\n");
         directory.write("nan.ply", kPlyHead + "0 0 nan\n1 0 0\n0 1 0\n3 0 1 2\n");
         directory.write("index.ply", kPlyHead + "0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n");
         directory.write("white.yaml", "materials: {white: {type: diffuse}}\n");

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 namespace keyhole {
 namespace {
@@ -21,6 +22,25 @@ namespace {
 constexpr float kMaxCoordinate = 1e12f; // as for coordinates in scene files
 
 [[noreturn]] void fail(const std::string& path, const std::string& message) { throw InputError({path, 0, 0}, message); }
+
+/// assimp reads on for ever where the header has no end, and believes every count in it.
+void check_ply_header(const std::string& path) {
+    std::error_code error;
+    const auto bytes = std::filesystem::file_size(path, error);
+    std::ifstream stream(path, std::ios::binary);
+    std::string line;
+    for (int i = 0; i < 1000 && std::getline(stream, line); ++i) {
+        std::istringstream words(line);
+        std::string first, name;
+        std::uintmax_t count = 0;
+        words >> first;
+        if (first == "end_header") return;
+        if (first == "element" && (!(words >> name >> count) || count > bytes))
+            fail(path, fmt::format("found '{}' in a file of {} bytes, expected a name and a count", line.substr(0, 60),
+                                   bytes));
+    }
+    fail(path, "found a broken mesh (its header doesn't end), expected a valid one");
+}
 
 void check_file(const std::string& path) {
     std::error_code error;
@@ -34,6 +54,15 @@ void check_file(const std::string& path) {
     if (extension != ".obj" && extension != ".ply" && extension != ".gltf" && extension != ".glb")
         fail(path, fmt::format("found the extension '{}', expected .obj, .ply, .gltf or .glb", extension));
     if (!std::ifstream(path)) fail(path, "found a file that can't be opened, expected a readable mesh");
+    if (extension == ".ply") check_ply_header(path);
+}
+
+/// assimp's triangulation aborts where a face has no corners. (Indices out of range don't pass its validation.)
+void check_faces(const aiScene& scene, const std::string& path) {
+    for (unsigned i = 0; i < scene.mNumMeshes; ++i)
+        for (unsigned j = 0; j < scene.mMeshes[i]->mNumFaces; ++j)
+            if (scene.mMeshes[i]->mFaces[j].mNumIndices == 0)
+                fail(path, "found a face without corners, expected three at least");
 }
 
 Transform to_transform(const aiMatrix4x4& m) {
@@ -46,7 +75,7 @@ bool is_unit_like(const Vec3& n) {
 }
 
 /// One part of the file, before its placement.
-TriangleMesh convert(const aiMesh& source, const std::string& path) {
+TriangleMesh convert(const aiMesh& source) {
     TriangleMesh mesh;
     mesh.positions.reserve(source.mNumVertices);
     for (unsigned i = 0; i < source.mNumVertices; ++i) {
@@ -61,9 +90,6 @@ TriangleMesh convert(const aiMesh& source, const std::string& path) {
         const aiFace& face = source.mFaces[i];
         if (face.mNumIndices != 3) continue; // points and lines
         const std::array<std::uint32_t, 3> t{face.mIndices[0], face.mIndices[1], face.mIndices[2]};
-        for (const auto index : t)
-            if (index >= source.mNumVertices)
-                fail(path, fmt::format("found the vertex index {}, expected one below {}", index, source.mNumVertices));
         mesh.triangles.push_back(t);
     }
     for (Vec2& uv : mesh.uvs)
@@ -120,7 +146,7 @@ class Collector {
         if (all_.triangles.size() + source.mNumFaces > kMaxMeshTriangles ||
             all_.positions.size() + source.mNumVertices > 3 * kMaxMeshTriangles)
             fail(path_, fmt::format("found more than {} triangles, expected fewer", kMaxMeshTriangles));
-        TriangleMesh part = convert(source, path_);
+        TriangleMesh part = convert(source);
         if (!(regularity(to_world) > 1e-12))
             fail(path_, "found a singular placement of a part, expected a regular one");
         transform_mesh(part, to_world);
@@ -145,10 +171,14 @@ TriangleMesh import_mesh(const std::string& path) {
     check_file(path);
     Assimp::Importer importer;
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-    const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate | aiProcess_JoinIdenticalVertices |
-                                                       aiProcess_SortByPType | aiProcess_ValidateDataStructure);
-    if (scene == nullptr)
-        fail(path, fmt::format("found a broken mesh ({}), expected a valid one", importer.GetErrorString()));
+    const auto checked = [&](const aiScene* scene) {
+        if (scene == nullptr)
+            fail(path, fmt::format("found a broken mesh ({}), expected a valid one", importer.GetErrorString()));
+        return scene;
+    };
+    check_faces(*checked(importer.ReadFile(path, aiProcess_ValidateDataStructure)), path);
+    const aiScene* scene = checked(
+        importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType));
     TriangleMesh mesh;
     if (scene->mRootNode != nullptr) mesh = Collector(*scene, path).collect();
     if (mesh.triangles.empty()) fail(path, "found no triangles, expected at least one");
