@@ -28,8 +28,8 @@ struct DensityEstimate {
 /// With `weight` the BSDF for light from photon.direction() this is reflected radiance. Power is flux through the
 /// geometric surface: where the shading normal differs, a weight that agrees with path tracing has the factor |wi.ns| /
 /// |wi.ng| (measure.h). The area is that of the surface inside the region if `patches` are given, otherwise that of the
-/// disc, which is too large at edges. k = 1 under Unbiased::density is always 0. A region without area (all photons on
-/// one spot) yields 0.
+/// disc, which is too large at edges and on curved surfaces. k = 1 under Unbiased::density is always 0. A region
+/// without area (all photons on one spot) yields 0. `weight` must not query a photon map.
 template <class Weight>
 DensityEstimate estimate_density(const PhotonMap& map, const PhotonQuery& query, Unbiased unbiased,
                                  const SurfacePatches* patches, Weight&& weight) {

@@ -11,7 +11,8 @@ struct ImportanceOptions {
     int k = 50;                               ///< importons in an estimate
     float max_radius;                         ///< [m]; bounds how far importance can leak
     Unbiased unbiased = Unbiased::reciprocal; ///< photon power divides by importance
-    const SurfacePatches* patches = nullptr;  ///< for the area at edges; null: the disc's. Must outlive the map.
+    const SurfacePatches* patches = nullptr;  ///< measure areas; null: the disc's, which makes E
+                                              ///< too small at edges. Must outlive the map.
 };
 
 /// Immutable and thread-safe.
