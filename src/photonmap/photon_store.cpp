@@ -1,31 +1,14 @@
 #include "photonmap/photon_store.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace keyhole {
 
 PhotonStore::PhotonStore(std::size_t capacity, double initial_threshold, const Rng& rng)
     : capacity_(capacity), threshold_(initial_threshold), rng_(rng) {
-    assert(capacity > 0 && initial_threshold >= 0);
+    assert(initial_threshold >= 0);
     photons_.reserve(capacity);
     weights_.reserve(capacity);
-}
-
-void PhotonStore::deposit(const Photon& photon, double weight) {
-    assert(std::isfinite(weight) && weight >= 0);
-    if (weight == 0) return;
-    if (recent_.weight > 0 && photon == recent_.photon) {
-        recent_.weight += weight;
-        return;
-    }
-    std::swap(recent_, older_);
-    if (recent_.weight > 0 && photon == recent_.photon) {
-        recent_.weight += weight;
-        return;
-    }
-    store(recent_);
-    recent_ = {photon, weight};
 }
 
 double PhotonStore::roulette(double weight) {
@@ -33,17 +16,15 @@ double PhotonStore::roulette(double weight) {
     return rng_.next() * threshold_ < weight ? threshold_ : 0;
 }
 
-void PhotonStore::store(const Pending& pending) {
-    if (pending.weight == 0) return;
-    double weight = roulette(pending.weight);
+double PhotonStore::admit(double weight) {
+    if (weight == 0 || capacity_ == 0) return 0;
+    weight = roulette(weight);
     // The new photon has to meet the higher threshold like the stored ones.
     while (weight > 0 && photons_.size() == capacity_) {
         raise_threshold();
         weight = roulette(weight);
     }
-    if (weight == 0) return;
-    photons_.push_back(pending.photon);
-    weights_.push_back(static_cast<float>(weight));
+    return weight;
 }
 
 void PhotonStore::raise_threshold() {
@@ -61,8 +42,6 @@ void PhotonStore::raise_threshold() {
 }
 
 void PhotonStore::release_into(std::vector<Photon>& out, double scale) {
-    store(std::exchange(older_, {}));
-    store(std::exchange(recent_, {}));
     for (std::size_t i = 0; i < photons_.size(); ++i) {
         photons_[i].set_power(photons_[i].power() * (weights_[i] * scale));
         out.push_back(photons_[i]);

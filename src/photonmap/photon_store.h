@@ -4,6 +4,9 @@
 #include "core/rng.h"
 #include "photonmap/photon.h"
 
+#include <cassert>
+#include <cmath>
+#include <optional>
 #include <vector>
 
 namespace keyhole {
@@ -14,12 +17,20 @@ namespace keyhole {
 /// Depends on nothing but the deposits and its own random stream.
 class PhotonStore {
   public:
-    /// Memory for `capacity` photons (> 0) is taken at once.
+    /// Memory for `capacity` photons is taken at once. With a capacity of 0 everything is dropped.
     PhotonStore(std::size_t capacity, double initial_threshold, const Rng& rng);
 
-    /// Adds power `weight` times that of `photon`; weight >= 0. Deposits of one and the same photon that follow
-    /// closely, as those of a chain that stands still or that keeps its light sub-path, become one.
-    void deposit(const Photon& photon, double weight);
+    /// Adds power `weight` times that of the photon that make() returns, an optional<Photon>; weight >= 0. The roulette
+    /// comes first, so that photons that don't survive it cost nothing to make.
+    template <class Make> void deposit(double weight, Make&& make) {
+        assert(std::isfinite(weight) && weight >= 0);
+        weight = admit(weight);
+        if (weight == 0) return;
+        const std::optional<Photon> photon = make();
+        if (!photon) return;
+        photons_.push_back(*photon);
+        weights_.push_back(static_cast<float>(weight));
+    }
 
     /// Appends all photons to `out`, with power times weight times `scale`, and gives the memory back. The store is
     /// finished after that.
@@ -33,21 +44,15 @@ class PhotonStore {
     static constexpr std::size_t bytes_per_photon() { return sizeof(Photon) + sizeof(float); }
 
   private:
-    /// A deposit that may still grow. Two: a chain's current state and its proposal take turns.
-    struct Pending {
-        Photon photon{Vec3(0), Vec3(0, 0, 1), Vec3(0, 0, 1), Rgb(0.0)};
-        double weight = 0;
-    };
-
     /// The weight after roulette against the threshold: w, t or 0.
     double roulette(double weight);
-    void store(const Pending& pending);
+    /// Likewise, after making room for one more photon; the threshold may rise.
+    double admit(double weight);
     /// Doubles the threshold and sends what is stored through the roulette.
     void raise_threshold();
 
     std::vector<Photon> photons_;
     std::vector<float> weights_; // of photons_
-    Pending recent_, older_;
     std::size_t capacity_;
     double threshold_;
     Rng rng_;

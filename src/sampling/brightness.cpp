@@ -34,7 +34,7 @@ struct EstimateSink {
     PathSet set;
     bool keep_importons;
     Vec2 image{};
-    double sum = 0;
+    double sum = 0, caustic = 0;
     std::vector<Importon> first{}, second{};
 
     bool arrival(const EyeWalk& walk, const Rgb& throughput, int finite) {
@@ -47,6 +47,7 @@ struct EstimateSink {
     }
     void contribution(const EyeWalk&, const Vertex&, const Rgb& value, LightClass light) {
         if (in_set(light, set)) sum += luminance(value);
+        if (light == LightClass::caustic) caustic += luminance(value);
     }
 };
 
@@ -70,7 +71,7 @@ struct SeedSink {
 };
 
 struct Block {
-    RunningStats brightness;
+    RunningStats brightness, caustic;
     std::vector<Importon> first, second;
     std::vector<double> groups;
 };
@@ -79,10 +80,11 @@ Block run_block(const Scene& scene, const StageOneSettings& settings, Range samp
     Block block;
     EstimateSink sink{settings.set, false};
     for (std::int64_t i = samples.begin; i < samples.end; ++i) {
-        sink.sum = 0;
+        sink.sum = sink.caustic = 0;
         sink.keep_importons = importon_stride > 0 && i % importon_stride == 0;
         trace_sample(scene, settings, i, sink);
         block.brightness.add(sink.sum);
+        block.caustic.add(sink.caustic);
         if (i % StageOne::kGroup == 0) block.groups.push_back(0);
         block.groups.back() += sink.sum;
     }
@@ -112,6 +114,7 @@ StageOne run_stage_one(const Scene& scene, const StageOneSettings& settings, con
     for (auto& block : done) {
         if (!block) break; // after a stop, the leading blocks are a valid smaller run
         stage.brightness.merge(block->brightness);
+        stage.caustic.merge(block->caustic);
         append(stage.first, block->first);
         append(stage.second, block->second);
         stage.groups.insert(stage.groups.end(), block->groups.begin(), block->groups.end());

@@ -30,6 +30,7 @@ struct StageOneSettings {
 /// Result of stage one. Reproducible bit for bit on any number of threads.
 struct StageOne {
     RunningStats brightness;           ///< B_eye [W/(m^2 sr)] over the window, one entry a sample
+    RunningStats caustic;              ///< the part of it that the caustic map holds
     std::int64_t samples = 0;          ///< samples taken; fewer than asked for after a stop
     std::int64_t importon_samples = 0; ///< samples that importons were kept from
     std::vector<Importon> first, second; ///< at the first and second non-specular vertex seen

@@ -1,6 +1,7 @@
 // Path tracing with next-event estimation: the reference method, and stage one.
 #pragma once
 
+#include "sampling/direct_light.h"
 #include "sampling/measure.h"
 #include "sampling/walk.h"
 
@@ -34,33 +35,6 @@ inline Path complete_path(const Scene& scene, const EyeWalk& walk, const Vertex&
     return path;
 }
 
-/// Power heuristic with exponent 2 of a technique against one other (Veach 1997, eq. 9.13).
-inline double mis_power(double pdf, double other) {
-    if (!(pdf > 0)) return 0;
-    const double r = other / pdf;
-    return 1 / (1 + r * r);
-}
-
-/// Next-event estimation at the last vertex of the walk.
-template <class Sink>
-void next_event(const Scene& scene, const EyeWalk& walk, const Vec3& back, const Rgb& throughput, LightClass light,
-                SampleSource& source, Sink& sink) {
-    const auto x0 = sample_emitter(scene, source);
-    if (!x0 || !(x0->pdf > 0)) return;
-    const Vertex& v = walk.back();
-    const Vec3 to_light = direction(v.point, x0->vertex.point);
-    const ScatterValue s = scatter(v.point, v.bsdf, Event::finite, to_light, back);
-    const Emitter& emitter = scene.emitter(x0->vertex.point.emitter);
-    const Rgb value = throughput * s.value * emitter.radiance(x0->vertex.point, -to_light) *
-                      (geometry_term(v.point, x0->vertex.point) / x0->pdf);
-    if (is_black(value)) return;
-    const double weight =
-        emitter.is_delta() ? 1.0
-                           : mis_power(x0->pdf, solid_angle_to_area(s.pdf_to_light, v.point, x0->vertex.point));
-    if (!scene.visible(v.point, x0->vertex.point)) return;
-    sink.contribution(walk, x0->vertex, value * weight, light);
-}
-
 /// Traces one path from `image` (window point), with at most `max_scatterings` vertices between light and eye.
 ///
 /// Tells `sink`:
@@ -82,18 +56,14 @@ void trace_path(const Scene& scene, const Vec2& image, int max_scatterings, Samp
         const auto hit = next_vertex(scene, walk.back(), w);
         if (!hit) return;
         if (hit->point.is_emitter()) {
-            const Rgb emitted = scene.emitter(hit->point.emitter).radiance(hit->point, -w);
-            if (!is_black(emitted)) {
-                const bool after_specular = scatterings == 0 || walk.back().specular();
-                const double weight = after_specular ? 1.0
-                                                     : mis_power(solid_angle_to_area(pdf, walk.back().point, hit->point),
-                                                                 emitter_point_pdf(scene, hit->point));
-                const LightClass light = finite == 0       ? LightClass::emission
-                                         : finite >= 2     ? LightClass::indirect
-                                         : after_specular  ? LightClass::caustic
-                                                           : LightClass::direct;
-                sink.contribution(walk, *hit, throughput * emitted * weight, light);
-            }
+            const bool after_specular = scatterings == 0 || walk.back().specular();
+            const Rgb emitted = after_specular ? scene.emitter(hit->point.emitter).radiance(hit->point, -w)
+                                               : emission_with_mis(scene, walk.back(), *hit, w, pdf);
+            const LightClass light = finite == 0      ? LightClass::emission
+                                     : finite >= 2    ? LightClass::indirect
+                                     : after_specular ? LightClass::caustic
+                                                      : LightClass::direct;
+            if (!is_black(emitted)) sink.contribution(walk, *hit, throughput * emitted, light);
         }
         if (scatterings == max_scatterings) return;
         walk.push_back(*hit);
@@ -103,8 +73,10 @@ void trace_path(const Scene& scene, const Vec2& image, int max_scatterings, Samp
         const Vec3 back = -w;
         if (v.bsdf.traits().finite) {
             v.event = Event::finite;
-            const LightClass light = finite == 0 ? LightClass::direct : LightClass::indirect;
-            next_event(scene, walk, back, throughput, light, source, sink);
+            const auto light = sample_direct_light(scene, v, back, source);
+            if (light && scene.visible(v.point, light->x0.point))
+                sink.contribution(walk, light->x0, throughput * light->value,
+                                  finite == 0 ? LightClass::direct : LightClass::indirect);
         }
         const auto next = continue_walk(v, back, From::eye, source);
         if (!next) return;

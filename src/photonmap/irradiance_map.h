@@ -1,0 +1,41 @@
+// Irradiance computed beforehand at some of the photons (Christensen 1999, "Faster Photon Map Global Illumination").
+#pragma once
+
+#include "core/progress.h"
+#include "photonmap/density_estimate.h"
+
+namespace keyhole {
+
+struct IrradianceOptions {
+    int k = 60;          ///< photons in an estimate
+    float max_radius;    ///< [m]
+    int stride = 4;      ///< one estimate for so many photons
+    const SurfacePatches* patches = nullptr; ///< for the area at edges; null: the disc's
+};
+
+/// Answers with the estimate at the nearest of the chosen photons on the same piece of surface. Immutable and
+/// thread-safe once built.
+class IrradianceMap {
+  public:
+    /// `photons` is only read here.
+    IrradianceMap(const PhotonMap& photons, const IrradianceOptions& options, const RunContext& context);
+
+    struct Answer {
+        Rgb irradiance{0.0}; ///< W/m^2, through the geometric surface
+        bool known = false;  ///< false: no photon of this surface within max_radius; irradiance is 0
+    };
+
+    /// Irradiance on the side of unit `normal`.
+    Answer irradiance(const Vec3& position, const Vec3& normal) const;
+
+    std::size_t bytes() const { return map_.bytes(); }
+    /// Mean number of photons that went into an estimate.
+    double mean_photons() const { return mean_photons_; }
+
+  private:
+    double mean_photons_ = 0; // filled in while map_ is made
+    PhotonMap map_;
+    float max_radius_;
+};
+
+} // namespace keyhole

@@ -1,0 +1,36 @@
+// Stage two: chains over whole paths, and the photons they leave.
+#pragma once
+
+#include "core/progress.h"
+#include "photonmap/deposit.h"
+#include "sampling/brightness.h"
+#include "sampling/chain.h"
+
+#include <vector>
+
+namespace keyhole {
+
+struct PhotonSamplingOptions {
+    std::int64_t mutations;         ///< over all chains
+    std::size_t global_photons;     ///< ceiling for the global map; 0: none are kept
+    std::size_t caustic_photons;    ///< ceiling for the caustic map; 0: none are kept
+    double brightness;              ///< B_eye [W/(m^2 sr)]
+    std::uint64_t seed;
+};
+
+struct SampledPhotons {
+    std::vector<Photon> global, caustic; ///< power in W
+    Ledger ledger;                       ///< in the order of the mixture
+    std::uint64_t steps = 0;
+    std::uint64_t longest_stay = 0;      ///< of any chain at one state
+    double lost_share = 0;               ///< share of the deposits whose importance came out as zero
+};
+
+/// Runs one chain from each seed, all equally long, and stores their photons. The number of chains is that of the seeds
+/// and never follows the threads: the result is the same on any number of them. After a stop every chain has made the
+/// same number of steps.
+SampledPhotons sample_photons(const std::vector<Path>& seeds, const Mixture<Path>& mixture,
+                              const DepositImportance& importance, const PhotonSamplingOptions& options,
+                              const RunContext& context);
+
+} // namespace keyhole

@@ -1,0 +1,14 @@
+// The methods behind render(), one file each.
+#pragma once
+
+#include "render/render.h"
+
+namespace keyhole {
+
+/// Metropolis photon sampling: Fan, Chenney, Lai 2005.
+RenderResult render_mps(const Scene& scene, const Settings& settings, const RunContext& context);
+
+/// Path tracing with next-event estimation, the reference.
+RenderResult render_path(const Scene& scene, const Settings& settings, const RunContext& context);
+
+} // namespace keyhole

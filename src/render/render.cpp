@@ -1,0 +1,20 @@
+#include "render/render.h"
+
+#include "core/error.h"
+#include "render/methods.h"
+
+#include <algorithm>
+
+namespace keyhole {
+
+RenderResult render(Scene& scene, const Settings& settings, const RunContext& context) {
+    ImageWindow window = scene.camera().window();
+    // Room for the filter, and for photon lookups at the border of the picture.
+    window.margin = std::max(2.0f, 0.03f * static_cast<float>(std::max(window.width, window.height)));
+    scene.set_window(window);
+    if (settings.method == "path") return render_path(scene, settings, context);
+    if (settings.method == "mps") return render_mps(scene, settings, context);
+    throw InputError("unknown method '" + settings.method + "'");
+}
+
+} // namespace keyhole

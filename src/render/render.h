@@ -1,0 +1,22 @@
+// From a scene and settings to a picture.
+#pragma once
+
+#include "core/progress.h"
+#include "core/render_stats.h"
+#include "core/settings.h"
+#include "film/picture.h"
+#include "scene/scene.h"
+
+namespace keyhole {
+
+struct RenderResult {
+    Picture picture;
+    RenderStats stats;
+};
+
+/// Renders by the method that the settings name. The same scene, settings and seed give the same picture, bit for bit,
+/// whatever the number of threads. After a stop the result is what there is so far, with stats.complete false. Sets the
+/// scene's window margin.
+RenderResult render(Scene& scene, const Settings& settings, const RunContext& context);
+
+} // namespace keyhole

@@ -1,0 +1,27 @@
+// Time and rays of a stage.
+#pragma once
+
+#include "core/render_stats.h"
+
+#include <chrono>
+#include <string>
+
+namespace keyhole {
+
+/// Appends a line to the statistics when it goes out of scope.
+class StageClock {
+  public:
+    StageClock(RenderStats& stats, std::string name);
+    ~StageClock();
+    StageClock(const StageClock&) = delete;
+    StageClock& operator=(const StageClock&) = delete;
+
+  private:
+    RenderStats& stats_;
+    std::string name_;
+    std::chrono::steady_clock::time_point start_;
+    double cpu_;
+    std::uint64_t rays_;
+};
+
+} // namespace keyhole
