@@ -1,4 +1,4 @@
-# Libraries, all from Debian 12. See install_dependencies.sh for the packages.
+# Libraries, all from Debian 12. scripts/install_dependencies.sh has their packages.
 find_package(embree 3.13 CONFIG REQUIRED)
 find_package(nanoflann 1.4 CONFIG REQUIRED)
 find_package(OpenEXR 3.1 CONFIG REQUIRED)

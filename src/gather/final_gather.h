@@ -38,7 +38,7 @@ class FinalGather {
                PixelSample& out) const;
     Rgb direct_light(const Vertex& v, const Vec3& back, SampleSource& source) const;
     /// One gather ray; `direct` takes its share of direct light (MIS against direct_light()).
-    Rgb gather_ray(const Vertex& v, const Vec3& back, int scatterings, SampleSource& source, PixelSample& out,
+    Rgb gather_ray(const Vertex& from, const Vec3& back, int scatterings, SampleSource& source, PixelSample& out,
                    Rgb& direct) const;
     /// Radiance that the global map gives at `v` towards `back`.
     Rgb ask_global_map(const Vertex& v, const Vec3& back, PixelSample& out) const;

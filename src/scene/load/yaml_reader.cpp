@@ -85,7 +85,7 @@ std::string read_string(const YamlNode& node, std::string_view expected) {
 }
 
 std::string read_choice(const YamlNode& node, std::string_view what, const std::vector<std::string_view>& choices) {
-    const std::string word = read_string(node, what);
+    std::string word = read_string(node, what);
     if (std::find(choices.begin(), choices.end(), word) == choices.end())
         fail(node, fmt::format("found {}, {}", describe(node), expected_one_of(word, choices)));
     return word;

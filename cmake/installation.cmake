@@ -1,0 +1,13 @@
+# cmake --install: the program, the scenes, and the library with its headers. Headers name each other from the root of
+# src, so that a client adds both include and include/keyhole to its include path.
+include(GNUInstallDirs)
+
+if(TARGET keyhole)
+  install(TARGETS keyhole)
+endif()
+install(TARGETS keyhole_lib ARCHIVE)
+install(DIRECTORY src/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/keyhole
+  FILES_MATCHING PATTERN "*.h" PATTERN "cli" EXCLUDE)
+install(DIRECTORY scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/keyhole)
+install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs)
