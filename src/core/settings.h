@@ -23,7 +23,10 @@ struct Settings {
     std::int64_t gather_rays = 4;
     double p_bidirectional = 0.4;
     double p_lens_subpath = 0.1;
-    double p_lens_perturbation = 0.3;
+    double p_lens_perturbation = 0.2;
+    double p_multi_chain_perturbation = 0.2;
+    double p_caustic_perturbation = 0.2;
+    double p_photon_map = 0.2;
 };
 
 /// One line of the table. `Visitor` is called as visitor(key, member, minimum, maximum, help) for numbers and
@@ -44,6 +47,10 @@ template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
     visit("p_bidirectional", s.p_bidirectional, 0.0, 1.0, "relative frequency of bidirectional proposals");
     visit("p_lens_subpath", s.p_lens_subpath, 0.0, 1.0, "relative frequency of lens sub-path proposals");
     visit("p_lens_perturbation", s.p_lens_perturbation, 0.0, 1.0, "relative frequency of lens perturbations");
+    visit("p_multi_chain_perturbation", s.p_multi_chain_perturbation, 0.0, 1.0,
+          "relative frequency of multi-chain perturbations");
+    visit("p_caustic_perturbation", s.p_caustic_perturbation, 0.0, 1.0, "relative frequency of caustic perturbations");
+    visit("p_photon_map", s.p_photon_map, 0.0, 1.0, "relative frequency of photon map perturbations");
 }
 
 } // namespace keyhole

@@ -30,6 +30,8 @@ Vertex sample_eye(const Scene& scene, SampleSource& source) {
 }
 
 std::optional<Vertex> next_vertex(const Scene& scene, const Vertex& from, const Vec3& w) {
+    // Vertices closer than floats can tell apart leave no direction between them.
+    if (!(w.length2() > 0.5f)) return std::nullopt;
     const auto point = scene.trace(from.point, w);
     if (!point) return std::nullopt;
     return make_vertex(*point);

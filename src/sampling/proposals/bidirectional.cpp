@@ -160,18 +160,13 @@ std::optional<Path> Bidirectional::propose(const Path& x, Rng& rng, Failure& why
     if (!light.empty()) light.back().event = Event::finite;
     eye.back().event = Event::finite;
 
-    std::optional<Path> y(std::in_place);
-    assemble(*y, light, eye);
     if (eye.size() == 1) {
         const auto p = scene_.camera().image_point(eye[0].point, direction(eye[0].point, light.back().point));
         if (!p) return why = Failure::outside_image, std::nullopt;
         image = *p;
     }
-    y->image = image;
-    if (added == cut->removed() && common_prefix(x, *y) == n) return why = Failure::unchanged, std::nullopt;
-    evaluate(scene_, *y, set_);
-    if (y->target > 0 && !hits_light && !scene_.visible(light.back().point, eye.back().point))
-        return why = Failure::blocked, std::nullopt;
+    auto y = join(scene_, set_, light, eye, image, why);
+    if (y && added == cut->removed() && common_prefix(x, *y) == n) return why = Failure::unchanged, std::nullopt;
     return y;
 }
 

@@ -41,7 +41,9 @@ std::optional<Path> join(const Scene& scene, PathSet set, const SubPath& light, 
     assemble(*y, light, eye);
     y->image = image;
     evaluate(scene, *y, set);
-    if (y->target > 0 && !scene.visible(light.back().point, eye.back().point)) return why = Failure::blocked, std::nullopt;
+    const bool traced_to_light = light.empty();
+    if (y->target > 0 && !traced_to_light && !scene.visible(light.back().point, eye.back().point))
+        return why = Failure::blocked, std::nullopt;
     return y;
 }
 
@@ -63,14 +65,27 @@ bool retrace(const Scene& scene, SubPath& walk, Vec3 w, const Path& x, int first
     }
 }
 
-double retrace_density_from_eye(const Path& y, int first, int last) {
-    double density = y.x[static_cast<std::size_t>(first)].pdf_from_eye;
-    for (int i = first - 1; i >= last; --i) {
-        const Vertex& specular = y.x[static_cast<std::size_t>(i) + 1];
-        const auto lobe = specular.bsdf.delta(direction(specular.point, y.x[static_cast<std::size_t>(i) + 2].point), specular.event);
-        density *= lobe ? y.x[static_cast<std::size_t>(i)].pdf_from_eye / lobe->probability : 0.0;
+double retrace_density(const Path& y, double first_density, int first, int last) {
+    const int step = first <= last ? 1 : -1;
+    double density = first_density;
+    for (int i = first; i != last; i += step) {
+        const Vertex& specular = y.x[static_cast<std::size_t>(i)];
+        const Vertex& next = y.x[static_cast<std::size_t>(i + step)];
+        const auto lobe = specular.bsdf.delta(leaving_direction(y, i, -step), specular.event);
+        if (!lobe || !(lobe->probability > 0)) return 0;
+        density *= (step > 0 ? next.pdf_from_light : next.pdf_from_eye) / lobe->probability;
     }
     return density;
+}
+
+int next_finite(const Path& path, int i, int step) {
+    do i += step;
+    while (path.x[static_cast<std::size_t>(i)].specular());
+    return i;
+}
+
+Vec3 leaving_direction(const Path& path, int i, int step) {
+    return direction(path.x[static_cast<std::size_t>(i)].point, path.x[static_cast<std::size_t>(i + step)].point);
 }
 
 bool same_events(const Path& x, const Path& y) {

@@ -50,7 +50,8 @@ bool grow(const Scene& scene, SubPath& walk, From from, const Vec2& image, bool 
 /// Path from a light sub-path and an eye sub-path, in order from the light.
 void assemble(Path& path, const SubPath& light, const SubPath& eye);
 
-/// The evaluated path that joins the last vertices of two sub-paths; none if the joint is blocked.
+/// The evaluated path that joins the last vertices of two sub-paths; none if the joint is blocked. An empty `light`:
+/// the eye sub-path was traced to the emitter itself.
 std::optional<Path> join(const Scene& scene, PathSet set, const SubPath& light, const SubPath& eye, const Vec2& image,
                          Failure& why);
 
@@ -58,9 +59,16 @@ std::optional<Path> join(const Scene& scene, PathSet set, const SubPath& light, 
 /// the light if last < first). Those before the last take the specular events that x has there; the last is finite.
 bool retrace(const Scene& scene, SubPath& walk, Vec3 w, const Path& x, int first, int last, Failure& why);
 
-/// Density of y[first], ..., y[last] (last <= first, all but the last specular) when retraced from the eye's side, over
-/// that of the direction that leads to y[first]: specular events are prescribed, not chosen.
-double retrace_density_from_eye(const Path& y, int first, int last);
+/// Density of y[first], ..., y[last] (all but the last specular) when retraced in this order: `first_density`, that of
+/// y[first], times those of the others, with specular events prescribed, not chosen.
+double retrace_density(const Path& y, double first_density, int first, int last);
+
+/// Index of the next non-specular vertex from `i` in direction `step` (+1 towards the eye, -1 towards the light), not
+/// counting i itself. The ends of a path are never specular.
+int next_finite(const Path& path, int i, int step);
+
+/// Unit direction from x[i] to its neighbour x[i + step].
+Vec3 leaving_direction(const Path& path, int i, int step);
 
 /// Whether two paths have the same vertices specular in the same way.
 bool same_events(const Path& x, const Path& y);

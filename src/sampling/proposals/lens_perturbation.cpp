@@ -1,67 +1,68 @@
 // LP, lens perturbation: the image point moves a little, the same specular events are traced again, and the first
 // non-specular vertex is joined to the kept rest (Veach 1997, section 11.3.1.1).
-#include "sampling/proposals/edit.h"
+//
+// MC, multi-chain perturbation: the same where that vertex can't be joined, because light comes to it through specular
+// vertices: these are traced again as well, from a perturbed direction, until a joint is possible or the light is hit
+// (Veach 1997, section 11.3.2). It moves caustics, and caustics seen in mirrors.
+#include "sampling/proposals/eye_perturbation.h"
 #include "sampling/proposals/registry.h"
 
 namespace keyhole {
 namespace {
 
-/// Steps in the image, in pixels: radius log-uniform between two bounds, angle uniform.
-struct ImageStep {
-    static constexpr double kNear = 0.1, kFar = 40;
+constexpr ImageStep kImageStep(0.1, 40);
+constexpr DirectionStep kDirectionStep(1e-4, 0.1);
 
-    static Vec2 sample(Rng& rng) {
-        const double r = kNear * std::pow(kFar / kNear, rng.next()), phi = 2 * kPi * rng.next();
-        return {static_cast<float>(r * std::cos(phi)), static_cast<float>(r * std::sin(phi))};
-    }
-    /// Per square pixel.
-    static double density(const Vec2& step) {
-        const double r = std::hypot(step.x, step.y);
-        return r < kNear || r > kFar ? 0.0 : 1 / (2 * kPi * r * r * std::log(kFar / kNear));
-    }
-};
+enum class Chains { one, many };
 
-class LensPerturbation final : public Proposal<Path> {
+class EyePerturbation final : public Proposal<Path> {
   public:
-    explicit LensPerturbation(const ProposalContext& context) : scene_(*context.scene), set_(context.set) {}
+    EyePerturbation(const ProposalContext& context, Chains chains)
+        : scene_(*context.scene), set_(context.set), chains_(chains) {}
 
-    std::string_view name() const override { return "lens_perturbation"; }
-    double suitability(const Path& x) const override { return lens_subpath_start(x) > 0 ? 1 : 0; }
-    std::optional<Path> propose(const Path& x, Rng& rng, Failure& why) const override;
-    double transition_density(const Path& x, const Path& y) const override;
+    std::string_view name() const override {
+        return chains_ == Chains::one ? "lens_perturbation" : "multi_chain_perturbation";
+    }
+    double suitability(const Path& x) const override {
+        const int d1 = nth_finite_from_eye(x, 1);
+        const bool joinable_at_d1 = d1 > 0 && !x.x[static_cast<std::size_t>(d1) - 1].specular();
+        return d1 > 0 && joinable_at_d1 == (chains_ == Chains::one) ? 1 : 0;
+    }
+
+    std::optional<Path> propose(const Path& x, Rng& rng, Failure& why) const override {
+        const ImageWindow& window = scene_.camera().window();
+        const Vec2 image = window.to_window(window.to_pixel(x.image) + kImageStep.sample(rng));
+        if (!(image.x >= 0 && image.x < 1 && image.y >= 0 && image.y < 1))
+            return why = Failure::outside_image, std::nullopt;
+        SubPath eye;
+        eye.push_back(x.x.back());
+        const Vec3 w = scene_.camera().ray_direction(eye[0].point, image);
+        return perturb_from_eye(scene_, set_, x, pieces_from_eye(x, x.vertices() - 1), eye, w, image, kDirectionStep, rng,
+                                why);
+    }
+
+    double transition_density(const Path& x, const Path& y) const override {
+        if (!same_events(x, y) || suitability(y) == 0) return 0;
+        const ImageWindow& window = scene_.camera().window();
+        const double image = kImageStep.density(window.to_pixel(y.image) - window.to_pixel(x.image)) * window.pixels();
+        const double first = image * y.x[y.x.size() - 2].pdf_from_eye; // that of a uniform image point
+        return eye_perturbation_density(x, y, pieces_from_eye(x, x.vertices() - 1), first, kDirectionStep);
+    }
 
   private:
     const Scene& scene_;
     PathSet set_;
+    Chains chains_;
 };
-
-std::optional<Path> LensPerturbation::propose(const Path& x, Rng& rng, Failure& why) const {
-    const int d1 = lens_subpath_start(x);
-    const ImageWindow& window = scene_.camera().window();
-    const Vec2 image = window.to_window(window.to_pixel(x.image) + ImageStep::sample(rng));
-    if (!(image.x >= 0 && image.x < 1 && image.y >= 0 && image.y < 1))
-        return why = Failure::outside_image, std::nullopt;
-
-    SubPath light, eye;
-    for (int i = 0; i < d1; ++i) light.push_back(x.x[static_cast<std::size_t>(i)]);
-    eye.push_back(x.x.back());
-    if (!retrace(scene_, eye, scene_.camera().ray_direction(eye[0].point, image), x, x.vertices() - 2, d1, why))
-        return std::nullopt;
-    return join(scene_, set_, light, eye, image, why);
-}
-
-double LensPerturbation::transition_density(const Path& x, const Path& y) const {
-    const int d1 = lens_subpath_start(y);
-    if (d1 == 0 || d1 != lens_subpath_start(x) || !same_events(x, y)) return 0;
-    const ImageWindow& window = scene_.camera().window();
-    const Vec2 step = window.to_pixel(y.image) - window.to_pixel(x.image);
-    return ImageStep::density(step) * window.pixels() * retrace_density_from_eye(y, y.vertices() - 2, d1);
-}
 
 } // namespace
 
 PathProposal make_lens_perturbation(const ProposalContext& context) {
-    return std::make_unique<LensPerturbation>(context);
+    return std::make_unique<EyePerturbation>(context, Chains::one);
+}
+
+PathProposal make_multi_chain_perturbation(const ProposalContext& context) {
+    return std::make_unique<EyePerturbation>(context, Chains::many);
 }
 
 } // namespace keyhole

@@ -7,6 +7,9 @@ constexpr ProposalKind kKinds[] = {
     {make_bidirectional, &Settings::p_bidirectional},
     {make_lens_subpath, &Settings::p_lens_subpath},
     {make_lens_perturbation, &Settings::p_lens_perturbation},
+    {make_multi_chain_perturbation, &Settings::p_multi_chain_perturbation},
+    {make_caustic_perturbation, &Settings::p_caustic_perturbation},
+    {make_photon_map_perturbation, &Settings::p_photon_map},
 };
 
 } // namespace

@@ -22,6 +22,9 @@ using PathProposal = std::unique_ptr<const Proposal<Path>>;
 PathProposal make_bidirectional(const ProposalContext& context);
 PathProposal make_lens_subpath(const ProposalContext& context);
 PathProposal make_lens_perturbation(const ProposalContext& context);
+PathProposal make_multi_chain_perturbation(const ProposalContext& context);
+PathProposal make_caustic_perturbation(const ProposalContext& context);
+PathProposal make_photon_map_perturbation(const ProposalContext& context);
 
 /// One line of the table.
 struct ProposalKind {

@@ -1,0 +1,76 @@
+// CP, caustic perturbation: at a vertex before a specular chain the direction of light is perturbed, the chain is traced
+// again, and the non-specular vertex where it ends is joined to the next one towards the eye. If that is the eye, the
+// image point moves (Veach 1997, section 11.3.1.2); if it is another surface, a caustic that lights it moves.
+#include "sampling/proposals/edit.h"
+#include "sampling/proposals/registry.h"
+#include "sampling/proposals/steps.h"
+
+#include <algorithm>
+
+namespace keyhole {
+namespace {
+
+constexpr DirectionStep kStep(1e-4, 0.2);
+
+class CausticPerturbation final : public Proposal<Path> {
+  public:
+    explicit CausticPerturbation(const ProposalContext& context) : scene_(*context.scene), set_(context.set) {}
+
+    std::string_view name() const override { return "caustic_perturbation"; }
+    double suitability(const Path& x) const override { return chains(x).empty() ? 0 : 1; }
+    std::optional<Path> propose(const Path& x, Rng& rng, Failure& why) const override;
+    double transition_density(const Path& x, const Path& y) const override;
+
+  private:
+    /// Vertices a with a specular chain after them that ends in a vertex whose next neighbour is not specular.
+    using Starts = InlineVector<int, kMaxScatterings + 2>;
+    static Starts chains(const Path& x) {
+        Starts starts;
+        for (int a = 0; a + 3 < x.vertices(); ++a) {
+            if (x.x[static_cast<std::size_t>(a)].specular() || !x.x[static_cast<std::size_t>(a) + 1].specular()) continue;
+            const int b = next_finite(x, a, +1);
+            if (b + 1 < x.vertices() && !x.x[static_cast<std::size_t>(b) + 1].specular()) starts.push_back(a);
+        }
+        return starts;
+    }
+
+    const Scene& scene_;
+    PathSet set_;
+};
+
+std::optional<Path> CausticPerturbation::propose(const Path& x, Rng& rng, Failure& why) const {
+    const Starts starts = chains(x);
+    const int a = starts[rng.below(static_cast<std::uint32_t>(starts.size()))], b = next_finite(x, a, +1);
+    SubPath light, eye;
+    for (int i = 0; i <= a; ++i) light.push_back(x.x[static_cast<std::size_t>(i)]);
+    const Vec3 w = kStep.sample(leaving_direction(x, a, +1), rng);
+    if (!retrace(scene_, light, w, x, a + 1, b, why)) return std::nullopt;
+    for (int i = x.vertices() - 1; i > b; --i) eye.push_back(x.x[static_cast<std::size_t>(i)]);
+    Vec2 image = x.image;
+    if (eye.size() == 1) {
+        const auto p = scene_.camera().image_point(eye[0].point, direction(eye[0].point, light.back().point));
+        if (!p) return why = Failure::outside_image, std::nullopt;
+        image = *p;
+    }
+    return join(scene_, set_, light, eye, image, why);
+}
+
+double CausticPerturbation::transition_density(const Path& x, const Path& y) const {
+    if (!same_events(x, y)) return 0;
+    // The start of the chain that was traced again is the last vertex that both share from the light on.
+    const Starts starts = chains(x);
+    const int a = common_prefix(x, y) - 1;
+    if (std::find(starts.begin(), starts.end(), a) == starts.end()) return 0;
+    const auto i = static_cast<std::size_t>(a);
+    const double w = kStep.density(leaving_direction(x, a, +1), leaving_direction(y, a, +1));
+    const double first = solid_angle_to_area(w, y.x[i].point, y.x[i + 1].point);
+    return retrace_density(y, first, a + 1, next_finite(y, a, +1)) / static_cast<double>(starts.size());
+}
+
+} // namespace
+
+PathProposal make_caustic_perturbation(const ProposalContext& context) {
+    return std::make_unique<CausticPerturbation>(context);
+}
+
+} // namespace keyhole

@@ -1,0 +1,71 @@
+// Small steps in the image and in direction, with their densities.
+#pragma once
+
+#include "core/rng.h"
+#include "core/vec.h"
+
+#include <algorithm>
+
+namespace keyhole {
+
+/// Radius log-uniform between two bounds, angle uniform: small features and large ones are explored alike (Kelemen et
+/// al. 2002, section 3; Veach 1997, section 11.3.1).
+class LogUniformRadius {
+  public:
+    constexpr LogUniformRadius(double least, double most) : least_(least), most_(most) {}
+
+    double sample(double u) const { return least_ * std::pow(most_ / least_, u); }
+    /// Per unit of radius. Radii are measured again from positions, which are floats: what lies a little outside the
+    /// bounds was drawn inside them. The density is the same both ways, so this slack cancels in an acceptance.
+    double density(double r) const {
+        if (!(r > 0 && r <= most_ * 1.02)) return 0;
+        return 1 / (std::max(r, least_) * std::log(most_ / least_));
+    }
+
+  private:
+    double least_, most_;
+};
+
+/// A step in the image, in pixels.
+class ImageStep {
+  public:
+    constexpr ImageStep(double least, double most) : radius_(least, most) {}
+
+    Vec2 sample(SampleSource& source) const {
+        const double r = radius_.sample(source.next()), phi = 2 * kPi * source.next();
+        return {static_cast<float>(r * std::cos(phi)), static_cast<float>(r * std::sin(phi))};
+    }
+    /// Per square pixel.
+    double density(const Vec2& step) const {
+        const double r = std::hypot(step.x, step.y);
+        return radius_.density(r) / (2 * kPi * r);
+    }
+
+  private:
+    LogUniformRadius radius_;
+};
+
+/// A step from one direction to another, by its angle [rad].
+class DirectionStep {
+  public:
+    constexpr DirectionStep(double least, double most) : angle_(least, most) {}
+
+    Vec3 sample(const Vec3& from, SampleSource& source) const {
+        const double theta = angle_.sample(source.next()), phi = 2 * kPi * source.next();
+        const double s = std::sin(theta);
+        const Vec3 local(static_cast<float>(s * std::cos(phi)), static_cast<float>(s * std::sin(phi)),
+                         static_cast<float>(std::cos(theta)));
+        return Frame(from).to_world(local).normalized();
+    }
+    /// Per solid angle.
+    double density(const Vec3& from, const Vec3& to) const {
+        const double chord = Imath::V3d(to - from).length();
+        const double theta = 2 * std::asin(std::min(1.0, chord / 2));
+        return angle_.density(theta) / (2 * kPi * std::sin(theta));
+    }
+
+  private:
+    LogUniformRadius angle_;
+};
+
+} // namespace keyhole
