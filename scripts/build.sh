@@ -9,14 +9,15 @@ build=$root/build
 [[ $preset == release ]] || build=$root/build-$preset
 
 "$root/scripts/install_dependencies.sh" >&2
-quiet=(--quiet)
-if [[ ! -f $build/built-$1 ]]; then
+if [[ -f $build/built-$1 ]]; then
+    # Ninja says that there is nothing to do even when told to be quiet.
+    make() { cmake --build "$build" --target "$@" -- --quiet | sed '/^ninja: no work to do\.$/d'; }
+else
     echo "Building Keyhole in $build; this takes a few minutes, once" >&2
-    quiet=()
+    make() { cmake --build "$build" --target "$@"; }
 fi
-# A tree that was configured elsewhere, say on another machine's copy, is configured anew.
 if [[ ! -f $build/build.ninja ]]; then
     (cd "$root" && cmake --preset "$preset" --log-level=WARNING) >&2
 fi
-cmake --build "$build" --target "$@" -- "${quiet[@]}" >&2
+make "$@" >&2
 touch "$build/built-$1"
