@@ -9,6 +9,14 @@ Vec3 absolute(const Vec3& v) { return {std::abs(v.x), std::abs(v.y), std::abs(v.
 /// of the numbers that went in (Pharr, Jakob, Humphreys, "Managing Rounding Error": gamma_7 is 4e-7 in float).
 constexpr float kRelativeError = 1.5e-6f;
 
+/// Sets the tangent and the derivatives of position by texture coordinates; needs ns.
+void set_parametrisation(SurfacePoint& s, const Vec3& dpdu, const Vec3& dpdv) {
+    const Vec3 along = dpdu - s.ns * dpdu.dot(s.ns);
+    s.dpdu = along.length();
+    s.tangent = s.dpdu > 0 ? along / s.dpdu : Frame(s.ns).s;
+    s.dpdv = {dpdv.dot(s.tangent), dpdv.dot(s.ns.cross(s.tangent))};
+}
+
 } // namespace
 
 SurfacePoint triangle_point(const TriangleMesh& mesh, std::uint32_t triangle, float u, float v) {
@@ -27,14 +35,17 @@ SurfacePoint triangle_point(const TriangleMesh& mesh, std::uint32_t triangle, fl
         if (s.ns.dot(s.ng) < 0) s.ns = -s.ns;
     }
     s.uv = Vec2(u, v);
-    Vec3 along = b - a;
+    Vec3 dpdu = b - a, dpdv = c - a;
     if (!mesh.uvs.empty()) {
         const Vec2 &ta = mesh.uvs[ia], &tb = mesh.uvs[ib], &tc = mesh.uvs[ic];
         s.uv = ta * w + tb * u + tc * v;
         const float det = (tb.x - ta.x) * (tc.y - ta.y) - (tc.x - ta.x) * (tb.y - ta.y);
-        if (det != 0) along = ((b - a) * (tc.y - ta.y) - (c - a) * (tb.y - ta.y)) / det;
+        if (det != 0) {
+            dpdu = ((b - a) * (tc.y - ta.y) - (c - a) * (tb.y - ta.y)) / det;
+            dpdv = ((c - a) * (tb.x - ta.x) - (b - a) * (tc.x - ta.x)) / det;
+        }
     }
-    s.tangent = (along - s.ns * along.dot(s.ns)).normalized();
+    set_parametrisation(s, dpdu, dpdv);
     return s;
 }
 
@@ -47,8 +58,9 @@ SurfacePoint sphere_point(const Sphere& sphere, const Vec3& outward) {
     const float phi = std::atan2(outward.y, outward.x);
     s.uv = Vec2(static_cast<float>((phi < 0 ? phi + 2 * kPi : phi) / (2 * kPi)),
                 static_cast<float>(std::acos(std::clamp(outward.z, -1.0f, 1.0f)) / kPi));
-    s.tangent = Vec3(-outward.y, outward.x, 0).normalized();
-    if (s.tangent.length2() == 0) s.tangent = Vec3(1, 0, 0);
+    const Vec3 pole = Vec3(outward.x, outward.y, 0).normalized();
+    const float sine = std::hypot(outward.x, outward.y), r = sphere.radius * static_cast<float>(kPi);
+    set_parametrisation(s, Vec3(-outward.y, outward.x, 0) * (2 * r), (pole * outward.z - Vec3(0, 0, sine)) * r);
     return s;
 }
 

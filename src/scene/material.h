@@ -2,6 +2,7 @@
 #pragma once
 
 #include "scene/bsdf.h"
+#include "scene/texture.h"
 
 #include <memory>
 
@@ -11,6 +12,7 @@ namespace keyhole {
 class Material {
   public:
     virtual ~Material() = default;
+    /// Evaluates all textures; the result stands for itself, but not beyond the material.
     virtual Bsdf bsdf(const SurfacePoint& point) const = 0;
     /// What any BSDF of this material may have; the renderer leaves out what no material needs.
     virtual BsdfTraits traits() const = 0;
@@ -18,10 +20,54 @@ class Material {
     virtual const char* kind() const = 0;
 };
 
-std::shared_ptr<const Material> make_diffuse(const Rgb& reflectance);
-std::shared_ptr<const Material> make_mirror(const Rgb& reflectance);
-/// Smooth dielectric; `eta` is the inner refractive index over the outer one.
-std::shared_ptr<const Material> make_glass(double eta, const Rgb& reflect_tint = Rgb(1.0),
-                                           const Rgb& transmit_tint = Rgb(1.0));
+using MaterialPtr = std::shared_ptr<const Material>;
+
+// In all factories: reflectances and transmittances are clamped to [0,1] and amounts, too; `alpha` is the GGX roughness
+// along the tangent (x) and across it (y), not remapped, and smooth below kSmoothAlpha; `eta` of an interface is the
+// refractive index inside, below the surface's outside, over that outside; complex indices (eta, k) of metals are
+// relative to the medium outside, for the three primaries. Textures must not be null.
+// @throws InputError for an index that is not positive.
+
+MaterialPtr make_black();
+MaterialPtr make_diffuse(const Rgb& reflectance);
+MaterialPtr make_diffuse(ColorTexture reflectance);
+/// Lambertian reflection and transmission. Where the two add up to more than 1 both are scaled down.
+MaterialPtr make_diffuse_transmission(ColorTexture reflectance, ColorTexture transmittance);
+
+MaterialPtr make_mirror(const Rgb& reflectance);
+MaterialPtr make_conductor(const Rgb& eta, const Rgb& k, FloatTexture alpha_x, FloatTexture alpha_y);
+/// The metal of index 1 + i k whose reflectance at normal incidence is the given one.
+MaterialPtr make_conductor(ColorTexture reflectance, FloatTexture alpha_x, FloatTexture alpha_y);
+
+/// Smooth dielectric.
+MaterialPtr make_glass(double eta, const Rgb& reflect_tint = Rgb(1.0), const Rgb& transmit_tint = Rgb(1.0));
+MaterialPtr make_dielectric(double eta, FloatTexture alpha_x, FloatTexture alpha_y);
+/// A pane without thickness, with the reflections between its two faces.
+MaterialPtr make_thin_dielectric(double eta);
+/// No surface at all: light goes straight on.
+MaterialPtr make_interface();
+
+/// A dielectric coat over a Lambertian base. `thickness` is the optical depth of the coat along its normal.
+MaterialPtr make_coated_diffuse(ColorTexture reflectance, FloatTexture alpha_x, FloatTexture alpha_y, double eta,
+                                FloatTexture thickness);
+
+/// The coat of a coated conductor.
+struct Coat {
+    double eta;
+    FloatTexture alpha_x, alpha_y;
+    FloatTexture thickness; ///< optical depth along the normal
+};
+/// A dielectric coat over a metal.
+MaterialPtr make_coated_conductor(const Coat& coat, const Rgb& eta, const Rgb& k, FloatTexture alpha_x,
+                                  FloatTexture alpha_y);
+MaterialPtr make_coated_conductor(const Coat& coat, ColorTexture reflectance, FloatTexture alpha_x,
+                                  FloatTexture alpha_y);
+
+/// At each place either `a` or `b`, chosen by a hash of the place; `amount` is the share of b.
+MaterialPtr make_mix(MaterialPtr a, MaterialPtr b, FloatTexture amount);
+
+/// `material` on a surface that is displaced along its shading normal, for shading only (Blinn 1978). `displacement` is
+/// in metres.
+MaterialPtr with_bump(MaterialPtr material, FloatTexture displacement);
 
 } // namespace keyhole

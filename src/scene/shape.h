@@ -38,6 +38,7 @@ struct Shape {
     std::variant<TriangleMesh, Sphere> geometry;
     std::shared_ptr<const Material> material;
     std::unique_ptr<SurfaceEmission> emission;
+    FloatTexture alpha{}; ///< opacity, as is_opaque() reads it; null: opaque
 };
 
 } // namespace keyhole

@@ -25,6 +25,8 @@ struct SurfacePoint {
     Vec3 ns{0, 0, 0};               ///< unit shading normal, in the hemisphere of ng
     Vec3 tangent{1, 0, 0};          ///< unit, perpendicular to ns, along increasing u where there is a parametrisation
     Vec2 uv{0, 0};                  ///< texture coordinates
+    float dpdu = 1;                 ///< length of dp/du in the tangent plane, along `tangent` [m]
+    Vec2 dpdv{0, 1};                ///< dp/dv in the tangent plane, along `tangent` and ns x tangent [m]
     float offset = 0;               ///< bound on the error of p along ng; ray origins move by this much
     Site site = Site::surface;
     std::uint32_t shape = kNone;     ///< index of the shape in the scene

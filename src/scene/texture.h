@@ -1,0 +1,96 @@
+// Textures: values that vary over a surface.
+#pragma once
+
+#include "core/vec.h"
+#include "scene/surface_point.h"
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace keyhole {
+
+/// Immutable and thread-safe.
+template <class T> class Texture {
+  public:
+    virtual ~Texture() = default;
+    virtual T value(const SurfacePoint& point) const = 0;
+    /// True where value() is the same everywhere.
+    virtual bool is_constant() const { return false; }
+};
+
+using ColorTexture = std::shared_ptr<const Texture<Rgb>>;
+using FloatTexture = std::shared_ptr<const Texture<double>>;
+
+/// Takes texture coordinates (u, v) to (su u + du, sv v + dv).
+struct UvMapping {
+    double su = 1, sv = 1, du = 0, dv = 0;
+};
+
+ColorTexture constant_texture(const Rgb& value);
+FloatTexture constant_texture(double value);
+
+/// What stands in an image file.
+enum class Encoding {
+    automatic, ///< sRGB for integers, linear for floats
+    linear,
+    srgb,
+    gamma, ///< value^gamma
+};
+
+/// What lies outside [0,1]^2 of an image.
+enum class Wrap { repeat, black, clamp };
+
+enum class Filter { bilinear, nearest };
+
+struct ImageOptions {
+    Encoding encoding = Encoding::automatic; ///< floats are linear whatever this says
+    double gamma = 2.2;                      ///< for Encoding::gamma
+    Wrap wrap = Wrap::repeat;
+    Filter filter = Filter::bilinear;
+    double scale = 1;    ///< factor on the value
+    bool invert = false; ///< 1 - value, after the scale
+    UvMapping mapping;
+};
+
+/// A picture, its first row at v = 1. The mean of the channels where T is double. A file named several times is
+/// decoded and kept once: 1 byte a channel for 8-bit files, 2 for 16-bit ones, 4 for floats, alpha left out.
+/// @throws InputError for a file that can't be read.
+template <class T>
+std::shared_ptr<const Texture<T>> image_texture(const std::string& path, const ImageOptions& options);
+
+/// value times factor.
+template <class T>
+std::shared_ptr<const Texture<T>> scale_texture(std::shared_ptr<const Texture<T>> value, FloatTexture factor);
+
+/// (1 - amount) a + amount b.
+template <class T>
+std::shared_ptr<const Texture<T>> mix_texture(std::shared_ptr<const Texture<T>> a, std::shared_ptr<const Texture<T>> b,
+                                              FloatTexture amount);
+
+/// Unit squares of `a` (that at the origin) and `b` in turn.
+template <class T>
+std::shared_ptr<const Texture<T>> checkerboard_texture(std::shared_ptr<const Texture<T>> a,
+                                                       std::shared_ptr<const Texture<T>> b, const UvMapping& mapping);
+
+/// An image in memory, for what a scene tells about itself.
+struct LoadedImage {
+    std::string path;
+    int width = 0, height = 0, channels = 0;
+    std::size_t bytes = 0;
+};
+
+/// The images that textures hold at the moment, by path.
+std::vector<LoadedImage> loaded_images();
+
+/// A number in [0,1) that belongs to a place: the same however a ray came there, unrelated to that of places more than
+/// about 2^-16 in texture coordinates away, and to that of the same place for another `salt`.
+double place_hash(const SurfacePoint& point, std::uint32_t salt);
+
+/// Whether a surface with opacity `alpha` (null: opaque) is there at `point`, whose shape and primitive are filled in.
+/// Below 0.5/65536 never, above its complement always; in between as a fine screen with that share of matter, which
+/// looks the same from every ray.
+bool is_opaque(const FloatTexture& alpha, const SurfacePoint& point);
+
+} // namespace keyhole
