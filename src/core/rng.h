@@ -23,6 +23,7 @@ enum class StreamPurpose : std::uint64_t {
     brightness,
     seed_choice,
     chain,
+    thinning,
     emission,
     gather,
     test,

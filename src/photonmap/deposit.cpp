@@ -33,20 +33,23 @@ void PathDepositor::flush() {
 }
 
 void PathDepositor::store(Pending& pending) {
-    const double weight = std::exchange(pending.weight, 0);
-    const PhotonKind kind = std::exchange(pending.kind, PhotonKind::none);
-    if (!(weight > 0)) return;
-    PhotonStore& store = kind == PhotonKind::global ? global_ : caustic_;
-    store.deposit(weight, [&]() -> std::optional<Photon> {
-        const ImportanceMap* map = kind == PhotonKind::global ? importance_.global : importance_.caustic;
-        const auto e = map->importance(pending.vertex.point, pending.vertex.bsdf, pending.to_light);
-        const double visible = luminance(pending.flux * e.value);
-        if (!(visible > 0)) {
-            lost_ += weight;
-            return std::nullopt;
-        }
-        return Photon(pending.vertex.point.p, pending.vertex.point.ng, pending.to_light, pending.flux / visible);
-    });
+    const bool global = pending.kind == PhotonKind::global;
+    pending.kind = PhotonKind::none;
+    const double given = std::exchange(pending.weight, 0);
+    if (!(given > 0)) return;
+    const double weight = roulette(given, global ? global_threshold_ : caustic_threshold_, rng_);
+    if (weight == 0) return;
+
+    const ImportanceMap& map = global ? *importance_.global : *importance_.caustic;
+    const auto e = map.importance(pending.vertex.point, pending.vertex.bsdf, pending.to_light);
+    const double visible = luminance(pending.flux * e.value);
+    if (!(visible > 0)) {
+        lost_ += weight;
+        return;
+    }
+    PhotonBuffer& buffer = global ? global_ : caustic_;
+    buffer.photons.emplace_back(pending.vertex.point.p, pending.vertex.point.ng, pending.to_light, pending.flux / visible);
+    buffer.weights.push_back(static_cast<float>(weight));
 }
 
 } // namespace keyhole

@@ -11,18 +11,19 @@ PhotonStore::PhotonStore(std::size_t capacity, double initial_threshold, const R
     weights_.reserve(capacity);
 }
 
-double PhotonStore::roulette(double weight) {
-    if (weight >= threshold_) return weight;
-    return rng_.next() * threshold_ < weight ? threshold_ : 0;
+void PhotonStore::absorb(PhotonBuffer& buffer) {
+    for (std::size_t i = 0; i < buffer.photons.size(); ++i) deposit(buffer.photons[i], buffer.weights[i]);
+    buffer.photons.clear();
+    buffer.weights.clear();
 }
 
 double PhotonStore::admit(double weight) {
     if (weight == 0 || capacity_ == 0) return 0;
-    weight = roulette(weight);
+    weight = roulette(weight, threshold_, rng_);
     // The new photon has to meet the higher threshold like the stored ones.
     while (weight > 0 && photons_.size() == capacity_) {
         raise_threshold();
-        weight = roulette(weight);
+        weight = roulette(weight, threshold_, rng_);
     }
     return weight;
 }
@@ -32,7 +33,7 @@ void PhotonStore::raise_threshold() {
     threshold_ = 2 * (threshold_ > 0 ? threshold_ : *std::min_element(weights_.begin(), weights_.end()));
     std::size_t kept = 0;
     for (std::size_t i = 0; i < photons_.size(); ++i) {
-        const double weight = roulette(weights_[i]);
+        const double weight = roulette(weights_[i], threshold_, rng_);
         if (weight == 0) continue;
         photons_[kept] = photons_[i];
         weights_[kept++] = static_cast<float>(weight);

@@ -11,24 +11,36 @@
 
 namespace keyhole {
 
+/// Russian roulette on a weight: below `threshold` it survives with probability weight / threshold and is `threshold`
+/// then; 0 where it doesn't. Keeps the expectation.
+inline double roulette(double weight, double threshold, Rng& rng) {
+    if (weight >= threshold) return weight;
+    return rng.next() * threshold < weight ? threshold : 0.0;
+}
+
+/// What one chain stores between two rounds, in order.
+struct PhotonBuffer {
+    std::vector<Photon> photons;
+    std::vector<float> weights;
+};
+
 /// Collects weighted photons and never holds more than its capacity. Weights below a threshold t survive with
 /// probability w / t and then weigh t; when the store is full, t rises and what is stored goes through the same
-/// roulette. Every region's total keeps its expectation whatever is thinned. Not thread-safe: one for each chain.
-/// Depends on nothing but the deposits and its own random stream.
+/// roulette. Every region's total keeps its expectation whatever is thinned. Not thread-safe. Depends on nothing but the
+/// deposits, their order and its own random stream.
 class PhotonStore {
   public:
     /// Memory for `capacity` photons is taken at once. With a capacity of 0 everything is dropped.
     PhotonStore(std::size_t capacity, double initial_threshold, const Rng& rng);
 
-    /// Adds power `weight` times that of the photon that make() returns, an optional<Photon>; weight >= 0. The roulette
-    /// comes first, so that photons that don't survive it cost nothing to make.
-    template <class Make> void deposit(double weight, Make&& make) {
-        assert(std::isfinite(weight) && weight >= 0);
+    /// Adds the photons of a buffer, power times weight, and empties it.
+    void absorb(PhotonBuffer& buffer);
+
+    /// Adds power `weight` times that of `photon`; weight >= 0.
+    void deposit(const Photon& photon, double weight) {
         weight = admit(weight);
         if (weight == 0) return;
-        const std::optional<Photon> photon = make();
-        if (!photon) return;
-        photons_.push_back(*photon);
+        photons_.push_back(photon);
         weights_.push_back(static_cast<float>(weight));
     }
 
@@ -44,9 +56,7 @@ class PhotonStore {
     static constexpr std::size_t bytes_per_photon() { return sizeof(Photon) + sizeof(float); }
 
   private:
-    /// The weight after roulette against the threshold: w, t or 0.
-    double roulette(double weight);
-    /// Likewise, after making room for one more photon; the threshold may rise.
+    /// The weight after roulette and after making room for one more photon; the threshold may rise.
     double admit(double weight);
     /// Doubles the threshold and sends what is stored through the roulette.
     void raise_threshold();

@@ -82,6 +82,8 @@ StageOne run_stage_one(const Scene& scene, const StageOneSettings& settings, Ren
     StageOne one = run_stage_one(scene, settings, context);
     stats.brightness = one.brightness.mean();
     stats.brightness_error = one.brightness.standard_error();
+    stats.values["brightness of caustics"] = one.caustic.mean();
+    stats.values["brightness of caustics, error"] = one.caustic.standard_error();
     stats.values["brightness samples"] = static_cast<double>(one.samples);
     if (!(stats.brightness > 0))
         stats.warnings.emplace_back("no sampled path carried indirect light or a caustic: only direct light is rendered. If there is "

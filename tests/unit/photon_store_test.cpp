@@ -27,7 +27,7 @@ std::array<double, kRegions> fill(PhotonStore& store, int deposits) {
         const std::size_t region = rng.below(kRegions);
         const double weight = std::pow(10.0, 3 * rng.next() - 0.5 * static_cast<double>(region));
         const double where = rng.next();
-        store.deposit(weight, [&] { return std::optional(photon_in(region, where)); });
+        store.deposit(photon_in(region, where), weight);
         total[region] += weight;
     }
     return total;
