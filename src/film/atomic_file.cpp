@@ -1,0 +1,106 @@
+#include "film/atomic_file.h"
+
+#include "core/error.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <filesystem>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace keyhole {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const std::string& path, int error) {
+    throw InputError(fmt::format("{}: cannot write: {}", path, std::strerror(error)));
+}
+
+/// An open file; closed, and removed if it is still temporary, at the end of its scope.
+struct File {
+    int descriptor = -1;
+    std::string temporary; ///< name, empty: not to be removed
+    File() = default;
+    File(const File&) = delete;
+    File& operator=(const File&) = delete;
+    ~File() {
+        if (descriptor >= 0) close(descriptor);
+        if (!temporary.empty()) unlink(temporary.c_str());
+    }
+};
+
+/// What to replace: the end of a chain of links.
+fs::path final_target(const std::string& path) {
+    fs::path target = path;
+    std::error_code ignored;
+    for (int links = 0; links < 40 && fs::is_symlink(target, ignored); ++links) {
+        const fs::path next = fs::read_symlink(target, ignored);
+        target = next.is_absolute() ? next : target.parent_path() / next;
+    }
+    return target;
+}
+
+enum class Kind { replaceable, direct };
+
+Kind kind_of(const std::string& path, const fs::path& target) {
+    struct stat status {};
+    if (path.empty()) fail("''", ENOENT);
+    if (stat(target.c_str(), &status) != 0) return Kind::replaceable;
+    if (S_ISDIR(status.st_mode)) fail(path, EISDIR);
+    return S_ISREG(status.st_mode) ? Kind::replaceable : Kind::direct;
+}
+
+/// A new file in the target's folder, with the permissions of the file that it is to replace.
+void open_temporary(File& file, const std::string& path, const fs::path& target) {
+    const fs::path folder = target.parent_path();
+    for (int attempt = 0;; ++attempt) {
+        const std::string name = (folder / fmt::format(".keyhole-{}-{}.tmp", getpid(), attempt)).string();
+        file.descriptor = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (file.descriptor >= 0) {
+            file.temporary = name;
+            break;
+        }
+        if (errno != EEXIST || attempt > 1000) fail(path, errno);
+    }
+    struct stat status {};
+    if (stat(target.c_str(), &status) == 0 && fchmod(file.descriptor, status.st_mode & 07777U) != 0) fail(path, errno);
+}
+
+void write_all(int descriptor, const std::string& path, std::span<const char> bytes) {
+    while (!bytes.empty()) {
+        const ssize_t n = write(descriptor, bytes.data(), bytes.size());
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) fail(path, errno);
+        bytes = bytes.subspan(static_cast<std::size_t>(n));
+    }
+}
+
+} // namespace
+
+void write_file_atomically(const std::string& path, std::span<const char> bytes) {
+    const fs::path target = final_target(path);
+    File file;
+    if (kind_of(path, target) == Kind::direct) {
+        file.descriptor = open(target.c_str(), O_WRONLY | O_CLOEXEC);
+        if (file.descriptor < 0) fail(path, errno);
+        return write_all(file.descriptor, path, bytes);
+    }
+    open_temporary(file, path, target);
+    write_all(file.descriptor, path, bytes);
+    if (fsync(file.descriptor) != 0) fail(path, errno);
+    if (rename(file.temporary.c_str(), target.c_str()) != 0) fail(path, errno);
+    file.temporary.clear();
+}
+
+void check_writable(const std::string& path) {
+    const fs::path target = final_target(path);
+    if (kind_of(path, target) == Kind::direct) return;
+    File file;
+    open_temporary(file, path, target);
+}
+
+} // namespace keyhole

@@ -1,0 +1,146 @@
+#include "film/exr.h"
+
+#include "core/error.h"
+#include "film/atomic_file.h"
+#include "film/exr_names.h"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <stdexcept>
+
+namespace keyhole {
+namespace {
+
+/// The most pixels that a picture may have; scene files have the same bound.
+constexpr std::int64_t kMostPixels = std::int64_t{1} << 28;
+
+/// OpenEXR writes to memory, so that all that can fail on a disk lies in write_file_atomically().
+class MemoryStream final : public Imf::OStream {
+  public:
+    MemoryStream() : OStream("memory") {}
+    void write(const char c[], int n) override {
+        const auto end = position_ + static_cast<std::size_t>(n);
+        if (end > bytes_.size()) bytes_.resize(end);
+        std::memcpy(bytes_.data() + position_, c, static_cast<std::size_t>(n));
+        position_ = end;
+    }
+    uint64_t tellp() override { return position_; }
+    void seekp(uint64_t position) override { position_ = position; }
+    const std::string& bytes() const { return bytes_; }
+
+  private:
+    std::string bytes_;
+    std::size_t position_ = 0;
+};
+
+/// Channel `c` of an image whose first pixel lies at (x0, y0) of the file.
+Imf::Slice slice(Image& image, std::size_t c, int x0, int y0) {
+    const auto stride = static_cast<std::size_t>(image.channels) * sizeof(float);
+    const std::size_t row = stride * static_cast<std::size_t>(image.width);
+    char* base = reinterpret_cast<char*>(image.data.data() + c);
+    // Signed, because a data window may start anywhere.
+    base -= static_cast<std::ptrdiff_t>(stride) * x0 + static_cast<std::ptrdiff_t>(row) * y0;
+    return {Imf::FLOAT, base, stride, row};
+}
+
+void encode(Imf::OStream& stream, const Picture& picture) {
+    Imf::Header header(picture.width, picture.height);
+    header.compression() = Imf::ZIP_COMPRESSION;
+    for (const auto& [key, value] : picture.metadata) header.insert(key, Imf::StringAttribute(value));
+    Imf::FrameBuffer buffer;
+    for (const auto& [layer, image] : picture.layers) {
+        const auto names = exr_channel_names(layer, image.channels);
+        if (names.empty() || image.width != picture.width || image.height != picture.height)
+            throw std::invalid_argument(
+                fmt::format("layer '{}' has {} channels of {} x {}", layer, image.channels, image.width, image.height));
+        for (std::size_t c = 0; c < names.size(); ++c) {
+            header.channels().insert(names[c], Imf::Channel(Imf::FLOAT));
+            // OpenEXR has one kind of slice for reading and writing; it does not write to this one.
+            buffer.insert(names[c], slice(const_cast<Image&>(image), c, 0, 0));
+        }
+    }
+    Imf::OutputFile file(stream, header);
+    file.setFrameBuffer(buffer);
+    file.writePixels(picture.height);
+}
+
+std::map<std::string, std::vector<std::string>> layers_of(const Imf::ChannelList& channels) {
+    std::map<std::string, std::vector<std::string>> layers;
+    for (auto c = channels.begin(); c != channels.end(); ++c) {
+        if (c.channel().xSampling != 1 || c.channel().ySampling != 1)
+            throw InputError(
+                fmt::format("found the subsampled channel '{}', expected all at full resolution", c.name()));
+        layers[exr_layer_of(c.name())].emplace_back(c.name());
+    }
+    for (auto& [layer, names] : layers) sort_exr_channels(names);
+    return layers;
+}
+
+Picture decode(Imf::InputFile& file) {
+    const Imf::Header& header = file.header();
+    const auto& window = header.dataWindow();
+    const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1,
+                       height = std::int64_t{window.max.y} - window.min.y + 1;
+    if (width < 1 || height < 1 || width > kMostPixels / height)
+        throw InputError(fmt::format("found {} x {} pixels, expected at most 2^28", width, height));
+    Picture picture;
+    picture.width = static_cast<int>(width);
+    picture.height = static_cast<int>(height);
+    Imf::FrameBuffer buffer;
+    for (const auto& [layer, names] : layers_of(header.channels())) {
+        Image& image = picture.layers[layer] = Image(picture.width, picture.height, static_cast<int>(names.size()));
+        for (std::size_t c = 0; c < names.size(); ++c)
+            buffer.insert(names[c], slice(image, c, window.min.x, window.min.y));
+    }
+    for (auto a = header.begin(); a != header.end(); ++a)
+        if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&a.attribute()))
+            picture.metadata[a.name()] = text->value();
+    file.setFrameBuffer(buffer);
+    file.readPixels(window.min.y, window.max.y);
+    return picture;
+}
+
+/// What OpenEXR says, without the file's name, on one line.
+std::string reason(const std::exception& e) {
+    std::string text = e.what();
+    if (const auto end = text.find("\". "); end != std::string::npos) text.erase(0, end + 3);
+    for (char& c : text)
+        if (c == '\n') c = ' ';
+    return text;
+}
+
+} // namespace
+
+void write_exr(const std::string& path, const Picture& picture) {
+    MemoryStream stream;
+    try {
+        encode(stream, picture);
+    } catch (const std::exception& e) {
+        throw InputError(fmt::format("{}: cannot write: {}", path, reason(e)));
+    }
+    write_file_atomically(path, stream.bytes());
+}
+
+Picture read_exr(const std::string& path) {
+    // Asked first because the system knows better words for it than OpenEXR.
+    if (errno = 0; !std::ifstream(path).good())
+        throw InputError(fmt::format("{}: cannot read: {}", path, std::strerror(errno)));
+    try {
+        Imf::InputFile file(path.c_str());
+        return decode(file);
+    } catch (const std::exception& e) {
+        throw InputError(fmt::format("{}: cannot read: {}", path, reason(e)));
+    }
+}
+
+} // namespace keyhole

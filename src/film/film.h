@@ -1,0 +1,72 @@
+// The film: sums of samples by pixel and layer.
+#pragma once
+
+#include "core/pixel_sample.h"
+#include "core/render_stats.h"
+#include "film/picture.h"
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace keyhole {
+
+/// Pixels are means of their samples, each of weight 1 (see GaussianFilter).
+/// Thread safety: add() for different pixels may run at once; a pixel belongs to one thread at a time.
+class Film {
+  public:
+    struct Layer {
+        const char* name;
+        int channels;
+        bool is_signed; ///< may be negative
+    };
+    /// The layers of a PixelSample, in its order.
+    static constexpr std::array<Layer, 7> kLayers{{{"direct", 3, false},
+                                                   {"indirect", 3, false},
+                                                   {"caustic", 3, false},
+                                                   {"albedo", 3, false},
+                                                   {"normal", 3, true},
+                                                   {"depth", 1, false},
+                                                   {"photon_density", 1, false}}};
+
+    /// @param width,height in pixels, at least 1.
+    Film(int width, int height);
+
+    int width() const { return width_; }
+    int height() const { return height_; }
+
+    /// Adds a sample to pixel (x, y). A sample with a number that is not finite, or negative where it can't be, is
+    /// dropped as a whole, so that the layers stay means over the same samples; it is counted for each layer at fault.
+    void add(int x, int y, const PixelSample& sample);
+
+    /// The means; "beauty" is direct + indirect + caustic. Pixels without samples are 0.
+    Picture to_picture() const;
+
+    /// Samples dropped because of layer kLayers[i].
+    std::uint64_t dropped(std::size_t i) const { return dropped_[i].load(std::memory_order_relaxed); }
+    /// Pixels without a sample.
+    std::uint64_t empty_pixels() const;
+
+    /// Puts "empty pixels" among the values, and dropped samples among the warnings.
+    void report(RenderStats& stats) const;
+
+  private:
+    static constexpr std::size_t kChannels = 17;
+    using Channels = std::array<double, kChannels>; ///< of all layers, one after the other
+
+    struct Pixel {
+        Channels sums{};
+        std::uint64_t samples = 0;
+    };
+
+    static Channels channels(const PixelSample& sample);
+    std::size_t index(int x, int y) const;
+
+    int width_, height_;
+    std::vector<Pixel> pixels_;
+    std::array<std::atomic<std::uint64_t>, kLayers.size()> dropped_{};
+};
+
+} // namespace keyhole

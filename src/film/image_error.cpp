@@ -1,0 +1,125 @@
+#include "film/image_error.h"
+
+#include "core/error.h"
+#include "core/vec.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace keyhole {
+namespace {
+
+/// Luminance of each pixel.
+struct Grey {
+    std::size_t width, height;
+    std::vector<double> y;
+
+    explicit Grey(const Image& image)
+        : width(static_cast<std::size_t>(image.width)), height(static_cast<std::size_t>(image.height)),
+          y(width * height) {
+        const auto n = static_cast<std::size_t>(image.channels);
+        for (std::size_t i = 0; i < y.size(); ++i) {
+            const float* p = image.data.data() + n * i;
+            y[i] = n < 3 ? double{p[0]} : luminance({p[0], p[1], p[2]});
+        }
+    }
+};
+
+double mean(const std::vector<double>& v) {
+    return std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size());
+}
+
+double trimmed_mean(std::vector<double> v) {
+    const auto size = [](double x) { return std::isnan(x) ? INFINITY : std::abs(x); };
+    const auto kept = static_cast<std::ptrdiff_t>(static_cast<double>(v.size()) * 0.999);
+    std::nth_element(v.begin(), v.begin() + kept, v.end(), [&](double a, double b) { return size(a) < size(b); });
+    v.resize(static_cast<std::size_t>(kept));
+    return mean(v);
+}
+
+/// Mean over the 3x3 neighbourhood; the border repeats.
+std::vector<double> smooth(const Grey& g) {
+    const auto clamped = [](std::size_t i, std::size_t step, std::size_t n) {
+        return std::min(std::max(i + step, std::size_t{1}) - 1, n - 1);
+    };
+    std::vector<double> out(g.y.size());
+    for (std::size_t row = 0; row < g.height; ++row) {
+        for (std::size_t x = 0; x < g.width; ++x) {
+            double sum = 0;
+            for (std::size_t j = 0; j < 3; ++j)
+                for (std::size_t i = 0; i < 3; ++i)
+                    sum += g.y[clamped(row, j, g.height) * g.width + clamped(x, i, g.width)];
+            out[row * g.width + x] = sum / 9;
+        }
+    }
+    return out;
+}
+
+double block_error(const Grey& picture, const Grey& reference, double mean_reference) {
+    constexpr std::size_t kBlock = 16;
+    const auto block_mean = [](const Grey& g, std::size_t x0, std::size_t y0) {
+        double sum = 0;
+        for (std::size_t y = y0; y < y0 + kBlock; ++y)
+            for (std::size_t x = x0; x < x0 + kBlock; ++x) sum += g.y[y * g.width + x];
+        return sum / (kBlock * kBlock);
+    };
+    std::vector<double> squares;
+    for (std::size_t y = 0; y + kBlock <= picture.height; y += kBlock) {
+        for (std::size_t x = 0; x + kBlock <= picture.width; x += kBlock) {
+            const double r = std::max(block_mean(reference, x, y), 1e-6 * mean_reference);
+            const double e = block_mean(picture, x, y) / r - 1;
+            squares.push_back(e * e);
+        }
+    }
+    return std::sqrt(mean(squares));
+}
+
+/// (a - r1)(a - r2) / (denominator^2 + 0.01 mean^2), pixel by pixel.
+std::vector<double> relative_products(const Grey& a, const Grey& r1, const Grey& r2,
+                                      const std::vector<double>& denominator, double mean) {
+    std::vector<double> e(a.y.size());
+    for (std::size_t i = 0; i < e.size(); ++i)
+        e[i] = (a.y[i] - r1.y[i]) * (a.y[i] - r2.y[i]) / (denominator[i] * denominator[i] + 0.01 * mean * mean);
+    return e;
+}
+
+void check_size(const Image& a, const Image& b) {
+    if (a.width != b.width || a.height != b.height)
+        throw InputError(fmt::format("sizes differ: {} x {} and {} x {} pixels", a.width, a.height, b.width, b.height));
+}
+
+} // namespace
+
+ImageError image_error(const Image& picture, const Image& reference, const Image* second_reference) {
+    check_size(picture, reference);
+    Grey i(picture), r(reference);
+    ImageError error;
+    for (double& y : i.y) {
+        if (!std::isfinite(y) || y < 0) ++error.bad;
+        if (!std::isfinite(y)) y = 0;
+    }
+    if (second_reference != nullptr) {
+        check_size(picture, *second_reference);
+        const Grey r1 = r, r2(*second_reference);
+        for (std::size_t p = 0; p < r.y.size(); ++p) r.y[p] = (r1.y[p] + r2.y[p]) / 2;
+        const auto products = relative_products(i, r1, r2, smooth(r), mean(r.y));
+        error.cross = mean(products);
+        error.cross_trim = trimmed_mean(products);
+    }
+    const double mean_r = mean(r.y);
+    const auto squares = relative_products(i, r, r, r.y, mean_r);
+    error.relmse = mean(squares);
+    error.relmse_trim = trimmed_mean(squares);
+    std::vector<double> lit;
+    for (std::size_t p = 0; p < r.y.size(); ++p)
+        if (r.y[p] > 1e-4 * mean_r) lit.push_back((i.y[p] / r.y[p] - 1) * (i.y[p] / r.y[p] - 1));
+    error.rms_rel = std::sqrt(mean(lit));
+    error.ratio = mean(i.y) / mean_r;
+    error.block = block_error(i, r, mean_r);
+    return error;
+}
+
+} // namespace keyhole

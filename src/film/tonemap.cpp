@@ -1,0 +1,66 @@
+#include "film/tonemap.h"
+
+#include "core/vec.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace keyhole {
+namespace {
+
+constexpr double kKey = 0.18;
+constexpr double kWhitePercentile = 0.995;
+
+/// Colour of a pixel; black if it is not finite.
+Rgb colour(const Image& image, std::size_t pixel) {
+    const float* p = image.data.data() + pixel * static_cast<std::size_t>(image.channels);
+    const Rgb c = image.channels < 3 ? Rgb(p[0]) : Rgb(p[0], p[1], p[2]);
+    return is_finite(c) ? c : Rgb(0.0);
+}
+
+/// Scale to the key (equations 1 and 2), and the white point after it.
+struct Exposure {
+    double scale = 1, white = 1;
+};
+
+Exposure expose(const Image& image, std::size_t pixels) {
+    std::vector<double> lit;
+    double log_sum = 0;
+    for (std::size_t i = 0; i < pixels; ++i) {
+        const double y = luminance(colour(image, i));
+        if (!(y > 0)) continue;
+        lit.push_back(y);
+        log_sum += std::log(y);
+    }
+    if (lit.empty()) return {};
+    const double scale = kKey / std::exp(log_sum / static_cast<double>(lit.size()));
+    const auto nth = lit.begin() + static_cast<std::ptrdiff_t>(kWhitePercentile * static_cast<double>(lit.size() - 1));
+    std::nth_element(lit.begin(), nth, lit.end());
+    return {scale, std::max(1.0, scale * *nth)};
+}
+
+} // namespace
+
+float srgb_encode(float linear) {
+    if (!(linear > 0)) return 0;
+    if (linear >= 1) return 1;
+    return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
+}
+
+std::vector<std::uint8_t> tonemap(const Image& image) {
+    const auto pixels = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+    const Exposure exposure = expose(image, pixels);
+    std::vector<std::uint8_t> bytes(3 * pixels);
+    for (std::size_t i = 0; i < pixels; ++i) {
+        const Rgb c = colour(image, i);
+        const double l = std::max(0.0, exposure.scale * luminance(c));
+        // Equation 4 over l, so that black needs no exception.
+        const double factor = exposure.scale * (1 + l / (exposure.white * exposure.white)) / (1 + l);
+        for (int k = 0; k < 3; ++k)
+            bytes[3 * i + static_cast<std::size_t>(k)] =
+                static_cast<std::uint8_t>(std::lround(255 * srgb_encode(static_cast<float>(factor * c[k]))));
+    }
+    return bytes;
+}
+
+} // namespace keyhole

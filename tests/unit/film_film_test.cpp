@@ -1,0 +1,108 @@
+// The film: means, dropped samples, empty pixels.
+#include "film/film.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <thread>
+
+using namespace keyhole;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+namespace {
+
+std::vector<float> pixel(const Picture& picture, const std::string& layer, int x, int y) {
+    const Image& image = picture.layers.at(layer);
+    return {image.at(x, y), image.at(x, y) + image.channels};
+}
+
+PixelSample full_sample() {
+    PixelSample s;
+    s.direct = Rgb(1, 2, 3);
+    s.indirect = Rgb(10, 20, 30);
+    s.caustic = Rgb(100, 200, 300);
+    s.albedo = Rgb(0.25, 0.5, 0.75);
+    s.normal = Vec3(0, -1, 0);
+    s.depth = 4;
+    s.photon_density = 8;
+    return s;
+}
+
+} // namespace
+
+TEST(Film, PixelsAreMeansInEveryLayer) {
+    Film film(3, 2);
+    film.add(2, 1, full_sample());
+    film.add(2, 1, PixelSample{});
+    const Picture p = film.to_picture();
+    EXPECT_EQ(p.width, 3);
+    EXPECT_EQ(p.height, 2);
+    EXPECT_THAT(pixel(p, "direct", 2, 1), ElementsAre(0.5f, 1, 1.5f));
+    EXPECT_THAT(pixel(p, "indirect", 2, 1), ElementsAre(5, 10, 15));
+    EXPECT_THAT(pixel(p, "caustic", 2, 1), ElementsAre(50, 100, 150));
+    EXPECT_THAT(pixel(p, "beauty", 2, 1), ElementsAre(55.5f, 111, 166.5f));
+    EXPECT_THAT(pixel(p, "albedo", 2, 1), ElementsAre(0.125f, 0.25f, 0.375f));
+    EXPECT_THAT(pixel(p, "normal", 2, 1), ElementsAre(0, -0.5f, 0));
+    EXPECT_THAT(pixel(p, "depth", 2, 1), ElementsAre(2));
+    EXPECT_THAT(pixel(p, "photon_density", 2, 1), ElementsAre(4));
+    EXPECT_THAT(pixel(p, "beauty", 1, 1), ElementsAre(0, 0, 0));
+}
+
+TEST(Film, BadSamplesAreDroppedWholeAndCountedByLayer) {
+    Film film(1, 1);
+    film.add(0, 0, full_sample());
+    PixelSample bad = full_sample();
+    bad.direct.y = std::numeric_limits<double>::quiet_NaN();
+    bad.depth = std::numeric_limits<double>::infinity();
+    film.add(0, 0, bad);
+    bad = full_sample();
+    bad.caustic.z = -1e-30;
+    film.add(0, 0, bad);
+
+    EXPECT_THAT(pixel(film.to_picture(), "direct", 0, 0), ElementsAre(1, 2, 3));
+    RenderStats stats;
+    film.report(stats);
+    ASSERT_EQ(stats.warnings.size(), 3u);
+    EXPECT_THAT(stats.warnings[0], testing::AllOf(HasSubstr("1 sample"), HasSubstr("'direct'")));
+    EXPECT_THAT(stats.warnings[1], HasSubstr("'caustic'"));
+    EXPECT_THAT(stats.warnings[2], HasSubstr("'depth'"));
+}
+
+TEST(Film, EmptyPixelsAreCounted) {
+    Film film(4, 3);
+    film.add(0, 0, full_sample());
+    RenderStats stats;
+    film.report(stats);
+    EXPECT_EQ(film.empty_pixels(), 11u);
+    EXPECT_EQ(stats.values.at("empty pixels"), 11);
+    EXPECT_TRUE(stats.warnings.empty());
+}
+
+TEST(Film, SumsKeepSmallSamplesBesideLargeOnes) {
+    Film film(1, 1);
+    PixelSample s;
+    s.direct = Rgb(1e6);
+    film.add(0, 0, s);
+    s.direct = Rgb(1e-3);
+    for (int i = 0; i < 999'999; ++i) film.add(0, 0, s);
+    EXPECT_FLOAT_EQ(pixel(film.to_picture(), "direct", 0, 0)[0], 1.001f);
+}
+
+TEST(Film, ThreadsMayAddToDifferentPixels) {
+    constexpr int kPixels = 64;
+    Film film(kPixels, 1);
+    const auto add = [&](int first) {
+        PixelSample bad = full_sample();
+        bad.depth = -1;
+        for (int i = 0; i < 1000; ++i)
+            for (int x = first; x < kPixels; x += 2) film.add(x, 0, i % 2 == 0 ? full_sample() : bad);
+    };
+    std::thread other(add, 0);
+    add(1);
+    other.join();
+    EXPECT_EQ(film.dropped(5), 500u * kPixels);
+    EXPECT_EQ(film.empty_pixels(), 0u);
+}
