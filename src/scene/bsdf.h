@@ -2,9 +2,14 @@
 #pragma once
 
 #include "core/rng.h"
+#include "scene/bsdfs/coated_conductor.h"
+#include "scene/bsdfs/coated_diffuse.h"
+#include "scene/bsdfs/conductor.h"
 #include "scene/bsdfs/diffuse.h"
 #include "scene/bsdfs/glass.h"
 #include "scene/bsdfs/mirror.h"
+#include "scene/bsdfs/rough_dielectric.h"
+#include "scene/bsdfs/sheets.h"
 #include "scene/scattering.h"
 #include "scene/surface_point.h"
 
@@ -25,11 +30,14 @@ struct BlackBsdf {
 /// To add a model: a file in bsdfs/ with these five members, and its name here.
 class Bsdf {
   public:
-    using Model = std::variant<BlackBsdf, DiffuseBsdf, MirrorBsdf, GlassBsdf>;
+    using Model = std::variant<BlackBsdf, DiffuseBsdf, DiffuseTransmissionBsdf, MirrorBsdf, ConductorBsdf,
+                               RoughConductorBsdf, GlassBsdf, RoughDielectricBsdf, ThinDielectricBsdf, InterfaceBsdf,
+                               CoatedDiffuseBsdf, CoatedConductorBsdf>;
 
     Bsdf() = default;
     Bsdf(const Frame& frame, const Model& model) : frame_(frame), model_(model) {}
-    Bsdf(const SurfacePoint& point, const Model& model) : frame_(point.ns), model_(model) {}
+    /// x of the model is along the point's tangent.
+    Bsdf(const SurfacePoint& point, const Model& model) : frame_(point.shading_frame()), model_(model) {}
 
     const Model& model() const { return model_; }
     const Vec3& shading_normal() const { return frame_.n; }
@@ -68,5 +76,8 @@ class Bsdf {
     Frame frame_;
     Model model_;
 };
+
+// Every vertex of a path holds one, and paths are copied in the innermost loop.
+static_assert(std::is_trivially_copyable_v<Bsdf::Model> && sizeof(Bsdf) <= 112);
 
 } // namespace keyhole

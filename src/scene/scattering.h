@@ -8,6 +8,16 @@
 
 namespace keyhole {
 
+/// A colour as models keep it: half the size, and trivially copyable, which Imath's are not; with that, copying a path
+/// needn't ask each vertex for the kind of its model.
+struct StoredRgb {
+    float x = 0, y = 0, z = 0;
+
+    StoredRgb() = default;
+    StoredRgb(const Rgb& c) : x(static_cast<float>(c.x)), y(static_cast<float>(c.y)), z(static_cast<float>(c.z)) {}
+    operator Rgb() const { return {x, y, z}; }
+};
+
 /// How light goes on at a vertex. `finite` is D of the path notation; the other two are S.
 enum class Event : std::uint8_t { finite, reflect, transmit };
 
@@ -15,9 +25,9 @@ inline bool is_specular(Event e) { return e != Event::finite; }
 
 /// A direction drawn by a BSDF, in the frame of the arguments it was drawn with.
 struct BsdfSample {
-    Vec3 to;          ///< unit, away from the surface
+    Vec3 to; ///< unit, away from the surface
     Event event;
-    double pdf;       ///< finite: density per solid angle; specular: probability of this event
+    double pdf; ///< finite: density per solid angle; specular: probability of this event
 };
 
 /// One delta lobe seen from a given direction.

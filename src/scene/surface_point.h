@@ -20,7 +20,7 @@ enum class Site : std::uint8_t {
 struct SurfacePoint {
     static constexpr std::uint32_t kNone = ~0u;
 
-    Vec3 p{0, 0, 0};                ///< world position
+    Vec3 p{0, 0, 0};                ///< world position; the unit direction towards an infinite point
     Vec3 ng{0, 0, 0};               ///< unit geometric normal; its side is the shape's outside
     Vec3 ns{0, 0, 0};               ///< unit shading normal, in the hemisphere of ng
     Vec3 tangent{1, 0, 0};          ///< unit, perpendicular to ns, along increasing u where there is a parametrisation
@@ -34,6 +34,16 @@ struct SurfacePoint {
     std::uint32_t emitter = kNone;   ///< index of the emitter that this point belongs to
     const Material* material = nullptr;
 
+    /// The frame of ns whose first axis is the tangent, or any where there is none.
+    Frame shading_frame() const {
+        if (!(std::abs(tangent.dot(ns)) < 1e-3f)) return Frame(ns);
+        Frame frame;
+        frame.n = ns;
+        frame.t = ns.cross(tangent).normalized();
+        frame.s = frame.t.cross(ns);
+        return frame;
+    }
+
     bool is_emitter() const { return emitter != kNone; }
 
     /// |cos| between the geometric normal and a unit direction; 1 where the site has no surface.
@@ -44,6 +54,15 @@ struct SurfacePoint {
     /// Where a ray that leaves this point along `w` may start without meeting its own surface.
     Vec3 ray_origin(const Vec3& w) const { return site == Site::surface ? p + ng * (w.dot(ng) < 0 ? -offset : offset) : p; }
 };
+
+/// The infinite point that lies in the unit direction `towards`.
+inline SurfacePoint infinite_point(const Vec3& towards) {
+    SurfacePoint s;
+    s.p = towards;
+    s.ng = s.ns = -towards;
+    s.site = Site::infinite;
+    return s;
+}
 
 /// Unit direction from `a` towards `b`. At least one of the two is not infinite.
 inline Vec3 direction(const SurfacePoint& a, const SurfacePoint& b) {

@@ -8,12 +8,12 @@ namespace keyhole {
 
 /// Lambertian reflection: f = reflectance / pi where both directions lie on one side.
 struct DiffuseBsdf {
-    Rgb reflectance;
+    StoredRgb reflectance;
 
     static constexpr BsdfTraits traits() { return {.finite = true, .near_lambertian = true}; }
 
     Rgb eval(const Vec3& to_light, const Vec3& to_eye) const {
-        return to_light.z * to_eye.z > 0 ? reflectance * kInvPi : Rgb(0.0);
+        return to_light.z * to_eye.z > 0 ? Rgb(reflectance) * kInvPi : Rgb(0.0);
     }
     static double pdf(const Vec3& from, const Vec3& to) { return from.z * to.z > 0 ? std::abs(to.z) * kInvPi : 0.0; }
 

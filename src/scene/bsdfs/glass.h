@@ -5,21 +5,12 @@
 
 namespace keyhole {
 
-/// Fresnel reflectance of unpolarised light at a smooth dielectric boundary, and the cosine of refraction.
-struct FresnelResult {
-    double reflectance; ///< 1 under total internal reflection
-    double cos_t;       ///< |cos| on the far side; 0 under total internal reflection
-};
-
-/// `cos_i` > 0 on the near side; `eta` is the far refractive index over the near one.
-FresnelResult fresnel_dielectric(double cos_i, double eta);
-
 /// Smooth glass. `eta` is the refractive index inside (below the normal) over that outside. Reflection and transmission
 /// are chosen by the Fresnel reflectance, which is the same from both ends of a path.
 struct GlassBsdf {
     double eta;
-    Rgb reflect_tint{1.0};
-    Rgb transmit_tint{1.0};
+    StoredRgb reflect_tint{Rgb(1.0)};
+    StoredRgb transmit_tint{Rgb(1.0)};
 
     static constexpr BsdfTraits traits() { return {.delta = true}; }
 

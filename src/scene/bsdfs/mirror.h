@@ -7,7 +7,7 @@ namespace keyhole {
 
 /// Smooth mirror with a constant reflectance.
 struct MirrorBsdf {
-    Rgb reflectance;
+    StoredRgb reflectance;
 
     static constexpr BsdfTraits traits() { return {.delta = true}; }
 

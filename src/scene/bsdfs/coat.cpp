@@ -1,0 +1,120 @@
+#include "scene/bsdfs/coat.h"
+
+#include "core/error.h"
+#include "scene/bsdfs/fresnel.h"
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+
+namespace keyhole {
+namespace {
+
+/// Directional albedo of the rough reflection: weights of visible normal sampling, averaged over a grid. The numbers of
+/// nodes leave errors of some 1e-3.
+double rough_reflectance(double cos_i, double alpha, double eta) {
+    constexpr int kRadii = 16, kAngles = 8;
+    const Ggx ggx{alpha, alpha};
+    const LocalVec w(std::sqrt(std::max(0.0, 1 - cos_i * cos_i)), 0, cos_i);
+    double sum = 0;
+    for (int i = 0; i < kRadii; ++i)
+        for (int j = 0; j < kAngles; ++j) {
+            // Half of the angles are enough: the other half mirrors them.
+            const double u1 = (j + 0.5) / (2 * kAngles) - 0.25;
+            const LocalVec h = ggx.sample_visible(w, (i + 0.5) / kRadii, u1);
+            const double c = w.dot(h);
+            const LocalVec to = h * (2 * c) - w;
+            if (to.z > 0 && c > 0)
+                sum += fresnel_dielectric(c, eta).reflectance * ggx.masking(w, to) * (1 + ggx.lambda(w));
+        }
+    return sum / (kRadii * kAngles);
+}
+
+/// Midpoints of n equal parts of [0,1].
+double node(std::size_t i, std::size_t n) { return (static_cast<double>(i) + 0.5) / static_cast<double>(n); }
+
+/// Position of x in [0,1] in a table of n entries: the entry to the left and the share of the one to the right.
+struct TablePosition {
+    std::size_t i;
+    double t;
+};
+TablePosition locate(double x, std::size_t n) {
+    const double s = std::clamp(x, 0.0, 1.0) * static_cast<double>(n - 1);
+    const auto i = std::min(static_cast<std::size_t>(s), n - 2);
+    return {i, s - static_cast<double>(i)};
+}
+
+double lerp(double a, double b, double t) { return a + (b - a) * t; }
+
+} // namespace
+
+std::shared_ptr<const CoatInterface> CoatInterface::of(double eta) {
+    if (!(eta > 0) || !std::isfinite(eta)) throw InputError("a coat needs a refractive index above 0");
+    static std::mutex mutex;
+    static std::map<double, std::weak_ptr<const CoatInterface>> cache;
+    const std::lock_guard lock(mutex);
+    auto& entry = cache[eta];
+    auto interface = entry.lock();
+    if (interface == nullptr) entry = interface = std::make_shared<const CoatInterface>(eta);
+    return interface;
+}
+
+CoatInterface::CoatInterface(double eta) : eta_(eta) {
+    for (std::size_t a = 0; a < kAlphas; ++a) {
+        const double alpha = static_cast<double>(a) / (kAlphas - 1);
+        for (std::size_t c = 0; c < kCosines; ++c) {
+            const double root = std::max(1e-3, static_cast<double>(c) / (kCosines - 1)), cosine = root * root;
+            reflectance_[a][c] = static_cast<float>(a == 0 ? fresnel_dielectric(cosine, eta).reflectance
+                                                           : rough_reflectance(cosine, alpha, eta));
+        }
+    }
+    // Of diffuse light from below 1 / eta^2 of what diffuse light from above sends in gets out (reciprocity).
+    for (std::size_t a = 0; a < kAlphas; ++a) {
+        constexpr std::size_t kSteps = 256;
+        double through = 0;
+        for (std::size_t i = 0; i < kSteps; ++i) {
+            const double cosine = node(i, kSteps);
+            through += 2 * cosine * (1 - reflectance(cosine, static_cast<double>(a) / (kAlphas - 1))) / kSteps;
+        }
+        internal_[a] = static_cast<float>(1 - through / (eta * eta));
+    }
+    double sum = 0;
+    for (std::size_t i = 0; i < kNodes; ++i) {
+        const double cosine = node(i, kNodes), share = cosine * fresnel_dielectric(cosine, 1 / eta).reflectance;
+        internal_share_[i] = static_cast<float>(share);
+        sum += share;
+    }
+    for (float& share : internal_share_) share = sum > 0 ? share / static_cast<float>(sum) : 0.0f;
+}
+
+double CoatInterface::table(double cos_i, double alpha) const {
+    const auto [a, ta] = locate(alpha, kAlphas);
+    const auto [c, tc] = locate(std::sqrt(cos_i), kCosines);
+    return lerp(lerp(reflectance_[a][c], reflectance_[a][c + 1], tc),
+                lerp(reflectance_[a + 1][c], reflectance_[a + 1][c + 1], tc), ta);
+}
+
+double CoatInterface::reflectance(double cos_i, double alpha) const {
+    return alpha == 0 ? fresnel_dielectric(cos_i, eta_).reflectance : table(cos_i, alpha);
+}
+
+double CoatInterface::refracted(double cos_i) const {
+    return std::sqrt(std::max(0.0, 1 - (1 - cos_i * cos_i) / (eta_ * eta_)));
+}
+
+double CoatInterface::attenuation(double cos_i, double thickness) const {
+    if (thickness == 0) return 1;
+    const double cosine = refracted(cos_i);
+    return cosine > 0 ? std::exp(-thickness / cosine) : 0.0;
+}
+
+double CoatInterface::internal_reflectance(double alpha, double thickness) const {
+    const auto [a, t] = locate(alpha, kAlphas);
+    const double clear = std::max(0.0, lerp(internal_[a], internal_[a + 1], t));
+    if (thickness == 0) return clear;
+    double left = 0;
+    for (std::size_t i = 0; i < kNodes; ++i) left += internal_share_[i] * std::exp(-2 * thickness / node(i, kNodes));
+    return clear * left;
+}
+
+} // namespace keyhole

@@ -1,0 +1,42 @@
+// Varnish: a dielectric coat over a Lambertian base.
+#pragma once
+
+#include "scene/bsdfs/coat.h"
+#include "scene/scattering.h"
+
+namespace keyhole {
+
+/// Light reflects at the coat, or goes in, scatters from the base any number of times with reflections from below the
+/// coat in between, and comes out:
+///
+///     f = f_coat + T(i) T(o) rho / (pi eta^2 (1 - rho R))
+///
+/// T is what the coat lets through one way and R what it sends back of diffuse light from below (Saunderson 1942;
+/// Weidlich and Wilkie 2007). Reciprocal, and with a white base and no absorption nothing is lost. Where the coat is
+/// smooth its reflection is a delta lobe. The same from both sides.
+class CoatedDiffuseBsdf {
+  public:
+    /// `alpha_x` and `alpha_y` are both 0 for a smooth coat. `interface` must outlive the BSDF.
+    CoatedDiffuseBsdf(const CoatInterface& interface, const Rgb& reflectance, double alpha_x, double alpha_y,
+                      double thickness);
+
+    BsdfTraits traits() const { return {.finite = base_.x + base_.y + base_.z > 0 || !smooth(), .delta = smooth()}; }
+
+    Rgb eval(const Vec3& to_light, const Vec3& to_eye) const;
+    double pdf(const Vec3& from, const Vec3& to) const;
+    std::optional<BsdfSample> sample(const Vec3& from, double u0, double u1, double u2) const;
+    std::optional<DeltaScatter> delta(const Vec3& from, Event event) const;
+
+  private:
+    bool smooth() const { return alpha_x_ == 0; }
+    double alpha() const { return std::sqrt(alpha_x_ * alpha_y_); }
+    double through(double cosine) const;
+    double coat_probability(double cosine) const;
+
+    const CoatInterface* interface_;
+    StoredRgb base_;    // rho / (pi eta^2 (1 - rho R))
+    float base_albedo_; // of light that is in already, until it leaves; mean of the primaries
+    float alpha_x_, alpha_y_, thickness_;
+};
+
+} // namespace keyhole

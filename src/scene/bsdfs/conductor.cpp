@@ -1,0 +1,26 @@
+#include "scene/bsdfs/conductor.h"
+
+namespace keyhole {
+
+Rgb RoughConductorBsdf::eval(const Vec3& to_light, const Vec3& to_eye) const {
+    if (!(to_light.z * to_eye.z > 0)) return Rgb(0.0);
+    const LocalVec i = upper(to_light), o = upper(to_eye), h = half_vector(i, o);
+    return fresnel_conductor(o.dot(h), index) * Ggx{alpha_x, alpha_y}.reflection(i, o, h);
+}
+
+double RoughConductorBsdf::pdf(const Vec3& from, const Vec3& to) const {
+    if (!(from.z * to.z > 0)) return 0;
+    return Ggx{alpha_x, alpha_y}.reflection_pdf(upper(from), upper(to));
+}
+
+std::optional<BsdfSample> RoughConductorBsdf::sample(const Vec3& from, double u0, double u1, double /*u2*/) const {
+    if (from.z == 0) return std::nullopt;
+    const auto up = Ggx{alpha_x, alpha_y}.sample_reflection(upper(from), u0, u1);
+    if (!up) return std::nullopt;
+    const Vec3 to = on_side_of(from, *up);
+    const double p = pdf(from, to);
+    if (!(p > 0)) return std::nullopt;
+    return BsdfSample{to, Event::finite, p};
+}
+
+} // namespace keyhole

@@ -1,0 +1,42 @@
+// Metals, smooth and rough.
+#pragma once
+
+#include "scene/bsdfs/fresnel.h"
+#include "scene/bsdfs/microfacet.h"
+#include "scene/scattering.h"
+
+namespace keyhole {
+
+/// Smooth metal, on both sides.
+struct ConductorBsdf {
+    ComplexIndex index;
+
+    static constexpr BsdfTraits traits() { return {.delta = true}; }
+
+    static Rgb eval(const Vec3& /*to_light*/, const Vec3& /*to_eye*/) { return Rgb(0.0); }
+    static double pdf(const Vec3& /*from*/, const Vec3& /*to*/) { return 0; }
+
+    static std::optional<BsdfSample> sample(const Vec3& from, double /*u0*/, double /*u1*/, double /*u2*/) {
+        if (from.z == 0) return std::nullopt;
+        return BsdfSample{{-from.x, -from.y, from.z}, Event::reflect, 1.0};
+    }
+    std::optional<DeltaScatter> delta(const Vec3& from, Event event) const {
+        if (event != Event::reflect) return std::nullopt;
+        return DeltaScatter{{-from.x, -from.y, from.z}, fresnel_conductor(std::abs(from.z), index), 1.0, 1.0};
+    }
+};
+
+/// Rough metal: GGX microfacets that reflect once (Cook and Torrance 1982), on both sides.
+struct RoughConductorBsdf {
+    ComplexIndex index;
+    float alpha_x, alpha_y; ///< at least kSmoothAlpha / 10
+
+    static constexpr BsdfTraits traits() { return {.finite = true}; }
+
+    Rgb eval(const Vec3& to_light, const Vec3& to_eye) const;
+    double pdf(const Vec3& from, const Vec3& to) const;
+    std::optional<BsdfSample> sample(const Vec3& from, double u0, double u1, double u2) const;
+    static std::optional<DeltaScatter> delta(const Vec3& /*from*/, Event /*event*/) { return std::nullopt; }
+};
+
+} // namespace keyhole

@@ -1,0 +1,51 @@
+// Microfacets with the GGX distribution of slopes.
+#pragma once
+
+#include "core/vec.h"
+
+#include <optional>
+
+namespace keyhole {
+
+/// Directions in double: a half vector of two floats would not resolve narrow lobes.
+using LocalVec = Imath::V3d;
+
+/// Below this roughness a surface counts as smooth.
+constexpr double kSmoothAlpha = 1e-3;
+
+/// Anisotropic GGX with Smith's masking, around +z (Heitz 2014, "Understanding the Masking-Shadowing Function"). All
+/// directions are unit with z > 0 unless said otherwise.
+struct Ggx {
+    double alpha_x, alpha_y; ///< > 0
+
+    /// Density D of microfacet normals [1/sr], per projected area.
+    double density(const LocalVec& h) const;
+    /// Lambda of `w`, on either side: masking is 1 / (1 + lambda).
+    double lambda(const LocalVec& w) const;
+    /// Masking and shadowing, correlated by height, of two directions on any sides.
+    double masking(const LocalVec& a, const LocalVec& b) const { return 1 / (1 + lambda(a) + lambda(b)); }
+    /// Density per solid angle of the normals visible from `w`.
+    double visible_density(const LocalVec& w, const LocalVec& h) const;
+    /// Draws a normal visible from `w` (Heitz 2018).
+    LocalVec sample_visible(const LocalVec& w, double u0, double u1) const;
+
+    /// Mirrors `w` at a visible normal; none where that leads below the surface.
+    std::optional<LocalVec> sample_reflection(const LocalVec& w, double u0, double u1) const;
+    /// Density per solid angle of sample_reflection().
+    double reflection_pdf(const LocalVec& from, const LocalVec& to) const;
+    /// The factor D G / (4 cos cos) of a BRDF.
+    double reflection(const LocalVec& a, const LocalVec& b, const LocalVec& h) const;
+};
+
+/// Unit half vector of two directions, neither opposite to the other.
+inline LocalVec half_vector(const LocalVec& a, const LocalVec& b) { return (a + b).normalized(); }
+
+/// `v` on the side z > 0: models that look the same from both sides work there.
+inline LocalVec upper(const Vec3& v) { return {v.x, v.y, std::abs(static_cast<double>(v.z))}; }
+
+/// `v`, found on the side z > 0, on the side that `like` is on.
+inline Vec3 on_side_of(const Vec3& like, const LocalVec& v) {
+    return Vec3(LocalVec(v.x, v.y, like.z < 0 ? -v.z : v.z));
+}
+
+} // namespace keyhole

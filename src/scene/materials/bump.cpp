@@ -1,0 +1,56 @@
+#include "scene/material.h"
+
+namespace keyhole {
+namespace {
+
+/// Width of the differences, in texture coordinates: about a texel of a fine image.
+constexpr float kStep = 5e-4f;
+
+class BumpedMaterial final : public Material {
+  public:
+    BumpedMaterial(MaterialPtr material, FloatTexture displacement)
+        : material_(std::move(material)), displacement_(std::move(displacement)) {}
+
+    Bsdf bsdf(const SurfacePoint& point) const override { return material_->bsdf(bumped(point)); }
+    BsdfTraits traits() const override { return material_->traits(); }
+    const char* kind() const override { return material_->kind(); }
+
+  private:
+    double slope(SurfacePoint point, const Vec2& direction) const {
+        const Vec2 uv = point.uv;
+        point.uv = uv + direction * (kStep / 2);
+        const double ahead = displacement_->value(point);
+        point.uv = uv - direction * (kStep / 2);
+        return (ahead - displacement_->value(point)) / kStep;
+    }
+
+    /// The surface p(u,v) + d(u,v) ns has the tangents dp/du + dd/du ns and dp/dv + dd/dv ns, where the surface bends
+    /// little within the displacement.
+    SurfacePoint bumped(const SurfacePoint& point) const {
+        const double du = slope(point, {1, 0}), dv = slope(point, {0, 1});
+        const Imath::V3d along_u(point.dpdu, 0, du), along_v(point.dpdv.x, point.dpdv.y, dv);
+        Imath::V3d n = along_u.cross(along_v);
+        if (n.z < 0) n = -n; // mirrored texture coordinates
+        n.normalize();
+        if (!(n.z > 0)) return point; // no parametrisation
+        const Frame frame = point.shading_frame();
+        const Vec3 ns = frame.to_world(Vec3(n)).normalized();
+        if (!(ns.dot(point.ng) > 0)) return point;
+        SurfacePoint out = point;
+        out.ns = ns;
+        out.tangent = (frame.s - ns * ns.dot(frame.s)).normalized();
+        return out;
+    }
+
+    MaterialPtr material_;
+    FloatTexture displacement_;
+};
+
+} // namespace
+
+MaterialPtr with_bump(MaterialPtr material, FloatTexture displacement) {
+    if (displacement->is_constant()) return material;
+    return std::make_shared<BumpedMaterial>(std::move(material), std::move(displacement));
+}
+
+} // namespace keyhole

@@ -1,0 +1,123 @@
+// Textures that need no files.
+#include "scene/texture.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace keyhole {
+namespace {
+
+template <class T> class ConstantTexture final : public Texture<T> {
+  public:
+    explicit ConstantTexture(const T& value) : value_(value) {}
+    T value(const SurfacePoint& /*point*/) const override { return value_; }
+    bool is_constant() const override { return true; }
+
+  private:
+    T value_;
+};
+
+template <class T> class ScaleTexture final : public Texture<T> {
+  public:
+    using Ptr = std::shared_ptr<const Texture<T>>;
+    ScaleTexture(Ptr value, FloatTexture factor) : value_(std::move(value)), factor_(std::move(factor)) {}
+    T value(const SurfacePoint& point) const override { return value_->value(point) * factor_->value(point); }
+    bool is_constant() const override { return value_->is_constant() && factor_->is_constant(); }
+
+  private:
+    Ptr value_;
+    FloatTexture factor_;
+};
+
+template <class T> class MixTexture final : public Texture<T> {
+  public:
+    using Ptr = std::shared_ptr<const Texture<T>>;
+    MixTexture(Ptr a, Ptr b, FloatTexture amount) : a_(std::move(a)), b_(std::move(b)), amount_(std::move(amount)) {}
+    T value(const SurfacePoint& point) const override {
+        const double t = std::clamp(amount_->value(point), 0.0, 1.0);
+        if (t == 0) return a_->value(point);
+        if (t == 1) return b_->value(point);
+        return a_->value(point) * (1 - t) + b_->value(point) * t;
+    }
+    bool is_constant() const override { return a_->is_constant() && b_->is_constant() && amount_->is_constant(); }
+
+  private:
+    Ptr a_, b_;
+    FloatTexture amount_;
+};
+
+template <class T> class CheckerboardTexture final : public Texture<T> {
+  public:
+    using Ptr = std::shared_ptr<const Texture<T>>;
+    CheckerboardTexture(Ptr a, Ptr b, const UvMapping& mapping)
+        : a_(std::move(a)), b_(std::move(b)), mapping_(mapping) {}
+    T value(const SurfacePoint& point) const override {
+        const double squares =
+            std::floor(mapping_.su * point.uv.x + mapping_.du) + std::floor(mapping_.sv * point.uv.y + mapping_.dv);
+        return (std::fmod(squares, 2) == 0 ? a_ : b_)->value(point);
+    }
+
+  private:
+    Ptr a_, b_;
+    UvMapping mapping_;
+};
+
+/// The finaliser of MurmurHash3.
+std::uint64_t scramble(std::uint64_t z) {
+    z = (z ^ (z >> 33)) * 0xFF51AFD7ED558CCDULL;
+    z = (z ^ (z >> 33)) * 0xC4CEB9FE1A85EC53ULL;
+    return z ^ (z >> 33);
+}
+
+/// Cells this small can't be seen, and are still some ten times the error of texture coordinates.
+constexpr double kCellsPerUv = 65536;
+
+std::uint64_t cell(float x) { return std::bit_cast<std::uint64_t>(std::floor(static_cast<double>(x) * kCellsPerUv)); }
+
+} // namespace
+
+ColorTexture constant_texture(const Rgb& value) { return std::make_shared<ConstantTexture<Rgb>>(value); }
+FloatTexture constant_texture(double value) { return std::make_shared<ConstantTexture<double>>(value); }
+
+template <class T>
+std::shared_ptr<const Texture<T>> scale_texture(std::shared_ptr<const Texture<T>> value, FloatTexture factor) {
+    return std::make_shared<ScaleTexture<T>>(std::move(value), std::move(factor));
+}
+
+template <class T>
+std::shared_ptr<const Texture<T>> mix_texture(std::shared_ptr<const Texture<T>> a, std::shared_ptr<const Texture<T>> b,
+                                              FloatTexture amount) {
+    return std::make_shared<MixTexture<T>>(std::move(a), std::move(b), std::move(amount));
+}
+
+template <class T>
+std::shared_ptr<const Texture<T>> checkerboard_texture(std::shared_ptr<const Texture<T>> a,
+                                                       std::shared_ptr<const Texture<T>> b, const UvMapping& mapping) {
+    return std::make_shared<CheckerboardTexture<T>>(std::move(a), std::move(b), mapping);
+}
+
+template ColorTexture scale_texture<Rgb>(ColorTexture, FloatTexture);
+template FloatTexture scale_texture<double>(FloatTexture, FloatTexture);
+template ColorTexture mix_texture<Rgb>(ColorTexture, ColorTexture, FloatTexture);
+template FloatTexture mix_texture<double>(FloatTexture, FloatTexture, FloatTexture);
+template ColorTexture checkerboard_texture<Rgb>(ColorTexture, ColorTexture, const UvMapping&);
+template FloatTexture checkerboard_texture<double>(FloatTexture, FloatTexture, const UvMapping&);
+
+double place_hash(const SurfacePoint& point, std::uint32_t salt) {
+    const std::uint64_t surface = (static_cast<std::uint64_t>(point.shape) << 32) | point.primitive;
+    const std::uint64_t u = scramble(cell(point.uv.x) + 0x9E3779B97F4A7C15ULL * (salt + 1));
+    const std::uint64_t v = scramble(cell(point.uv.y) + u);
+    return static_cast<double>(scramble(surface + v) >> 11) * 0x1p-53;
+}
+
+bool is_opaque(const FloatTexture& alpha, const SurfacePoint& point) {
+    if (alpha == nullptr) return true;
+    const double a = alpha->value(point);
+    // Most pictures of leaves are 0 or 1 but for rounding.
+    constexpr double kRounding = 0.5 / 65536;
+    if (a >= 1 - kRounding) return true;
+    return a > kRounding && place_hash(point, 0) < a;
+}
+
+} // namespace keyhole
