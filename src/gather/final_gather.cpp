@@ -24,7 +24,7 @@ PixelSample FinalGather::sample(const Vec2& image, SampleSource& source) const {
     for (int scatterings = 0; scatterings <= options_.max_scatterings; ++scatterings) {
         const auto hit = next_vertex(scene_, v, w);
         if (!hit) break;
-        if (scatterings == 0) {
+        if (scatterings == 0 && hit->point.site != Site::infinite) {
             const Vec3 d = hit->point.p - v.point.p;
             out.depth = d.length();
         }
@@ -96,16 +96,20 @@ Rgb FinalGather::ask_global_map(const Vertex& v, const Vec3& back, PixelSample& 
         return v.bsdf.eval(back, back) * answer.irradiance;
     }
     const PhotonQuery query{{v.point.p, normal}, options_.max_radius, options_.nearest};
-    return estimate_density(*maps_.global, query, Unbiased::density, maps_.patches, [&](const Photon& photon) {
-               return scatter(v.point, v.bsdf, Event::finite, photon.direction(), back).value;
-           }).value;
+    return estimate_density(*maps_.global, query, Unbiased::density, maps_.patches,
+                            [&](const Photon& photon) {
+                                return scatter(v.point, v.bsdf, Event::finite, photon.direction(), back).value;
+                            })
+        .value;
 }
 
 Rgb FinalGather::ask_caustic_map(const Vertex& v, const Vec3& back) const {
     const PhotonQuery query{{v.point.p, side(v.point, back)}, options_.caustic_radius, options_.nearest};
-    return estimate_density(*maps_.caustic, query, Unbiased::density, maps_.patches, [&](const Photon& photon) {
-               return scatter(v.point, v.bsdf, Event::finite, photon.direction(), back).value;
-           }).value;
+    return estimate_density(*maps_.caustic, query, Unbiased::density, maps_.patches,
+                            [&](const Photon& photon) {
+                                return scatter(v.point, v.bsdf, Event::finite, photon.direction(), back).value;
+                            })
+        .value;
 }
 
 } // namespace keyhole

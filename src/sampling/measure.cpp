@@ -45,7 +45,7 @@ void measure(const Scene& scene, Path& path) {
     const Emitter& emitter = scene.emitter(x[0].point.emitter);
     x[0].value = emitter.radiance(x[0].point, to_eye);
     x[0].pdf_from_light = emitter_point_pdf(scene, x[0].point);
-    x[1].pdf_from_light = solid_angle_to_area(emitter.direction_pdf(x[0].point, to_eye), x[0].point, x[1].point);
+    x[1].pdf_from_light = solid_angle_to_area(emitter.ray_pdf(x[0].point, to_eye), x[0].point, x[1].point);
     Rgb f = x[0].value * geometry_term(x[0].point, x[1].point);
 
     for (std::size_t i = 1; i < eye; ++i) {

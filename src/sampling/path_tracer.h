@@ -2,18 +2,11 @@
 #pragma once
 
 #include "sampling/direct_light.h"
+#include "sampling/light_class.h"
 #include "sampling/measure.h"
 #include "sampling/walk.h"
 
 namespace keyhole {
-
-/// What light did before it reached the eye, by the vertices that are not specular.
-enum class LightClass {
-    emission, ///< L S* E
-    direct,   ///< L D S* E
-    caustic,  ///< L S+ D S* E
-    indirect, ///< two or more D
-};
 
 /// Vertices of a walk from the eye: [0] is the eye.
 using EyeWalk = InlineVector<Vertex, kMaxScatterings + 2>;
@@ -65,7 +58,7 @@ void trace_path(const Scene& scene, const Vec2& image, int max_scatterings, Samp
                                                       : LightClass::direct;
             if (!is_black(emitted)) sink.contribution(walk, *hit, throughput * emitted, light);
         }
-        if (scatterings == max_scatterings) return;
+        if (scatterings == max_scatterings || hit->point.site == Site::infinite) return;
         walk.push_back(*hit);
         if (!sink.arrival(walk, throughput, finite)) return;
 

@@ -29,10 +29,10 @@ Vertex sample_eye(const Scene& scene, SampleSource& source) {
     return v;
 }
 
-std::optional<Vertex> next_vertex(const Scene& scene, const Vertex& from, const Vec3& w) {
+std::optional<Vertex> next_vertex(const Scene& scene, const SurfacePoint& from, const Vec3& w) {
     // Vertices closer than floats can tell apart leave no direction between them.
     if (!(w.length2() > 0.5f)) return std::nullopt;
-    const auto point = scene.trace(from.point, w);
+    const auto point = scene.trace(from, w);
     if (!point) return std::nullopt;
     return make_vertex(*point);
 }
@@ -41,8 +41,7 @@ std::optional<Continuation> continue_walk(const Vertex& v, const Vec3& back, Fro
     const auto s = v.bsdf.sample(back, source);
     if (!s || !(s->pdf > 0)) return std::nullopt;
     const bool eye = from == From::eye;
-    const ScatterValue value =
-        scatter(v.point, v.bsdf, s->event, eye ? s->to : back, eye ? back : s->to);
+    const ScatterValue value = scatter(v.point, v.bsdf, s->event, eye ? s->to : back, eye ? back : s->to);
     const double pdf = eye ? value.pdf_to_light : value.pdf_to_eye;
     if (!(pdf > 0)) return std::nullopt;
     return Continuation{s->to, s->event, value.value * (v.point.abs_cos(s->to) / pdf), s->pdf};

@@ -22,18 +22,22 @@ std::optional<EmitterVertex> sample_emitter(const Scene& scene, SampleSource& so
 /// The eye vertex.
 Vertex sample_eye(const Scene& scene, SampleSource& source);
 
-/// The next vertex along `w`; none where nothing is hit.
-std::optional<Vertex> next_vertex(const Scene& scene, const Vertex& from, const Vec3& w);
+/// The next vertex along `w`; none where nothing is hit. It may be infinite where there is an environment: there a walk
+/// ends, for nothing is scattered.
+std::optional<Vertex> next_vertex(const Scene& scene, const SurfacePoint& from, const Vec3& w);
+inline std::optional<Vertex> next_vertex(const Scene& scene, const Vertex& from, const Vec3& w) {
+    return next_vertex(scene, from.point, w);
+}
 
 /// Which end of a path a walk comes from. Radiance is scaled by glass and importance by shading normals.
 enum class From { eye, light };
 
 /// Where a walk goes on from a vertex.
 struct Continuation {
-    Vec3 w;       ///< unit
+    Vec3 w; ///< unit
     Event event;
-    Rgb weight;   ///< factor of the walk's throughput: scattering times cosine over density
-    double pdf;   ///< per solid angle; probability of the event where specular
+    Rgb weight; ///< factor of the walk's throughput: scattering times cosine over density
+    double pdf; ///< per solid angle; probability of the event where specular
 };
 
 /// Samples the BSDF at `v`, reached along `back` (unit, pointing back). None: absorbed.

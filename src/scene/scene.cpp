@@ -3,18 +3,20 @@
 
 #include "core/error.h"
 #include "scene/emitters/area.h"
+#include "scene/emitters/environment.h"
 #include "scene/geometry.h"
 #include "scene/ray_counter.h"
 
 #include <embree3/rtcore.h>
 
+#include <algorithm>
 #include <limits>
 
 namespace keyhole {
 namespace {
 
-/// How far along a connecting edge blockers count. The end is offset from its surface by the error of its position; what
-/// this leaves room for is the relative error of the distance itself.
+/// How far along a connecting edge blockers count. The end is offset from its surface by the error of its position;
+/// what this leaves room for is the relative error of the distance itself.
 constexpr float kEdgeEnd = 1 - 1e-5f;
 
 /// Distances differ in their last bits between instruction sets; pinning one makes pictures portable (and avx2 is the
@@ -32,7 +34,8 @@ void check_mesh(const TriangleMesh& mesh) {
         if (!is_finite(p)) throw InputError("a mesh has a position that is not finite");
     for (const auto& t : mesh.triangles)
         for (const auto i : t)
-            if (i >= n) throw InputError("a mesh has a triangle with index " + std::to_string(i) + " of " + std::to_string(n));
+            if (i >= n)
+                throw InputError("a mesh has a triangle with index " + std::to_string(i) + " of " + std::to_string(n));
 }
 
 void check_sphere(const Sphere& sphere) {
@@ -47,6 +50,18 @@ void remove_degenerate_triangles(TriangleMesh& mesh) {
         const Vec3 n = (mesh.positions[t[1]] - a).cross(mesh.positions[t[2]] - a);
         return !(n.length2() > std::numeric_limits<float>::min());
     });
+}
+
+/// Puts the sum of all environments, if there are several, in the place of the first.
+void merge_environments(std::vector<std::unique_ptr<Emitter>>& emitters) {
+    const auto environment = [](const auto& e) { return is_environment(*e); };
+    if (std::ranges::count_if(emitters, environment) < 2) return;
+    const auto first = std::ranges::find_if(emitters, environment) - emitters.begin();
+    std::vector<std::unique_ptr<Emitter>> parts;
+    for (auto& e : emitters)
+        if (is_environment(*e)) parts.push_back(std::move(e));
+    emitters[static_cast<std::size_t>(first)] = make_environment_sum(std::move(parts));
+    std::erase(emitters, nullptr);
 }
 
 } // namespace
@@ -104,6 +119,7 @@ Scene::Scene(SceneDescription description)
     constexpr float inf = std::numeric_limits<float>::infinity();
     lower_ = Vec3(inf);
     upper_ = Vec3(-inf);
+    merge_environments(emitters_);
     emitter_of_shape_.assign(shapes_.size(), SurfacePoint::kNone);
     for (std::uint32_t i = 0; i < shapes_.size(); ++i) {
         Shape& shape = shapes_[i];
@@ -131,7 +147,11 @@ Scene::Scene(SceneDescription description)
 
     std::vector<double> powers;
     powers.reserve(emitters_.size());
-    for (const auto& e : emitters_) powers.push_back(e->power());
+    for (std::uint32_t i = 0; i < emitters_.size(); ++i) {
+        emitters_[i]->enclose(bounding_sphere());
+        powers.push_back(emitters_[i]->power());
+        if (is_environment(*emitters_[i])) environment_ = i;
+    }
     emitter_distribution_ = EmitterDistribution(powers);
 }
 
@@ -157,10 +177,15 @@ std::optional<SurfacePoint> Scene::trace(const SurfacePoint& from, const Vec3& w
     rtcInitIntersectContext(&context);
     rtcIntersect1(embree_->scene, &context, &query);
     const auto& hit = query.hit;
-    if (hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+    SurfacePoint s;
+    if (hit.geomID == RTC_INVALID_GEOMETRY_ID) {
+        if (environment_ == SurfacePoint::kNone) return std::nullopt;
+        s = infinite_point(w);
+        s.emitter = environment_;
+        return s;
+    }
 
     const Shape& shape = shapes_[hit.geomID];
-    SurfacePoint s;
     if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) {
         s = triangle_point(*mesh, hit.primID, hit.u, hit.v);
     } else {

@@ -15,7 +15,8 @@ namespace keyhole {
 /// Everything that a scene is built from. Loaders fill one in.
 struct SceneDescription {
     std::vector<Shape> shapes;
-    std::vector<std::unique_ptr<Emitter>> emitters; ///< those without geometry; area lights follow from shapes
+    std::vector<std::unique_ptr<Emitter>> emitters; ///< those without geometry; area lights follow from shapes. Several
+                                                    ///< environments become one, their sum
     CameraParameters camera;
     ImageWindow window;
 };
@@ -50,6 +51,8 @@ class Scene {
     /// Bounding box of the geometry, world space.
     const Vec3& lower() const { return lower_; }
     const Vec3& upper() const { return upper_; }
+    /// Holds all geometry. A little too large, so that a beam as wide as the sphere misses nothing by rounding.
+    BoundingSphere bounding_sphere() const { return {(lower_ + upper_) / 2, 1.001f * (upper_ - lower_).length() / 2}; }
 
     std::size_t triangle_count() const;
 
@@ -60,6 +63,7 @@ class Scene {
     std::vector<std::unique_ptr<Emitter>> emitters_;
     EmitterDistribution emitter_distribution_;
     std::vector<std::uint32_t> emitter_of_shape_;
+    std::uint32_t environment_ = SurfacePoint::kNone; // index of the emitter that misses meet
     Camera camera_;
     BsdfTraits traits_;
     Vec3 lower_{0, 0, 0}, upper_{0, 0, 0};

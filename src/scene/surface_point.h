@@ -20,14 +20,14 @@ enum class Site : std::uint8_t {
 struct SurfacePoint {
     static constexpr std::uint32_t kNone = ~0u;
 
-    Vec3 p{0, 0, 0};                ///< world position; the unit direction towards an infinite point
-    Vec3 ng{0, 0, 0};               ///< unit geometric normal; its side is the shape's outside
-    Vec3 ns{0, 0, 0};               ///< unit shading normal, in the hemisphere of ng
-    Vec3 tangent{1, 0, 0};          ///< unit, perpendicular to ns, along increasing u where there is a parametrisation
-    Vec2 uv{0, 0};                  ///< texture coordinates
-    float dpdu = 1;                 ///< length of dp/du in the tangent plane, along `tangent` [m]
-    Vec2 dpdv{0, 1};                ///< dp/dv in the tangent plane, along `tangent` and ns x tangent [m]
-    float offset = 0;               ///< bound on the error of p along ng; ray origins move by this much
+    Vec3 p{0, 0, 0};       ///< world position; the unit direction towards an infinite point
+    Vec3 ng{0, 0, 0};      ///< unit geometric normal; its side is the shape's outside
+    Vec3 ns{0, 0, 0};      ///< unit shading normal, in the hemisphere of ng
+    Vec3 tangent{1, 0, 0}; ///< unit, perpendicular to ns, along increasing u where there is a parametrisation
+    Vec2 uv{0, 0};         ///< texture coordinates
+    float dpdu = 1;        ///< length of dp/du in the tangent plane, along `tangent` [m]
+    Vec2 dpdv{0, 1};       ///< dp/dv in the tangent plane, along `tangent` and ns x tangent [m]
+    float offset = 0;      ///< bound on the error of p along ng; ray origins move by this much
     Site site = Site::surface;
     std::uint32_t shape = kNone;     ///< index of the shape in the scene
     std::uint32_t primitive = kNone; ///< triangle within the shape
@@ -52,7 +52,9 @@ struct SurfacePoint {
     }
 
     /// Where a ray that leaves this point along `w` may start without meeting its own surface.
-    Vec3 ray_origin(const Vec3& w) const { return site == Site::surface ? p + ng * (w.dot(ng) < 0 ? -offset : offset) : p; }
+    Vec3 ray_origin(const Vec3& w) const {
+        return site == Site::surface ? p + ng * (w.dot(ng) < 0 ? -offset : offset) : p;
+    }
 };
 
 /// The infinite point that lies in the unit direction `towards`.
@@ -82,7 +84,8 @@ inline double geometry_term(const SurfacePoint& a, const SurfacePoint& b) {
 }
 
 /// Turns a density per solid angle at `from`, in the direction of `to`, into one in the coordinates of `to`: area on a
-/// surface; solid angle stays for an infinite point. From an infinite point the density is one over the area of its beam.
+/// surface; solid angle stays for an infinite point. From an infinite point the density is one over the area of its
+/// beam.
 inline double solid_angle_to_area(double pdf, const SurfacePoint& from, const SurfacePoint& to) {
     if (to.site == Site::infinite) return pdf;
     const double c = to.abs_cos(direction(from, to));

@@ -19,6 +19,9 @@ const SceneCase kScenes[] = {
     {"PointLight", test::point_light_box},
     {"TwoRooms", [] { return test::two_rooms(0.5f); }},
     {"Furnace", [] { return test::furnace(0.6); }},
+    {"Sky", test::sky_box},
+    {"DistantLight", test::distant_light_scene},
+    {"Spot", test::spot_scene},
 };
 
 class Proposal_LeavesTheTargetAlone : public testing::TestWithParam<std::tuple<std::size_t, std::size_t>> {};
@@ -37,7 +40,8 @@ TEST_P(Proposal_LeavesTheTargetAlone, Alone) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, Proposal_LeavesTheTargetAlone,
-                         testing::Combine(testing::Range<std::size_t>(0, proposal_kinds().size()), testing::Range<std::size_t>(0, std::size(kScenes))),
+                         testing::Combine(testing::Range<std::size_t>(0, proposal_kinds().size()),
+                                          testing::Range<std::size_t>(0, std::size(kScenes))),
                          [](const auto& info) {
                              static const auto scene = test::diffuse_box();
                              const auto kind = proposal_kinds()[std::get<0>(info.param)].make({scene.get()});

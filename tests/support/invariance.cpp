@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::size_t kStatistics = 15;
 constexpr std::array<const char*, kStatistics> kNames{
-    "vertices", "specular",  "image left",  "image top", "image diagonal", "light x", "light next z", "stored x",
-    "stored y", "stored z",  "d1 x",        "d1 z",      "caustic",        "transmitted", "redness"};
+    "vertices", "specular", "image left", "image top", "image diagonal", "light x",     "light next z", "stored x",
+    "stored y", "stored z", "d1 x",       "d1 z",      "caustic",        "transmitted", "redness"};
 
 std::array<double, kStatistics> statistics(const Path& path) {
     double specular = 0, transmitted = 0;
@@ -62,12 +62,16 @@ struct Sink {
         if (!(x.target > 0) || !(weight > 0)) return;
         ++paths;
         const auto before = statistics(x);
-        for (std::size_t k = 0; k < kStatistics; ++k) change[k] -= weight * before[k];
+        std::array<double, kStatistics> step{}; // expected values after it, less those before
+        for (std::size_t k = 0; k < kStatistics; ++k) step[k] = -before[k];
         Chain<Path> chain(x, mixture, Rng(rng.below(1u << 31), StreamPurpose::test, rng.below(1u << 31)));
         chain.step([&](const Path& p, double w) {
             const auto after = statistics(p);
-            for (std::size_t k = 0; k < kStatistics; ++k) change[k] += weight * w * after[k];
+            for (std::size_t k = 0; k < kStatistics; ++k) step[k] += w * after[k];
         });
+        // What a step can't change, such as the place of a point light, comes back rounded.
+        for (std::size_t k = 0; k < kStatistics; ++k)
+            if (std::abs(step[k]) > 1e-12) change[k] += weight * step[k];
         merge(ledger, chain.ledger());
     }
 };
@@ -113,8 +117,8 @@ std::string Invariance::report() const {
         s += fmt::format("  {:15} change {:+.3e} +- {:.1e}  z {:+.2f}\n", l.statistic, l.change.mean(),
                          l.change.standard_error(), l.z());
     for (const LedgerEntry& e : ledger)
-        s += fmt::format("  proposed {} zero {} nan {} rejected {} accepted {}\n", e.proposed, e.zero, e.nan, e.rejected,
-                         e.accepted);
+        s += fmt::format("  proposed {} zero {} nan {} rejected {} accepted {}\n", e.proposed, e.zero, e.nan,
+                         e.rejected, e.accepted);
     return s;
 }
 

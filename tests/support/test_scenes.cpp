@@ -1,6 +1,9 @@
 #include "support/test_scenes.h"
 
+#include "scene/emitters/distant.h"
+#include "scene/emitters/environment.h"
 #include "scene/emitters/point.h"
+#include "scene/emitters/spot.h"
 
 namespace keyhole::test {
 
@@ -27,11 +30,11 @@ SceneMaker& SceneMaker::sphere(const Vec3& center, float radius, const MaterialP
 
 SceneMaker& SceneMaker::room(const Vec3& lo, const Vec3& hi, const MaterialPtr& m, const Rgb& radiance) {
     const Vec3 e = hi - lo, x(e.x, 0, 0), y(0, e.y, 0), z(0, 0, e.z);
-    rectangle(lo, z, x, m, radiance);          // floor, faces up
-    rectangle(lo + y, x, z, m, radiance);      // ceiling
-    rectangle(lo, x, y, m, radiance);          // back, faces +z
-    rectangle(lo + z, y, x, m, radiance);      // front
-    rectangle(lo, y, z, m, radiance);          // left, faces +x
+    rectangle(lo, z, x, m, radiance);            // floor, faces up
+    rectangle(lo + y, x, z, m, radiance);        // ceiling
+    rectangle(lo, x, y, m, radiance);            // back, faces +z
+    rectangle(lo + z, y, x, m, radiance);        // front
+    rectangle(lo, y, z, m, radiance);            // left, faces +x
     return rectangle(lo + x, z, y, m, radiance); // right
 }
 
@@ -121,9 +124,50 @@ std::unique_ptr<Scene> two_rooms(float slit) {
         m.rectangle({-2, 0, z}, {a + 2, 0, 0}, {0, 2.5f, 0}, white);
         m.rectangle({b, 0, z}, {2 - b, 0, 0}, {0, 2.5f, 0}, white);
     }
-    m.rectangle({a, 0, -0.1f}, {0, 0, 0.1f}, {0, 2.5f, 0}, white).rectangle({b, 0, -0.1f}, {0, 2.5f, 0}, {0, 0, 0.1f}, white);
+    m.rectangle({a, 0, -0.1f}, {0, 0, 0.1f}, {0, 2.5f, 0}, white)
+        .rectangle({b, 0, -0.1f}, {0, 2.5f, 0}, {0, 0, 0.1f}, white);
     m.rectangle({-1.6f, 2.45f, -2.6f}, {0.8f, 0, 0}, {0, 0, 0.8f}, make_diffuse(Rgb(0.0)), Rgb(200.0));
     m.camera({-1.5f, 1.4f, 3.7f}, {0.7f, 1, 0}, 58).window(64, 48);
+    return m.build();
+}
+
+namespace {
+
+/// A floor and a wall outside.
+SceneMaker outside() {
+    SceneMaker m;
+    m.rectangle({-1.5f, 0, -1.5f}, {0, 0, 3}, {3, 0, 0}, make_diffuse(Rgb(0.6, 0.5, 0.4)))
+        .rectangle({-1.5f, 0, -1.2f}, {3, 0, 0}, {0, 1, 0}, make_diffuse(Rgb(0.3, 0.5, 0.7)))
+        .camera({0, 1.2f, 3}, {0, 0.35f, 0}, 45)
+        .window(64, 48);
+    return m;
+}
+
+} // namespace
+
+std::unique_ptr<Scene> sky_box() {
+    SceneMaker m = outside();
+    m.sphere({-0.5f, 0.4f, -0.2f}, 0.4f, make_mirror(Rgb(0.9))).sphere({0.45f, 0.4f, 0.3f}, 0.4f, make_glass(1.5));
+    m.emitter(make_constant_environment(Rgb(0.6, 0.8, 1.0)));
+    return m.build();
+}
+
+std::unique_ptr<Scene> distant_light_scene() {
+    SceneMaker m = outside();
+    m.sphere({-0.5f, 0.4f, -0.2f}, 0.4f, make_glass(1.5));
+    m.rectangle({-0.9f, 1.3f, -0.6f}, {1.7f, 0, 0}, {0, 0, 1.7f}, make_diffuse(Rgb(0.7)));
+    m.emitter(make_distant_emitter(Vec3(-0.5f, -1, -0.6f).normalized(), Rgb(3.0, 2.8, 2.5)));
+    return m.build();
+}
+
+std::unique_ptr<Scene> spot_scene() {
+    SceneMaker m = box_shell(make_diffuse(Rgb(0.2, 0.4, 0.7)));
+    m.sphere({-0.45f, 0.4f, -0.4f}, 0.4f, make_mirror(Rgb(0.9)));
+    m.emitter(make_spot_emitter({.position = {0.4f, 1.8f, 0.4f},
+                                 .axis = Vec3(0.2f, -1, 0.4f).normalized(),
+                                 .intensity = Rgb(8.0, 7.0, 6.0),
+                                 .full_degrees = 15,
+                                 .edge_degrees = 35}));
     return m.build();
 }
 

@@ -41,4 +41,14 @@ std::unique_ptr<Scene> furnace(double rho);
 /// Two diffuse rooms joined by a slit of the given width [m]; the light is in the far one.
 std::unique_ptr<Scene> two_rooms(float slit);
 
+/// Open: a diffuse floor with a mirror ball and a glass ball under a sky that is bright on one side.
+std::unique_ptr<Scene> sky_box();
+
+/// Open, under light from one direction. A roof shades the glass ball from it: the path tracer, which the tests start
+/// from, never finds a caustic of a light without extent.
+std::unique_ptr<Scene> distant_light_scene();
+
+/// The shell of diffuse_box() with a mirror ball, lit by a spot light beside the ball.
+std::unique_ptr<Scene> spot_scene();
+
 } // namespace keyhole::test

@@ -25,8 +25,7 @@ struct RatioCheck {
         for (std::size_t i = 1; i < path.x.size(); ++i) eye *= path.x[i].pdf_from_eye;
         const double by_hit = path.x[0].pdf_from_eye, by_light = path.x[0].pdf_from_light;
         const bool connectable = path.x.size() > 2 && !path.x[1].specular();
-        const double by_both =
-            !connectable || by_hit == 0 ? 0 : (by_hit * by_hit + by_light * by_light);
+        const double by_both = !connectable || by_hit == 0 ? 0 : (by_hit * by_hit + by_light * by_light);
         // The two techniques' estimates with their power-heuristic weights.
         const double hit = connectable ? (by_hit > 0 ? by_hit / by_both : 0) : 1 / by_hit;
         const double light = connectable ? (by_both > 0 ? by_light / by_both : 1 / by_light) : 0;
@@ -54,6 +53,9 @@ TEST(Measure_AgreesWithPathTracer, DiffuseBox) { expect_agreement(*test::diffuse
 TEST(Measure_AgreesWithPathTracer, MirrorAndGlass) { expect_agreement(*test::mirror_glass_box(), true); }
 TEST(Measure_AgreesWithPathTracer, ThinLens) { expect_agreement(*test::mirror_glass_box(0.1f), true); }
 TEST(Measure_AgreesWithPathTracer, PointLight) { expect_agreement(*test::point_light_box(), false); }
+TEST(Measure_AgreesWithPathTracer, Sky) { expect_agreement(*test::sky_box(), true); }
+TEST(Measure_AgreesWithPathTracer, DistantLight) { expect_agreement(*test::distant_light_scene(), true); }
+TEST(Measure_AgreesWithPathTracer, Spot) { expect_agreement(*test::spot_scene(), false); }
 
 } // namespace
 } // namespace keyhole

@@ -188,9 +188,9 @@ TEST_F(SceneYaml, PointEmitterHasItsPower) {
     EXPECT_EQ(point.p, Vec3(1, 2, 3));
     EXPECT_EQ(point.site, Site::point);
     EXPECT_EQ(pdf, 1);
-    const auto [w, direction_pdf] = emitters[0]->sample_direction(point, rng);
-    EXPECT_NEAR(w.length(), 1, 1e-6);
-    EXPECT_NEAR(direction_pdf * 4 * kPi, 1, 1e-12);
+    const EmitterRay ray = emitters[0]->sample_ray(point, rng);
+    EXPECT_NEAR(ray.w.length(), 1, 1e-6);
+    EXPECT_NEAR(ray.pdf * 4 * kPi, 1, 1e-12);
 }
 
 TEST_F(SceneYaml, GroupsPlaceTheirShapesInsideTheirTransform) {

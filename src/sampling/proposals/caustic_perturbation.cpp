@@ -1,6 +1,8 @@
-// CP, caustic perturbation: at a vertex before a specular chain the direction of light is perturbed, the chain is traced
-// again, and the non-specular vertex where it ends is joined to the next one towards the eye. If that is the eye, the
-// image point moves (Veach 1997, section 11.3.1.2); if it is another surface, a caustic that lights it moves.
+// CP, caustic perturbation: at a vertex before a specular chain the direction of light is perturbed, the chain is
+// traced again, and the non-specular vertex where it ends is joined to the next one towards the eye. If that is the
+// eye, the image point moves (Veach 1997, section 11.3.1.2); if it is another surface, a caustic that lights it moves.
+//
+// An infinite emitter's direction is its vertex, which stays: there the ray moves across its beam instead.
 #include "sampling/proposals/edit.h"
 #include "sampling/proposals/registry.h"
 #include "sampling/proposals/steps.h"
@@ -11,6 +13,7 @@ namespace keyhole {
 namespace {
 
 constexpr DirectionStep kStep(1e-4, 0.2);
+constexpr BeamStep kBeamStep(1e-5, 0.1);
 
 class CausticPerturbation final : public Proposal<Path> {
   public:
@@ -27,24 +30,56 @@ class CausticPerturbation final : public Proposal<Path> {
     static Starts chains(const Path& x) {
         Starts starts;
         for (int a = 0; a + 3 < x.vertices(); ++a) {
-            if (x.x[static_cast<std::size_t>(a)].specular() || !x.x[static_cast<std::size_t>(a) + 1].specular()) continue;
+            if (x.x[static_cast<std::size_t>(a)].specular() || !x.x[static_cast<std::size_t>(a) + 1].specular())
+                continue;
             const int b = next_finite(x, a, +1);
             if (b + 1 < x.vertices() && !x.x[static_cast<std::size_t>(b) + 1].specular()) starts.push_back(a);
         }
         return starts;
     }
 
+    /// A perturbed ray from x[a].
+    struct Ray {
+        SurfacePoint origin;
+        Vec3 w;
+    };
+    Ray perturbed_ray(const Path& x, int a, Rng& rng) const;
+    /// Density with which y[a+1] is met by it.
+    double ray_density(const Path& x, const Path& y, int a) const;
+
     const Scene& scene_;
     PathSet set_;
 };
+
+CausticPerturbation::Ray CausticPerturbation::perturbed_ray(const Path& x, int a, Rng& rng) const {
+    const SurfacePoint& start = x.x[static_cast<std::size_t>(a)].point;
+    const Vec3 w = leaving_direction(x, a, +1);
+    if (start.site != Site::infinite) return {start, kStep.sample(w, rng)};
+    const float radius = scene_.bounding_sphere().radius;
+    Ray ray{{}, w};
+    ray.origin.site = Site::point;
+    ray.origin.p = x.x[static_cast<std::size_t>(a) + 1].point.p - w * (2 * radius) + kBeamStep.sample(w, radius, rng);
+    return ray;
+}
+
+double CausticPerturbation::ray_density(const Path& x, const Path& y, int a) const {
+    const SurfacePoint &start = y.x[static_cast<std::size_t>(a)].point,
+                       &to = y.x[static_cast<std::size_t>(a) + 1].point;
+    const Vec3 w = leaving_direction(x, a, +1);
+    const double density =
+        start.site == Site::infinite
+            ? kBeamStep.density(to.p - x.x[static_cast<std::size_t>(a) + 1].point.p, w, scene_.bounding_sphere().radius)
+            : kStep.density(w, leaving_direction(y, a, +1));
+    return solid_angle_to_area(density, start, to);
+}
 
 std::optional<Path> CausticPerturbation::propose(const Path& x, Rng& rng, Failure& why) const {
     const Starts starts = chains(x);
     const int a = starts[rng.below(static_cast<std::uint32_t>(starts.size()))], b = next_finite(x, a, +1);
     SubPath light, eye;
     for (int i = 0; i <= a; ++i) light.push_back(x.x[static_cast<std::size_t>(i)]);
-    const Vec3 w = kStep.sample(leaving_direction(x, a, +1), rng);
-    if (!retrace(scene_, light, w, x, a + 1, b, why)) return std::nullopt;
+    const Ray ray = perturbed_ray(x, a, rng);
+    if (!retrace(scene_, light, ray.origin, ray.w, x, a + 1, b, why)) return std::nullopt;
     for (int i = x.vertices() - 1; i > b; --i) eye.push_back(x.x[static_cast<std::size_t>(i)]);
     Vec2 image = x.image;
     if (eye.size() == 1) {
@@ -61,10 +96,7 @@ double CausticPerturbation::transition_density(const Path& x, const Path& y) con
     const Starts starts = chains(x);
     const int a = common_prefix(x, y) - 1;
     if (std::find(starts.begin(), starts.end(), a) == starts.end()) return 0;
-    const auto i = static_cast<std::size_t>(a);
-    const double w = kStep.density(leaving_direction(x, a, +1), leaving_direction(y, a, +1));
-    const double first = solid_angle_to_area(w, y.x[i].point, y.x[i + 1].point);
-    return retrace_density(y, first, a + 1, next_finite(y, a, +1)) / static_cast<double>(starts.size());
+    return retrace_density(y, ray_density(x, y, a), a + 1, next_finite(y, a, +1)) / static_cast<double>(starts.size());
 }
 
 } // namespace

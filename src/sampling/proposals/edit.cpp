@@ -3,10 +3,12 @@
 namespace keyhole {
 namespace {
 
-/// The direction in which a sub-path leaves its end.
-Vec3 first_direction(const Scene& scene, const Vertex& end, From from, const Vec2& image, SampleSource& source) {
-    if (from == From::eye) return scene.camera().ray_direction(end.point, image);
-    return scene.emitter(end.point.emitter).sample_direction(end.point, source).w;
+/// The vertex next to the end of a sub-path.
+std::optional<Vertex> first_vertex(const Scene& scene, const Vertex& end, From from, const Vec2& image,
+                                   SampleSource& source) {
+    if (from == From::eye) return next_vertex(scene, end, scene.camera().ray_direction(end.point, image));
+    const EmitterRay ray = scene.emitter(end.point.emitter).sample_ray(end.point, source);
+    return next_vertex(scene, ray.origin, ray.w);
 }
 
 } // namespace
@@ -14,18 +16,18 @@ Vec3 first_direction(const Scene& scene, const Vertex& end, From from, const Vec
 bool grow(const Scene& scene, SubPath& walk, From from, const Vec2& image, bool kept, SampleSource& source,
           Failure& why) {
     Vertex& v = walk.back();
-    Vec3 w;
+    std::optional<Vertex> hit;
     if (walk.size() == 1) {
-        w = first_direction(scene, v, from, image, source);
+        hit = first_vertex(scene, v, from, image, source);
     } else {
         const auto next = continue_walk(v, direction(v.point, walk[walk.size() - 2].point), from, source);
         if (!next) return why = Failure::absorbed, false;
         if (kept && is_specular(next->event)) return why = Failure::signature, false;
         v.event = next->event;
-        w = next->w;
+        hit = next_vertex(scene, v, next->w);
     }
-    const auto hit = next_vertex(scene, v, w);
-    if (!hit) return why = Failure::no_hit, false;
+    const bool lost = hit && from == From::light && hit->point.site == Site::infinite;
+    if (!hit || lost) return why = Failure::no_hit, false;
     walk.push_back(*hit);
     return true;
 }
@@ -47,20 +49,22 @@ std::optional<Path> join(const Scene& scene, PathSet set, const SubPath& light, 
     return y;
 }
 
-bool retrace(const Scene& scene, SubPath& walk, Vec3 w, const Path& x, int first, int last, Failure& why) {
+bool retrace(const Scene& scene, SubPath& walk, SurfacePoint origin, Vec3 w, const Path& x, int first, int last,
+             Failure& why) {
     const int step = first <= last ? 1 : -1;
     for (int i = first;; i += step) {
-        const auto hit = next_vertex(scene, walk.back(), w);
+        const auto hit = next_vertex(scene, origin, w);
         if (!hit) return why = Failure::no_hit, false;
         walk.push_back(*hit);
         Vertex& v = walk.back();
         v.event = x.x[static_cast<std::size_t>(i)].event;
         if (i == last) {
             v.event = Event::finite;
-            return v.bsdf.traits().finite || (why = Failure::signature, false);
+            return i == 0 || v.bsdf.traits().finite || (why = Failure::signature, false);
         }
         const auto lobe = v.bsdf.delta(-w, v.event);
         if (!lobe) return why = Failure::signature, false;
+        origin = v.point;
         w = lobe->to;
     }
 }

@@ -55,9 +55,11 @@ void assemble(Path& path, const SubPath& light, const SubPath& eye);
 std::optional<Path> join(const Scene& scene, PathSet set, const SubPath& light, const SubPath& eye, const Vec2& image,
                          Failure& why);
 
-/// Adds to `walk` the vertices that a ray along `w` meets, to correspond to x[first], ..., x[last] in this order (towards
-/// the light if last < first). Those before the last take the specular events that x has there; the last is finite.
-bool retrace(const Scene& scene, SubPath& walk, Vec3 w, const Path& x, int first, int last, Failure& why);
+/// Adds to `walk` the vertices that a ray from `origin` along `w` meets, to correspond to x[first], ..., x[last] in
+/// this order (towards the light if last < first). Those before the last take the specular events that x has there; the
+/// last is finite. `origin` is the last vertex of the walk, or on its beam where that is infinite.
+bool retrace(const Scene& scene, SubPath& walk, SurfacePoint origin, Vec3 w, const Path& x, int first, int last,
+             Failure& why);
 
 /// Density of y[first], ..., y[last] (all but the last specular) when retraced in this order: `first_density`, that of
 /// y[first], times those of the others, with specular events prescribed, not chosen.

@@ -18,7 +18,7 @@ std::optional<Path> perturb_from_eye(const Scene& scene, PathSet set, const Path
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         const Piece& piece = pieces[i];
         if (i > 0) w = step.sample(leaving_direction(x, piece.pivot, -1), source);
-        if (!retrace(scene, eye, w, x, piece.pivot - 1, piece.last, why)) return std::nullopt;
+        if (!retrace(scene, eye, eye.back().point, w, x, piece.pivot - 1, piece.last, why)) return std::nullopt;
     }
     const int last = pieces.back().last;
     if (last == 0 && !eye.back().point.is_emitter()) return why = Failure::no_light, std::nullopt;

@@ -68,4 +68,25 @@ class DirectionStep {
     LogUniformRadius angle_;
 };
 
+/// A step across a beam of parallel light, as a share of the radius of the scene.
+class BeamStep {
+  public:
+    constexpr BeamStep(double least, double most) : radius_(least, most) {}
+
+    /// Displacement in the plane across `w`.
+    Vec3 sample(const Vec3& w, double scene_radius, SampleSource& source) const {
+        const double r = radius_.sample(source.next()) * scene_radius, phi = 2 * kPi * source.next();
+        return Frame(w).to_world(Vec3(static_cast<float>(r * std::cos(phi)), static_cast<float>(r * std::sin(phi)), 0));
+    }
+    /// Per area of the beam's cross-section. What `displacement` has along `w` doesn't count.
+    double density(const Vec3& displacement, const Vec3& w, double scene_radius) const {
+        const Imath::V3d d(displacement), axis(w);
+        const double r = (d - axis * d.dot(axis)).length() / scene_radius;
+        return radius_.density(r) / (2 * kPi * r * scene_radius * scene_radius);
+    }
+
+  private:
+    LogUniformRadius radius_;
+};
+
 } // namespace keyhole

@@ -18,10 +18,11 @@ class AreaEmitter final : public Emitter {
         }
     }
 
+    Site site() const override { return Site::surface; }
+    bool is_delta() const override { return false; }
     double power() const override {
         return luminance(shape_.emission->radiance) * area_ * kPi * (shape_.emission->two_sided ? 2 : 1);
     }
-    bool is_delta() const override { return false; }
 
     EmitterPoint sample_point(SampleSource& source) const override {
         const double u0 = source.next(), u1 = source.next(), u2 = source.next();
@@ -38,7 +39,7 @@ class AreaEmitter final : public Emitter {
     }
     double point_pdf(const SurfacePoint& /*point*/) const override { return 1 / area_; }
 
-    EmitterDirection sample_direction(const SurfacePoint& point, SampleSource& source) const override {
+    EmitterRay sample_ray(const SurfacePoint& point, SampleSource& source) const override {
         double u0 = source.next();
         const double u1 = source.next();
         bool back = false;
@@ -49,9 +50,9 @@ class AreaEmitter final : public Emitter {
         }
         const Vec3 local = cosine_hemisphere(u0, u1);
         const Vec3 w = Frame(point.ng).to_world(back ? -local : local);
-        return {w, direction_pdf(point, w)};
+        return {point, w, ray_pdf(point, w)};
     }
-    double direction_pdf(const SurfacePoint& point, const Vec3& w) const override {
+    double ray_pdf(const SurfacePoint& point, const Vec3& w) const override {
         const double c = point.ng.dot(w);
         if (shape_.emission->two_sided) return std::abs(c) * kInvPi / 2;
         return c > 0 ? c * kInvPi : 0.0;

@@ -9,8 +9,9 @@ class PointEmitter final : public Emitter {
   public:
     PointEmitter(const Vec3& position, const Rgb& intensity) : position_(position), intensity_(intensity) {}
 
-    double power() const override { return 4 * kPi * luminance(intensity_); }
+    Site site() const override { return Site::point; }
     bool is_delta() const override { return true; }
+    double power() const override { return 4 * kPi * luminance(intensity_); }
 
     EmitterPoint sample_point(SampleSource& /*source*/) const override {
         SurfacePoint point;
@@ -20,12 +21,12 @@ class PointEmitter final : public Emitter {
     }
     double point_pdf(const SurfacePoint& /*point*/) const override { return 1; }
 
-    EmitterDirection sample_direction(const SurfacePoint& point, SampleSource& source) const override {
+    EmitterRay sample_ray(const SurfacePoint& point, SampleSource& source) const override {
         const double u0 = source.next(), u1 = source.next();
         const Vec3 w = uniform_sphere(u0, u1);
-        return {w, direction_pdf(point, w)};
+        return {point, w, ray_pdf(point, w)};
     }
-    double direction_pdf(const SurfacePoint& /*point*/, const Vec3& /*w*/) const override { return kInvPi / 4; }
+    double ray_pdf(const SurfacePoint& /*point*/, const Vec3& /*w*/) const override { return kInvPi / 4; }
 
     Rgb radiance(const SurfacePoint& /*point*/, const Vec3& /*w*/) const override { return intensity_; }
     const char* kind() const override { return "point"; }

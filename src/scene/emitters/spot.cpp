@@ -1,0 +1,83 @@
+#include "scene/emitters/spot.h"
+
+#include "core/error.h"
+#include "scene/warp.h"
+
+namespace keyhole {
+namespace {
+
+/// The t in [0,1] below which the share u of smoothstep's integral lies: 2 t^3 - t^4 = u, by bisection.
+double inverse_smoothstep_integral(double u) {
+    double low = 0, high = 1;
+    for (int i = 0; i < 40; ++i) {
+        const double t = (low + high) / 2;
+        (t * t * t * (2 - t) < u ? low : high) = t;
+    }
+    return (low + high) / 2;
+}
+
+class SpotEmitter final : public Emitter {
+  public:
+    explicit SpotEmitter(const SpotParameters& p)
+        : parameters_(p), frame_(p.axis), cos_full_(std::cos(p.full_degrees * kPi / 180)),
+          cos_edge_(std::cos(p.edge_degrees * kPi / 180)) {
+        // Integrals of the falloff over solid angle; smoothstep's mean is 1/2.
+        const double full = 2 * kPi * (1 - cos_full_), fading = kPi * (cos_full_ - cos_edge_);
+        solid_angle_ = full + fading;
+        full_share_ = full / solid_angle_;
+    }
+
+    Site site() const override { return Site::point; }
+    bool is_delta() const override { return true; }
+    double power() const override { return luminance(parameters_.intensity) * solid_angle_; }
+
+    EmitterPoint sample_point(SampleSource& /*source*/) const override {
+        SurfacePoint point;
+        point.p = parameters_.position;
+        point.site = Site::point;
+        return {point, 1.0};
+    }
+    double point_pdf(const SurfacePoint& /*point*/) const override { return 1; }
+
+    EmitterRay sample_ray(const SurfacePoint& point, SampleSource& source) const override {
+        const double u0 = source.next(), u1 = source.next();
+        const double cosine = u0 < full_share_
+                                  ? 1 - u0 / full_share_ * (1 - cos_full_)
+                                  : cos_edge_ + (cos_full_ - cos_edge_) *
+                                                    inverse_smoothstep_integral((u0 - full_share_) / (1 - full_share_));
+        const Vec3 w = frame_.to_world(spherical(cosine, 2 * kPi * u1)).normalized();
+        return {point, w, ray_pdf(point, w)};
+    }
+    double ray_pdf(const SurfacePoint& /*point*/, const Vec3& w) const override { return falloff(w) / solid_angle_; }
+
+    Rgb radiance(const SurfacePoint& /*point*/, const Vec3& w) const override {
+        return parameters_.intensity * falloff(w);
+    }
+    const char* kind() const override { return "spot"; }
+
+  private:
+    double falloff(const Vec3& w) const {
+        const double cosine = parameters_.axis.dot(w);
+        if (cosine >= cos_full_) return 1;
+        if (cosine <= cos_edge_) return 0;
+        const double t = (cosine - cos_edge_) / (cos_full_ - cos_edge_);
+        return t * t * (3 - 2 * t);
+    }
+
+    SpotParameters parameters_;
+    Frame frame_;
+    double cos_full_, cos_edge_;
+    double solid_angle_ = 0; // of a cone of the same power at full intensity
+    double full_share_ = 0;
+};
+
+} // namespace
+
+std::unique_ptr<Emitter> make_spot_emitter(const SpotParameters& parameters) {
+    const bool ordered = parameters.full_degrees >= 0 && parameters.full_degrees <= parameters.edge_degrees &&
+                         parameters.edge_degrees > 0 && parameters.edge_degrees <= 180;
+    if (!ordered) throw InputError("a spot light needs 0 <= inner angle <= outer angle <= 180 degrees, and some width");
+    return std::make_unique<SpotEmitter>(parameters);
+}
+
+} // namespace keyhole
