@@ -6,6 +6,7 @@ if(TARGET keyhole)
   install(TARGETS keyhole)
 endif()
 install(TARGETS keyhole_lib ARCHIVE)
+install(TARGETS keyhole_oiio LIBRARY DESTINATION lib/keyhole) # where the program looks: ../lib/keyhole
 install(DIRECTORY src/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/keyhole
   FILES_MATCHING PATTERN "*.h" PATTERN "cli" EXCLUDE)
 install(DIRECTORY scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/keyhole)

@@ -1,0 +1,49 @@
+#include "core/error.h"
+#include "scene/images/image.h"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
+
+namespace keyhole {
+namespace {
+
+/// The channels that make up the picture: R, G, B; or Y; or the only one there is.
+std::vector<std::string> picture_channels(const Imf::ChannelList& channels, const std::string& path) {
+    if (channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B")) return {"R", "G", "B"};
+    if (channels.findChannel("Y") && !channels.findChannel("RY")) return {"Y"};
+    std::vector<std::string> all;
+    for (auto c = channels.begin(); c != channels.end(); ++c) all.emplace_back(c.name());
+    if (all.size() == 1) return all;
+    throw InputError(path + ": found neither the channels R, G, B nor a single one, expected either");
+}
+
+} // namespace
+
+Image read_exr_image(const std::string& path) {
+    try {
+        Imf::InputFile file(path.c_str(), 1);
+        const Imath::Box2i& window = file.header().dataWindow();
+        const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
+        const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
+        check_image_size(path, width, height);
+        const auto names = picture_channels(file.header().channels(), path);
+        Image image;
+        auto& texels = image.allocate<Image::Floats>(static_cast<int>(width), static_cast<int>(height),
+                                                     static_cast<int>(names.size()));
+        Imf::FrameBuffer buffer;
+        const std::size_t pixel = names.size() * sizeof(float), row = pixel * static_cast<std::size_t>(width);
+        for (std::size_t i = 0; i < names.size(); ++i)
+            buffer.insert(names[i], Imf::Slice::Make(Imf::FLOAT, &texels[i], window, pixel, row));
+        file.setFrameBuffer(buffer);
+        file.readPixels(window.min.y, window.max.y);
+        return image;
+    } catch (const InputError&) {
+        throw;
+    } catch (const std::exception& e) {
+        throw InputError(path + ": " + e.what());
+    }
+}
+
+} // namespace keyhole

@@ -1,0 +1,52 @@
+// Images from files, as they are stored: 8-bit ones stay 8 bits.
+#pragma once
+
+#include "core/vec.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace keyhole {
+
+/// One or three channels, row by row from the top, without alpha. Integers hold what the file holds, of 255 or 65535;
+/// floats are linear.
+struct Image {
+    using Bytes = std::vector<std::uint8_t>;
+    using Words = std::vector<std::uint16_t>;
+    using Floats = std::vector<float>;
+
+    int width = 0, height = 0, channels = 0;
+    std::variant<Bytes, Words, Floats> texels;
+
+    /// Makes room for width * height * channels texels of a kind.
+    template <class Texels> Texels& allocate(int w, int h, int n) {
+        width = w;
+        height = h;
+        channels = n;
+        const auto size = static_cast<std::size_t>(w) * static_cast<std::size_t>(h) * static_cast<std::size_t>(n);
+        return texels.emplace<Texels>(size);
+    }
+    std::size_t bytes() const;
+};
+
+constexpr int kMaxImageSide = 1 << 16;
+constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 28;
+
+/// Fails unless an image of this size is one that we are ready to hold. @throws InputError
+void check_image_size(const std::string& path, std::int64_t width, std::int64_t height);
+
+/// The image of a file, from a cache while anybody holds it: EXR and PFM, and what OpenImageIO reads, which is loaded
+/// when first needed, because it costs a third of a second and 130 MB.
+/// @throws InputError "path: what is wrong"
+std::shared_ptr<const Image> load_image(const std::string& path);
+
+// The readers behind load_image(), by kind of file.
+Image read_exr_image(const std::string& path);
+Image read_pfm_image(const std::string& path);
+Image read_other_image(const std::string& path);
+
+} // namespace keyhole

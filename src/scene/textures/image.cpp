@@ -1,0 +1,128 @@
+#include "scene/images/image.h"
+#include "scene/texture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace keyhole {
+namespace {
+
+double srgb_to_linear(double x) { return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4); }
+
+double decode(double x, const ImageOptions& options) {
+    switch (options.encoding) {
+    case Encoding::linear:
+        return x;
+    case Encoding::gamma:
+        return std::pow(x, options.gamma);
+    default:
+        return srgb_to_linear(x);
+    }
+}
+
+/// Reads texels of one type. Integers go through a table, so that no lookup needs a power.
+template <class Texels> class Decoder {
+  public:
+    explicit Decoder(const ImageOptions& options) {
+        constexpr bool integers = !std::is_same_v<Texels, Image::Floats>;
+        if constexpr (integers) {
+            constexpr auto most = std::numeric_limits<typename Texels::value_type>::max();
+            table_.resize(static_cast<std::size_t>(most) + 1);
+            for (std::size_t i = 0; i < table_.size(); ++i)
+                table_[i] = static_cast<float>(decode(static_cast<double>(i) / most, options));
+        }
+    }
+    double operator()(typename Texels::value_type x) const {
+        if constexpr (std::is_same_v<Texels, Image::Floats>)
+            return x;
+        else
+            return static_cast<double>(table_[x]);
+    }
+
+  private:
+    std::vector<float> table_;
+};
+
+/// Row or column `i` of `n` after wrapping; -1: outside.
+int wrapped(std::int64_t i, int n, Wrap wrap) {
+    if (wrap == Wrap::clamp) return static_cast<int>(std::clamp<std::int64_t>(i, 0, n - 1));
+    if (wrap == Wrap::black) return i >= 0 && i < n ? static_cast<int>(i) : -1;
+    const std::int64_t r = i % n;
+    return static_cast<int>(r < 0 ? r + n : r);
+}
+
+template <class T, class Texels> class ImageTexture final : public Texture<T> {
+  public:
+    ImageTexture(std::shared_ptr<const Image> image, const ImageOptions& options)
+        : image_(std::move(image)), texels_(std::get<Texels>(image_->texels)), options_(options), decoder_(options) {}
+
+    T value(const SurfacePoint& point) const override {
+        const UvMapping& m = options_.mapping;
+        const double u = m.su * point.uv.x + m.du, v = m.sv * point.uv.y + m.dv;
+        // Texture coordinates past all use, or not numbers, must not become indices.
+        if (!(std::abs(u) < 1e6) || !(std::abs(v) < 1e6)) return T(0);
+        return finish(filtered(u * image_->width, (1 - v) * image_->height));
+    }
+
+  private:
+    T filtered(double x, double y) const {
+        if (options_.filter == Filter::nearest)
+            return texel(static_cast<std::int64_t>(std::floor(x)), static_cast<std::int64_t>(std::floor(y)));
+        x -= 0.5;
+        y -= 0.5;
+        const double fx = std::floor(x), fy = std::floor(y), tx = x - fx, ty = y - fy;
+        const auto i = static_cast<std::int64_t>(fx), j = static_cast<std::int64_t>(fy);
+        return (texel(i, j) * (1 - tx) + texel(i + 1, j) * tx) * (1 - ty) +
+               (texel(i, j + 1) * (1 - tx) + texel(i + 1, j + 1) * tx) * ty;
+    }
+
+    T texel(std::int64_t i, std::int64_t j) const {
+        const int x = wrapped(i, image_->width, options_.wrap), y = wrapped(j, image_->height, options_.wrap);
+        if (x < 0 || y < 0) return T(0);
+        const auto pixel =
+            static_cast<std::size_t>(y) * static_cast<std::size_t>(image_->width) + static_cast<std::size_t>(x);
+        const auto* t = &texels_[pixel * static_cast<std::size_t>(image_->channels)];
+        if (image_->channels == 1) return T(decoder_(t[0]));
+        const Rgb c(decoder_(t[0]), decoder_(t[1]), decoder_(t[2]));
+        if constexpr (std::is_same_v<T, Rgb>)
+            return c;
+        else
+            return (c.x + c.y + c.z) / 3;
+    }
+
+    T finish(T x) const {
+        x = x * options_.scale;
+        const auto adjust = [&](double c) {
+            const double positive = std::max(0.0, c);
+            return options_.invert ? 1 - positive : positive;
+        };
+        if constexpr (std::is_same_v<T, Rgb>)
+            return {adjust(x.x), adjust(x.y), adjust(x.z)};
+        else
+            return adjust(x);
+    }
+
+    std::shared_ptr<const Image> image_;
+    const Texels& texels_;
+    ImageOptions options_;
+    Decoder<Texels> decoder_;
+};
+
+} // namespace
+
+template <class T>
+std::shared_ptr<const Texture<T>> image_texture(const std::string& path, const ImageOptions& options) {
+    auto image = load_image(path);
+    return std::visit(
+        [&](const auto& texels) -> std::shared_ptr<const Texture<T>> {
+            using Texels = std::decay_t<decltype(texels)>;
+            return std::make_shared<ImageTexture<T, Texels>>(image, options);
+        },
+        image->texels);
+}
+
+template ColorTexture image_texture<Rgb>(const std::string&, const ImageOptions&);
+template FloatTexture image_texture<double>(const std::string&, const ImageOptions&);
+
+} // namespace keyhole
