@@ -1,0 +1,1 @@
+"""A small modeller for the furniture of our scenes: metres, y up, outsides anticlockwise."""
