@@ -84,6 +84,7 @@ StageOne run_stage_one(const Scene& scene, const StageOneSettings& settings, Ren
     stats.brightness_error = one.brightness.standard_error();
     stats.values["brightness of caustics"] = one.caustic.mean();
     stats.values["brightness of caustics, error"] = one.caustic.standard_error();
+    stats.values["brightness by bidirectional tracing"] = one.technique == Technique::bidirectional ? 1 : 0;
     stats.values["brightness samples"] = static_cast<double>(one.samples);
     if (!(stats.brightness > 0))
         stats.warnings.emplace_back("no sampled path carried indirect light or a caustic: only direct light is rendered. If there is "
@@ -136,6 +137,7 @@ RenderResult render_mps(const Scene& scene, const Settings& settings, const RunC
             [&](const Vec2& image, SampleSource& source) { return gather.sample(image, source); });
         stats.complete = rounds == settings.spp;
     }
+    film.report(stats);
     result.picture = film.to_picture();
     return result;
 }

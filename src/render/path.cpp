@@ -51,6 +51,7 @@ RenderResult render_path(const Scene& scene, const Settings& settings, const Run
                                           });
         result.stats.complete = rounds == settings.spp;
     }
+    film.report(result.stats);
     result.picture = film.to_picture();
     return result;
 }

@@ -1,0 +1,22 @@
+// What the subcommands share.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <functional>
+#include <string>
+
+namespace keyhole {
+
+/// Exit codes; InputError and mistakes on the command line give kBadInput, any other exception kInternalError.
+enum ExitCode : int { kSuccess = 0, kInternalError = 1, kBadInput = 2, kInterrupted = 130 };
+
+/// What to run once the command line is understood.
+using Action = std::function<int()>;
+
+/// Each adds its subcommand to `app`; parsing it sets `action`.
+/// @param command_line for the picture's metadata.
+void add_render_command(CLI::App& app, Action& action, const std::string& command_line);
+void add_diff_command(CLI::App& app, Action& action);
+
+} // namespace keyhole

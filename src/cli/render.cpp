@@ -1,0 +1,141 @@
+// keyhole render: from a scene file to pictures.
+#include "render/render.h"
+
+#include "cli/command.h"
+#include "cli/interrupt.h"
+#include "cli/metadata.h"
+#include "cli/outputs.h"
+#include "cli/report.h"
+#include "cli/resolution.h"
+#include "cli/stats_json.h"
+#include "cli/terminal_progress.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "scene/load/scene_yaml.h"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <optional>
+#include <string_view>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+namespace keyhole {
+namespace {
+
+struct RenderOptions {
+    std::string command_line, scene, resolution;
+    Outputs outputs;
+    bool no_png = false, quiet = false, verbose = false;
+    std::vector<std::string> overrides; ///< key=value, in the order of the command line
+    int threads = 0;
+    std::optional<double> timeout; ///< [s]
+};
+
+/// Null for --quiet.
+std::unique_ptr<TerminalProgress> make_progress(bool quiet) {
+    if (quiet) return nullptr;
+    const char* term = std::getenv("TERM");
+    const bool terminal = isatty(STDERR_FILENO) != 0 && term != nullptr && std::string_view(term) != "dumb";
+    winsize size{};
+    const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+    return std::make_unique<TerminalProgress>(stderr, terminal, known ? size.ws_col : 80);
+}
+
+/// Whether at least one pixel has a sample. A stop before that leaves nothing worth a file, least of all one that
+/// replaces an earlier picture.
+bool has_picture(const RenderResult& result) {
+    const auto empty = result.stats.values.find("empty pixels");
+    return empty == result.stats.values.end() ||
+           empty->second < static_cast<double>(result.picture.width) * static_cast<double>(result.picture.height);
+}
+
+RenderResult render_scene(LoadedScene& loaded, const RenderOptions& options, StopToken& stop) {
+    RenderResult result;
+    with_threads(options.threads, [&] {
+        Scene scene(std::move(loaded.description));
+        const auto progress = make_progress(options.quiet);
+        result = render(scene, loaded.settings, RunContext{&stop, progress.get()});
+    });
+    return result;
+}
+
+int run(RenderOptions options) {
+    StopToken stop;
+    if (options.timeout)
+        stop.set_deadline(StopToken::Clock::now() + std::chrono::duration_cast<StopToken::Clock::duration>(
+                                                        std::chrono::duration<double>(*options.timeout)));
+    if (options.outputs.exr.empty()) options.outputs.exr = default_exr(options.scene);
+    if (options.no_png)
+        options.outputs.png.clear();
+    else if (options.outputs.png.empty())
+        options.outputs.png = default_png(options.outputs.exr);
+    options.outputs.check();
+
+    const InterruptHandler interrupts(stop);
+    LoadedScene loaded = load_scene(options.scene, options.overrides);
+    if (!options.resolution.empty()) set_resolution(loaded.description.window, options.resolution);
+    RenderResult result = render_scene(loaded, options, stop);
+    if (!options.quiet) print_warnings(result.stats);
+    if (!has_picture(result)) {
+        if (!stop.requested()) throw InputError("the time was up before the first pixel: nothing was written");
+        fmt::print(stderr, "keyhole: stopped before the first pixel: nothing was written\n");
+        return kInterrupted;
+    }
+    result.picture.metadata = picture_metadata(options.command_line, options.scene, loaded.settings, result.stats);
+    options.outputs.write(result.picture, stats_json(result.stats).dump(2) + "\n");
+    if (options.verbose) print_report(result.stats);
+    if (!options.quiet)
+        fmt::print(stderr, "{}: {} x {} pixels{}\n", options.outputs.exr, result.picture.width, result.picture.height,
+                   result.stats.complete ? "" : ", stopped early");
+    return stop.requested() ? kInterrupted : kSuccess;
+}
+
+/// All settings with their defaults, for the end of the help text.
+std::string settings_help() {
+    std::string text = "Settings (-D KEY=VALUE, or under `render:` in the scene file) and their defaults:\n";
+    const Settings defaults;
+    visit_settings(defaults, [&](const char* key, const auto& value, const auto&... rest) {
+        text += fmt::format("  {:<42}{}\n", fmt::format("{}={}", key, value),
+                            std::get<sizeof...(rest) - 1>(std::tie(rest...)));
+    });
+    return text;
+}
+
+} // namespace
+
+void add_render_command(CLI::App& app, Action& action, const std::string& command_line) {
+    CLI::App* command = app.add_subcommand("render", "Render a scene");
+    auto o = std::make_shared<RenderOptions>();
+    o->command_line = command_line;
+    command->add_option("SCENE", o->scene, "scene file (YAML)")->required();
+    command->add_option("-o,--output", o->outputs.exr,
+                        "picture to write (.exr); default: the scene's name, in this folder");
+    auto* png = command->add_option("--png", o->outputs.png, "tone-mapped picture; default: beside the EXR");
+    command->add_flag("--no-png", o->no_png, "write no tone-mapped picture")->excludes(png);
+    command->add_option("--stats", o->outputs.stats, "write statistics to this file (JSON)");
+    command->add_option("--resolution", o->resolution, "WIDTHxHEIGHT in pixels");
+    for (const char* key : {"method", "spp", "mutations", "photons", "seed"})
+        command->add_option_function<std::string>(
+            std::string("--") + key,
+            [o, key](const std::string& value) { o->overrides.push_back(std::string(key) + "=" + value); },
+            std::string("the setting ") + key);
+    command
+        ->add_option_function<std::vector<std::string>>(
+            "-D",
+            [o](const std::vector<std::string>& pairs) {
+                o->overrides.insert(o->overrides.end(), pairs.begin(), pairs.end());
+            },
+            "any setting, KEY=VALUE; may be repeated, and overrules the options above")
+        ->allow_extra_args(false);
+    command->add_option("-t,--threads", o->threads, "threads; 0: one for each core")->check(CLI::Range(0, 4096));
+    command->add_option("--timeout", o->timeout, "stop after SECONDS and write what there is")
+        ->check(CLI::Range(0.0, 1e9));
+    auto* quiet = command->add_flag("-q,--quiet", o->quiet, "say nothing but errors");
+    command->add_flag("-v,--verbose", o->verbose, "print statistics")->excludes(quiet);
+    command->footer(settings_help() + "Whole numbers may be written 100k, 2.5M or 1e6.");
+    command->callback([&action, o] { action = [o] { return run(*o); }; });
+}
+
+} // namespace keyhole

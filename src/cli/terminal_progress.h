@@ -1,0 +1,54 @@
+// Progress on a terminal, or as lines of a log.
+#pragma once
+
+#include "core/progress.h"
+
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <functional>
+#include <mutex>
+#include <string>
+
+namespace keyhole {
+
+/// On a terminal one line, redrawn at most ten times a second: stage, bar, percent, rate, time left. Elsewhere plain
+/// lines, one after a second and one for every 10 % or 10 s, at most one a second. Each stage ends in a line that
+/// stays. Thread safety: advance() from any thread at any time; begin() and end() from one.
+class TerminalProgress final : public Progress {
+  public:
+    using Clock = std::chrono::steady_clock;
+
+    /// @param out where to write; not closed.
+    /// @param terminal redraw one line instead of writing many.
+    /// @param columns most columns of that line.
+    /// @param now the clock, for tests.
+    TerminalProgress(std::FILE* out, bool terminal, int columns = 80,
+                     std::function<Clock::time_point()> now = &Clock::now);
+
+    void begin(std::string_view stage, std::uint64_t total, std::string_view unit) override;
+    void advance(std::uint64_t units) override;
+    void end() override;
+
+  private:
+    /// Whether it is time for another line.
+    bool due(Clock::time_point now, std::uint64_t done) const;
+    void draw(Clock::time_point now, std::uint64_t done);
+    std::string line(double seconds, std::uint64_t done) const;
+
+    std::FILE* out_;
+    bool terminal_;
+    std::size_t columns_;
+    std::function<Clock::time_point()> now_;
+
+    std::string stage_, unit_;
+    std::uint64_t total_ = 0;
+    Clock::time_point start_;
+    std::atomic<std::uint64_t> done_{0};
+
+    std::mutex mutex_; ///< guards what follows and the output
+    Clock::time_point drawn_;
+    std::uint64_t drawn_done_ = 0;
+};
+
+} // namespace keyhole

@@ -1,0 +1,162 @@
+// The program from outside: exit codes, messages, files.
+#include "film/exr.h"
+#include "support/scratch_directory.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <csignal>
+#include <cstdio>
+#include <fcntl.h>
+#include <filesystem>
+#include <fstream>
+#include <spawn.h>
+#include <sstream>
+#include <sys/wait.h>
+#include <unistd.h>
+
+using namespace keyhole;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+namespace {
+
+constexpr const char* kScene =
+    "film: {resolution: [24, 16]}\n"
+    "camera: {from: [0, 0, 3], to: [0, 0, 0]}\n"
+    "materials: {white: {type: diffuse}}\n"
+    "shapes:\n"
+    "  - {type: sphere, material: white}\n"
+    "  - {type: rectangle, corner: [-1, 3, -1], u: [2, 0, 0], v: [0, 0, 2], emission: {power: 60}}\n"
+    "render: {method: path, spp: 2}\n";
+
+class Program : public testing::Test {
+  protected:
+    Program() { scratch.write("scene.yaml", kScene); }
+
+    /// Starts the program in the scratch directory.
+    pid_t start(const std::string& arguments) {
+        const std::string line =
+            "cd '" + scratch.path("") + "' && exec " KEYHOLE_EXECUTABLE " " + arguments + " >out 2>err";
+        std::array<const char*, 4> argv{"sh", "-c", line.c_str(), nullptr};
+        pid_t pid = 0;
+        EXPECT_EQ(posix_spawn(&pid, "/bin/sh", nullptr, nullptr, const_cast<char**>(argv.data()), environ), 0);
+        return pid;
+    }
+    int wait(pid_t pid) {
+        int status = 0;
+        waitpid(pid, &status, 0);
+        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    }
+    int run(const std::string& arguments) { return wait(start(arguments)); }
+    std::string read(const std::string& name) const {
+        std::ostringstream text;
+        text << std::ifstream(scratch.path(name)).rdbuf();
+        return text.str();
+    }
+    bool exists(const std::string& name) const { return std::filesystem::exists(scratch.path(name)); }
+
+    ScratchDirectory scratch;
+};
+
+} // namespace
+
+TEST_F(Program, RenderWritesPicturesWithTheirHistory) {
+    ASSERT_EQ(run("render scene.yaml -D seed=5 --resolution 20x10 --stats s.json"), 0) << read("err");
+    const Picture p = read_exr(scratch.path("scene.exr"));
+    EXPECT_EQ(p.width, 20);
+    EXPECT_EQ(p.height, 10);
+    EXPECT_EQ(p.layers.size(), 8u);
+    EXPECT_EQ(p.metadata.at("command"), "keyhole render scene.yaml -D seed=5 --resolution 20x10 --stats s.json");
+    EXPECT_EQ(p.metadata.at("seed"), "5");
+    EXPECT_EQ(p.metadata.at("scene"), "scene.yaml");
+    EXPECT_THAT(p.metadata.at("settings"), HasSubstr("method=path spp=2 seed=5"));
+    for (const char* key : {"program", "rays", "seconds", "peak memory", "stage path tracing"})
+        EXPECT_TRUE(p.metadata.contains(key)) << key;
+    EXPECT_TRUE(exists("scene.png"));
+    EXPECT_EQ(nlohmann::json::parse(read("s.json"))["complete"], true);
+}
+
+TEST_F(Program, OptionsAndSettingsMeanTheSameAndTheLastSettingWins) {
+    ASSERT_EQ(run("render scene.yaml -o a.exr --spp 0.004k --seed 7 --no-png -q"), 0);
+    ASSERT_EQ(run("render scene.yaml -o b.exr -D spp=9 -D spp=4 -D seed=7 --no-png -q -t 3"), 0);
+    EXPECT_EQ(read("out") + read("err"), "");
+    EXPECT_FALSE(exists("a.png"));
+    const Picture a = read_exr(scratch.path("a.exr")), b = read_exr(scratch.path("b.exr"));
+    EXPECT_EQ(a.metadata.at("settings"), b.metadata.at("settings"));
+    for (const auto& [name, image] : a.layers) EXPECT_EQ(image.data, b.layers.at(name).data) << name;
+}
+
+TEST_F(Program, BadInputExitsWithTwoAndOneLine) {
+    scratch.write("bad.exr", "no picture");
+    for (const char* arguments : {"",
+                                  "render",
+                                  "frobnicate",
+                                  "render none.yaml",
+                                  "render scene.yaml --spp 0",
+                                  "render scene.yaml --spp many",
+                                  "render scene.yaml -D nothing=1",
+                                  "render scene.yaml -D spp",
+                                  "render scene.yaml --resolution 20",
+                                  "render scene.yaml --resolution 0x5",
+                                  "render scene.yaml --resolution 20x10x5",
+                                  "render scene.yaml -o . ",
+                                  "render scene.yaml -o missing/a.exr",
+                                  "render scene.yaml -o a.png",
+                                  "render scene.yaml -o a.exr --png a.exr",
+                                  "render scene.yaml -o a.exr --png missing/a.png",
+                                  "render scene.yaml --png a.png --no-png",
+                                  "render scene.yaml --stats missing/s.json",
+                                  "render scene.yaml -q -v",
+                                  "render scene.yaml -t -1",
+                                  "render scene.yaml --timeout -1",
+                                  "render scene.yaml --timeout 0",
+                                  "diff bad.exr bad.exr",
+                                  "diff none.exr none.exr",
+                                  "diff bad.exr"}) {
+        EXPECT_EQ(run(arguments), 2) << arguments;
+        const std::string message = read("err");
+        EXPECT_THAT(message.substr(message.rfind('\n', message.size() - 2) + 1), StartsWith("keyhole: ")) << arguments;
+        EXPECT_FALSE(exists("a.exr") || exists("scene.exr")) << arguments;
+    }
+}
+
+TEST_F(Program, ATimeoutLeavesWhatThereIs) {
+    ASSERT_EQ(run("render scene.yaml -o a.exr --spp 10M --timeout 0.5"), 0) << read("err");
+    EXPECT_EQ(read_exr(scratch.path("a.exr")).metadata.at("complete"), "no");
+}
+
+TEST_F(Program, ASignalLeavesWhatThereIsAndExitsWith130) {
+    for (const int signal : {SIGINT, SIGTERM}) {
+        const pid_t pid = start("render scene.yaml -o a.exr --spp 10M");
+        // The first line of progress says that samples are taken.
+        while (read("err").find("path tracing") == std::string::npos && waitpid(pid, nullptr, WNOHANG) == 0)
+            usleep(20'000);
+        kill(pid, signal);
+        EXPECT_EQ(wait(pid), 130) << read("err");
+        EXPECT_EQ(read_exr(scratch.path("a.exr")).metadata.at("complete"), "no");
+        std::filesystem::remove(scratch.path("a.exr"));
+        std::filesystem::remove(scratch.path("err"));
+    }
+}
+
+TEST_F(Program, DiffPrintsMeasuresAsJson) {
+    ASSERT_EQ(run("render scene.yaml -o a.exr -q --no-png"), 0);
+    ASSERT_EQ(run("render scene.yaml -o b.exr -q --no-png --seed 2"), 0);
+    ASSERT_EQ(run("diff a.exr a.exr"), 0);
+    EXPECT_EQ(nlohmann::json::parse(read("out"))["relmse"], 0);
+    ASSERT_EQ(run("diff a.exr b.exr a.exr"), 0);
+    const auto json = nlohmann::json::parse(read("out"));
+    EXPECT_GT(json["relmse"], 0);
+    EXPECT_NEAR(json["ratio"].get<double>(), 1, 0.2);
+    EXPECT_TRUE(json.contains("cross_trim"));
+}
+
+TEST_F(Program, VersionAndHelpAreNoErrors) {
+    EXPECT_EQ(run("--version"), 0);
+    EXPECT_THAT(read("out"), StartsWith("keyhole "));
+    EXPECT_EQ(run("render --help"), 0);
+    EXPECT_THAT(read("out"), testing::AllOf(HasSubstr("--mutations"), HasSubstr("samples per pixel")));
+}
