@@ -1,18 +1,16 @@
 #include "sampling/brightness.h"
 
 #include "core/parallel.h"
-#include "sampling/path_tracer.h"
+#include "scene/ray_counter.h"
 
 #include <algorithm>
+#include <array>
+#include <limits>
 
 namespace keyhole {
 namespace {
 
 constexpr std::int64_t kBlock = 64 * StageOne::kGroup;
-
-bool in_set(LightClass light, PathSet set) {
-    return set == PathSet::all || light == LightClass::caustic || light == LightClass::indirect;
-}
 
 /// Image point of sample i: a rank-1 lattice (Roberts' R2), shifted by the seed, covers the window evenly at any count.
 Vec2 image_point(std::uint64_t seed, std::int64_t i) {
@@ -23,48 +21,38 @@ Vec2 image_point(std::uint64_t seed, std::int64_t i) {
             std::min(static_cast<float>(y - std::floor(y)), 0x1.fffffep-1f)};
 }
 
-void trace_sample(const Scene& scene, const StageOneSettings& settings, std::int64_t i, auto& sink) {
+void trace_sample(const Scene& scene, const StageOneSettings& settings, Technique technique, std::int64_t i, auto& sink) {
     Rng rng(settings.seed, StreamPurpose::brightness, static_cast<std::uint64_t>(i));
-    sink.image = image_point(settings.seed, i);
-    trace_path(scene, sink.image, settings.max_scatterings, rng, sink);
+    trace_independent(technique, scene, image_point(settings.seed, i), settings.max_scatterings, settings.set, rng, sink);
 }
 
-/// Adds up one sample and keeps its importons.
+/// Adds up one sample and keeps its importons, those at vertices where stage three may ask the maps.
 struct EstimateSink {
-    PathSet set;
     bool keep_importons;
-    Vec2 image{};
     double sum = 0, caustic = 0;
     std::vector<Importon> first{}, second{};
 
-    bool arrival(const EyeWalk& walk, const Rgb& throughput, int finite) {
-        const Vertex& v = walk.back();
-        if (keep_importons && finite < 2 && v.bsdf.traits().finite) {
-            const Vec3 to_eye = direction(v.point, walk[walk.size() - 2].point);
+    void arrival(const Vertex& v, const Vec3& to_eye, const Rgb& throughput, int finite) {
+        if (keep_importons && finite < 2 && v.bsdf.traits().finite)
             (finite == 0 ? first : second).push_back({v.point, to_eye, throughput});
-        }
-        return true;
     }
-    void contribution(const EyeWalk&, const Vertex&, const Rgb& value, LightClass light) {
-        if (in_set(light, set)) sum += luminance(value);
+    void contribution(const Rgb& value, LightClass light, auto&& /*make_path*/) {
+        sum += luminance(value);
         if (light == LightClass::caustic) caustic += luminance(value);
     }
 };
 
-/// Traces samples again until the running sum of their contributions passes a mark, and keeps the path that did it.
+/// Adds up contributions until the running sum passes a mark, and keeps the path that did it.
 struct SeedSink {
-    const Scene& scene;
-    PathSet set;
     double left; // of the mark
-    Vec2 image{};
     std::optional<Path> found{};
 
-    bool arrival(const EyeWalk&, const Rgb&, int) const { return left >= 0 || !found; }
-    void contribution(const EyeWalk& walk, const Vertex& x0, const Rgb& value, LightClass light) {
-        const double y = luminance(value);
-        if (!in_set(light, set) || !(y > 0) || (left < 0 && found)) return;
-        left -= y;
-        Path path = complete_path(scene, walk, x0, image);
+    void arrival(const Vertex&, const Vec3&, const Rgb&, int) {}
+    void contribution(const Rgb& value, LightClass, auto&& make_path) {
+        if (left < 0 && found) return;
+        left -= luminance(value);
+        if (left >= 0 && found) return; // any path will do should rounding leave the mark unreached
+        Path path = make_path();
         path.target = luminance(path.contribution);
         if (path.target > 0) found = path;
     }
@@ -76,13 +64,14 @@ struct Block {
     std::vector<double> groups;
 };
 
-Block run_block(const Scene& scene, const StageOneSettings& settings, Range samples, std::int64_t importon_stride) {
+Block run_block(const Scene& scene, const StageOneSettings& settings, Technique technique, Range samples,
+                std::int64_t importon_stride) {
     Block block;
-    EstimateSink sink{settings.set, false};
+    EstimateSink sink{false};
     for (std::int64_t i = samples.begin; i < samples.end; ++i) {
         sink.sum = sink.caustic = 0;
         sink.keep_importons = importon_stride > 0 && i % importon_stride == 0;
-        trace_sample(scene, settings, i, sink);
+        trace_sample(scene, settings, technique, i, sink);
         block.brightness.add(sink.sum);
         block.caustic.add(sink.caustic);
         if (i % StageOne::kGroup == 0) block.groups.push_back(0);
@@ -93,11 +82,34 @@ Block run_block(const Scene& scene, const StageOneSettings& settings, Range samp
     return block;
 }
 
+/// The technique that needs fewer rays for the same error, tried on the first samples. Rays and not seconds, so that the
+/// choice is the same on every machine; a connection costs about as much again as its ray.
+Technique choose_technique(const Scene& scene, const StageOneSettings& settings) {
+    constexpr std::int64_t kTrial = 16 * kBlock;
+    std::array<double, 2> cost{};
+    for (const Technique technique : {Technique::path, Technique::bidirectional}) {
+        std::array<RunningStats, 16> parts;
+        const std::uint64_t rays = rays_traced();
+        parallel_for(16, [&](std::int64_t b) {
+            parts[static_cast<std::size_t>(b)] =
+                run_block(scene, settings, technique, {b * kBlock, (b + 1) * kBlock}, 0).brightness;
+        });
+        RunningStats all;
+        for (const RunningStats& part : parts) all.merge(part);
+        const double connections = technique == Technique::bidirectional ? 2 : 1;
+        // Nothing found is no reason to trust a technique.
+        const double spread = all.mean() > 0 ? all.variance() : std::numeric_limits<double>::infinity();
+        cost[static_cast<std::size_t>(technique)] = spread * static_cast<double>(rays_traced() - rays) * connections;
+    }
+    return cost[0] <= cost[1] ? Technique::path : Technique::bidirectional;
+}
+
 void append(std::vector<Importon>& to, const std::vector<Importon>& from) { to.insert(to.end(), from.begin(), from.end()); }
 
 } // namespace
 
 StageOne run_stage_one(const Scene& scene, const StageOneSettings& settings, const RunContext& context) {
+    const Technique technique = choose_technique(scene, settings);
     const std::int64_t blocks = (settings.samples + kBlock - 1) / kBlock;
     const std::int64_t stride = settings.importons > 0 ? std::max<std::int64_t>(1, settings.samples / settings.importons) : 0;
     std::vector<std::optional<Block>> done(static_cast<std::size_t>(blocks));
@@ -105,12 +117,13 @@ StageOne run_stage_one(const Scene& scene, const StageOneSettings& settings, con
     parallel_for(blocks, [&](std::int64_t b) {
         if (context.stopped()) return;
         const Range range{b * kBlock, std::min(settings.samples, (b + 1) * kBlock)};
-        done[static_cast<std::size_t>(b)] = run_block(scene, settings, range, stride);
+        done[static_cast<std::size_t>(b)] = run_block(scene, settings, technique, range, stride);
         context.advance(static_cast<std::uint64_t>(range.size()));
     });
     context.end();
 
     StageOne stage;
+    stage.technique = technique;
     for (auto& block : done) {
         if (!block) break; // after a stop, the leading blocks are a valid smaller run
         stage.brightness.merge(block->brightness);
@@ -151,10 +164,10 @@ std::vector<Path> choose_seeds(const Scene& scene, const StageOneSettings& setti
     std::vector<std::optional<Path>> found(marks.size());
     parallel_for(static_cast<std::int64_t>(marks.size()), [&](std::int64_t k) {
         const Mark& mark = marks[static_cast<std::size_t>(k)];
-        SeedSink sink{scene, settings.set, mark.left};
+        SeedSink sink{mark.left};
         const std::int64_t end = std::min(stage.samples, (mark.group + 1) * StageOne::kGroup);
         for (std::int64_t i = mark.group * StageOne::kGroup; i < end && sink.left >= 0; ++i)
-            trace_sample(scene, settings, i, sink);
+            trace_sample(scene, settings, stage.technique, i, sink);
         found[static_cast<std::size_t>(k)] = std::move(sink.found);
     });
     std::vector<Path> seeds;

@@ -3,7 +3,7 @@
 
 #include "core/progress.h"
 #include "core/statistics.h"
-#include "sampling/path.h"
+#include "sampling/independent_paths.h"
 #include "scene/scene.h"
 
 #include <cstdint>
@@ -29,6 +29,7 @@ struct StageOneSettings {
 
 /// Result of stage one. Reproducible bit for bit on any number of threads.
 struct StageOne {
+    Technique technique = Technique::path; ///< that made it, chosen by trial
     RunningStats brightness;           ///< B_eye [W/(m^2 sr)] over the window, one entry a sample
     RunningStats caustic;              ///< the part of it that the caustic map holds
     std::int64_t samples = 0;          ///< samples taken; fewer than asked for after a stop
@@ -39,7 +40,7 @@ struct StageOne {
     static constexpr std::int64_t kGroup = 32;
 };
 
-/// Path tracing over the window (MATHEMATICS: stage one).
+/// Independent paths over the window, by whichever technique needs less work for the same error here.
 StageOne run_stage_one(const Scene& scene, const StageOneSettings& settings, const RunContext& context);
 
 /// `count` of the traced paths, drawn with probability proportional to the luminance of their contributions by

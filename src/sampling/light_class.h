@@ -1,0 +1,26 @@
+// What light did before it reached the eye.
+#pragma once
+
+#include "sampling/path.h"
+
+namespace keyhole {
+
+/// Kinds of paths by the vertices that are not specular.
+enum class LightClass {
+    emission, ///< L S* E
+    direct,   ///< L D S* E
+    caustic,  ///< L S+ D S* E
+    indirect, ///< two or more D
+};
+
+inline LightClass light_class(const Path& path) {
+    if (nth_finite_from_eye(path, 2) > 0) return LightClass::indirect;
+    const int d1 = nth_finite_from_eye(path, 1);
+    return d1 == 0 ? LightClass::emission : d1 == 1 ? LightClass::direct : LightClass::caustic;
+}
+
+inline bool in_set(LightClass light, PathSet set) {
+    return set == PathSet::all || light == LightClass::caustic || light == LightClass::indirect;
+}
+
+} // namespace keyhole
