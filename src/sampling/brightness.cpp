@@ -85,7 +85,6 @@ Block run_block(const Scene& scene, const StageOneSettings& settings, Technique 
 /// The technique that needs fewer rays for the same error, tried on the first samples. Rays and not seconds, so that the
 /// choice is the same on every machine; a connection costs about as much again as its ray.
 Technique choose_technique(const Scene& scene, const StageOneSettings& settings) {
-    constexpr std::int64_t kTrial = 16 * kBlock;
     std::array<double, 2> cost{};
     for (const Technique technique : {Technique::path, Technique::bidirectional}) {
         std::array<RunningStats, 16> parts;
