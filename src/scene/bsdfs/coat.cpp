@@ -10,24 +10,33 @@
 namespace keyhole {
 namespace {
 
-/// Directional albedo of the rough reflection: weights of visible normal sampling, averaged over a grid. The numbers of
-/// nodes leave errors of some 1e-3.
-double rough_reflectance(double cos_i, double alpha, double eta) {
+/// Fractions of the light along one direction that go back and that go through, having met one facet. Facets hide each
+/// other, so that they add up to less than 1.
+struct Fractions {
+    double reflected = 0, transmitted = 0;
+};
+
+/// Weights of visible normal sampling, averaged over a grid whose numbers of nodes leave errors of some 1e-3. `eta` is
+/// the index on the far side over that on the near one.
+Fractions rough_fractions(double cos_i, double alpha, double eta) {
     constexpr int kRadii = 16, kAngles = 8;
     const Ggx ggx{alpha, alpha};
     const LocalVec w(std::sqrt(std::max(0.0, 1 - cos_i * cos_i)), 0, cos_i);
-    double sum = 0;
+    const double masking = 1 / (1 + ggx.lambda(w));
+    Fractions sum;
     for (int i = 0; i < kRadii; ++i)
         for (int j = 0; j < kAngles; ++j) {
             // Half of the angles are enough: the other half mirrors them.
             const double u1 = (j + 0.5) / (2 * kAngles) - 0.25;
             const LocalVec h = ggx.sample_visible(w, (i + 0.5) / kRadii, u1);
             const double c = w.dot(h);
-            const LocalVec to = h * (2 * c) - w;
-            if (to.z > 0 && c > 0)
-                sum += fresnel_dielectric(c, eta).reflectance * ggx.masking(w, to) * (1 + ggx.lambda(w));
+            if (!(c > 0)) continue;
+            const auto [f, cos_t] = fresnel_dielectric(c, eta);
+            const LocalVec back = h * (2 * c) - w, through = h * (c / eta - cos_t) - w / eta;
+            if (back.z > 0) sum.reflected += f * ggx.masking(w, back) / masking;
+            if (f < 1 && through.z < 0) sum.transmitted += (1 - f) * ggx.masking(w, through) / masking;
         }
-    return sum / (kRadii * kAngles);
+    return {sum.reflected / (kRadii * kAngles), sum.transmitted / (kRadii * kAngles)};
 }
 
 /// Midpoints of n equal parts of [0,1].
@@ -62,21 +71,22 @@ std::shared_ptr<const CoatInterface> CoatInterface::of(double eta) {
 CoatInterface::CoatInterface(double eta) : eta_(eta) {
     for (std::size_t a = 0; a < kAlphas; ++a) {
         const double alpha = static_cast<double>(a) / (kAlphas - 1);
+        const auto fractions = [alpha](double cosine, double index) {
+            if (alpha > 0) return rough_fractions(cosine, alpha, index);
+            const double r = fresnel_dielectric(cosine, index).reflectance;
+            return Fractions{r, 1 - r};
+        };
         for (std::size_t c = 0; c < kCosines; ++c) {
-            const double root = std::max(1e-3, static_cast<double>(c) / (kCosines - 1)), cosine = root * root;
-            reflectance_[a][c] = static_cast<float>(a == 0 ? fresnel_dielectric(cosine, eta).reflectance
-                                                           : rough_reflectance(cosine, alpha, eta));
+            const double root = std::max(1e-2, static_cast<double>(c) / (kCosines - 1));
+            const auto [reflected, transmitted] = fractions(root * root, eta);
+            reflectance_[a][c] = static_cast<float>(reflected);
+            transmittance_[a][c] = static_cast<float>(transmitted);
         }
-    }
-    // Of diffuse light from below 1 / eta^2 of what diffuse light from above sends in gets out (reciprocity).
-    for (std::size_t a = 0; a < kAlphas; ++a) {
-        constexpr std::size_t kSteps = 256;
-        double through = 0;
-        for (std::size_t i = 0; i < kSteps; ++i) {
-            const double cosine = node(i, kSteps);
-            through += 2 * cosine * (1 - reflectance(cosine, static_cast<double>(a) / (kAlphas - 1))) / kSteps;
-        }
-        internal_[a] = static_cast<float>(1 - through / (eta * eta));
+        constexpr std::size_t kSteps = 128;
+        double back = 0;
+        for (std::size_t i = 0; i < kSteps; ++i)
+            back += 2 * node(i, kSteps) * fractions(node(i, kSteps), 1 / eta).reflected / kSteps;
+        internal_[a] = static_cast<float>(back);
     }
     double sum = 0;
     for (std::size_t i = 0; i < kNodes; ++i) {
@@ -87,15 +97,18 @@ CoatInterface::CoatInterface(double eta) : eta_(eta) {
     for (float& share : internal_share_) share = sum > 0 ? share / static_cast<float>(sum) : 0.0f;
 }
 
-double CoatInterface::table(double cos_i, double alpha) const {
+double CoatInterface::look_up(const Table& table, double cos_i, double alpha) {
     const auto [a, ta] = locate(alpha, kAlphas);
     const auto [c, tc] = locate(std::sqrt(cos_i), kCosines);
-    return lerp(lerp(reflectance_[a][c], reflectance_[a][c + 1], tc),
-                lerp(reflectance_[a + 1][c], reflectance_[a + 1][c + 1], tc), ta);
+    return lerp(lerp(table[a][c], table[a][c + 1], tc), lerp(table[a + 1][c], table[a + 1][c + 1], tc), ta);
 }
 
 double CoatInterface::reflectance(double cos_i, double alpha) const {
-    return alpha == 0 ? fresnel_dielectric(cos_i, eta_).reflectance : table(cos_i, alpha);
+    return alpha == 0 ? fresnel_dielectric(cos_i, eta_).reflectance : look_up(reflectance_, cos_i, alpha);
+}
+
+double CoatInterface::transmittance(double cos_i, double alpha) const {
+    return alpha == 0 ? 1 - fresnel_dielectric(cos_i, eta_).reflectance : look_up(transmittance_, cos_i, alpha);
 }
 
 double CoatInterface::refracted(double cos_i) const {

@@ -18,9 +18,10 @@ class CoatInterface {
     explicit CoatInterface(double eta);
 
     double eta() const { return eta_; }
-    /// Fraction of light along a direction with this |cos| that reflects once; 1 minus it goes in, by definition: so no
-    /// energy is lost to facets that hide each other. Exact Fresnel for alpha 0.
+    /// Fraction of light along a direction with this |cos| that reflects, met by one facet. Fresnel's for alpha 0.
     double reflectance(double cos_i, double alpha) const;
+    /// The same for light that goes through. What is missing from 1 would need several facets, and is lost.
+    double transmittance(double cos_i, double alpha) const;
     /// |cos| inside of light that comes along |cos| outside; 0 under total reflection.
     double refracted(double cos_i) const;
     /// exp(-thickness / refracted |cos|): what an absorbing coat leaves on one way.
@@ -30,11 +31,12 @@ class CoatInterface {
 
   private:
     static constexpr std::size_t kAlphas = 17, kCosines = 33, kNodes = 32;
-    double table(double cos_i, double alpha) const;
+    using Table = std::array<std::array<float, kCosines>, kAlphas>; // by alpha, then by the root of the cosine
+    static double look_up(const Table& table, double cos_i, double alpha);
 
     double eta_;
-    std::array<std::array<float, kCosines>, kAlphas> reflectance_; // by alpha, then by the root of the cosine
-    std::array<float, kAlphas> internal_;                          // internal reflectance for diffuse light
+    Table reflectance_, transmittance_;
+    std::array<float, kAlphas> internal_;      // internal reflectance for diffuse light
     std::array<float, kNodes> internal_share_; // of the smooth interface's internal reflection, by cosine
 };
 

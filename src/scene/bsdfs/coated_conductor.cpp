@@ -30,7 +30,7 @@ LocalVec CoatedConductorBsdf::refract(const LocalVec& w) const {
 }
 
 double CoatedConductorBsdf::coat_probability(double cosine) const {
-    const double coat = interface_->reflectance(cosine, alpha()), in = (1 - coat);
+    const double coat = interface_->reflectance(cosine, alpha()), in = interface_->transmittance(cosine, alpha());
     const Rgb metal = fresnel_conductor(interface_->refracted(cosine), metal_);
     const double way = interface_->attenuation(cosine, thickness_);
     const double base = in * in * way * way * (metal.x + metal.y + metal.z) / 3;
@@ -41,11 +41,12 @@ Rgb CoatedConductorBsdf::eval_base(const LocalVec& i, const LocalVec& o) const {
     const LocalVec in = refract(i), out = refract(o);
     if (!(in.z > 0) || !(out.z > 0)) return Rgb(0.0);
     const LocalVec h = half_vector(in, out);
-    const double coat_i = interface_->reflectance(i.z, alpha()), coat_o = interface_->reflectance(o.z, alpha());
+    const double below_i = interface_->reflectance(i.z, alpha()), below_o = interface_->reflectance(o.z, alpha());
+    const double through = interface_->transmittance(i.z, alpha()) * interface_->transmittance(o.z, alpha());
     const double ways = interface_->attenuation(i.z, thickness_) * interface_->attenuation(o.z, thickness_);
-    const double below = std::min(coat_i, coat_o) * ways;
-    const double lobe = (1 - coat_i) * (1 - coat_o) * ways * Ggx{base_.x, base_.y}.reflection(in, out, h) /
-                        (interface_->eta() * interface_->eta());
+    const double below = std::min(below_i, below_o) * ways;
+    const double lobe =
+        through * ways * Ggx{base_.x, base_.y}.reflection(in, out, h) / (interface_->eta() * interface_->eta());
     Rgb f = fresnel_conductor(out.dot(h), metal_);
     for (int k = 0; k < 3; ++k) f[k] *= lobe / (1 - f[k] * below);
     return f;

@@ -18,13 +18,13 @@ CoatedDiffuseBsdf::CoatedDiffuseBsdf(const CoatInterface& interface, const Rgb& 
 }
 
 double CoatedDiffuseBsdf::through(double cosine) const {
-    return (1 - interface_->reflectance(cosine, alpha())) * interface_->attenuation(cosine, thickness_);
+    return interface_->transmittance(cosine, alpha()) * interface_->attenuation(cosine, thickness_);
 }
 
 /// In proportion to the light that each lobe reflects, nearly.
 double CoatedDiffuseBsdf::coat_probability(double cosine) const {
     const double coat = interface_->reflectance(cosine, alpha());
-    const double base = (1 - coat) * interface_->attenuation(cosine, thickness_) * base_albedo_;
+    const double base = through(cosine) * base_albedo_;
     return coat + base > 0 ? coat / (coat + base) : 1.0;
 }
 

@@ -12,7 +12,7 @@ namespace keyhole {
 ///     f = f_coat + T(i) T(o) rho / (pi eta^2 (1 - rho R))
 ///
 /// T is what the coat lets through one way and R what it sends back of diffuse light from below (Saunderson 1942;
-/// Weidlich and Wilkie 2007). Reciprocal, and with a white base and no absorption nothing is lost. Where the coat is
+/// Weidlich and Wilkie 2007). Reciprocal; exact but for the way through an absorbing rough coat. Where the coat is
 /// smooth its reflection is a delta lobe. The same from both sides.
 class CoatedDiffuseBsdf {
   public:

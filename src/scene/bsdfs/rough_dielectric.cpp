@@ -18,8 +18,9 @@ std::optional<Facet> facet_between(const Vec3& from, const Vec3& to, double eta)
     Facet f;
     f.relative = from.z > 0 ? eta : 1 / eta;
     f.reflects = from.z * to.z > 0;
-    f.from = upper(from);
-    f.to = LocalVec(to.x, to.y, from.z > 0 ? to.z : -to.z);
+    // Floats are unit to seven digits; near total reflection that would not do for Snell's law at the facet.
+    f.from = upper(from).normalized();
+    f.to = LocalVec(to.x, to.y, from.z > 0 ? to.z : -to.z).normalized();
     f.h = (f.from + f.to * (f.reflects ? 1.0 : f.relative)).normalized();
     if (f.h.z < 0) f.h = -f.h;
     if (!(f.from.dot(f.h) > 0) || !(f.to.dot(f.h) * f.to.z > 0)) return std::nullopt;
@@ -56,7 +57,7 @@ double RoughDielectricBsdf::pdf(const Vec3& from, const Vec3& to) const {
 
 std::optional<BsdfSample> RoughDielectricBsdf::sample(const Vec3& from, double u0, double u1, double u2) const {
     if (from.z == 0) return std::nullopt;
-    const LocalVec w = upper(from), h = Ggx{alpha_x, alpha_y}.sample_visible(w, u0, u1);
+    const LocalVec w = upper(from).normalized(), h = Ggx{alpha_x, alpha_y}.sample_visible(w, u0, u1);
     const double relative = from.z > 0 ? eta : 1 / static_cast<double>(eta), c = w.dot(h);
     const auto [r, cos_t] = fresnel_dielectric(c, relative);
     const bool reflects = u2 < r;
