@@ -24,6 +24,7 @@ PixelSample FinalGather::sample(const Vec2& image, SampleSource& source) const {
     for (int scatterings = 0; scatterings <= options_.max_scatterings; ++scatterings) {
         const auto hit = next_vertex(scene_, v, w);
         if (!hit) break;
+        throughput *= scene_.transmittance(v.point, hit->point);
         if (scatterings == 0 && hit->point.site != Site::infinite) {
             const Vec3 d = hit->point.p - v.point.p;
             out.depth = d.length();
@@ -74,8 +75,9 @@ Rgb FinalGather::gather_ray(const Vertex& from, const Vec3& back, int scattering
     for (int n = scatterings; n <= options_.max_scatterings; ++n) {
         const auto hit = next_vertex(scene_, v, w);
         if (!hit) break;
+        throughput *= scene_.transmittance(v.point, hit->point);
         // An emitter seen straight is direct light; seen through specular vertices the caustic map has it.
-        if (n == scatterings) direct = first->weight * emission_with_mis(scene_, v, *hit, w, first->pdf);
+        if (n == scatterings) direct = throughput * emission_with_mis(scene_, v, *hit, w, first->pdf);
         v = *hit;
         if (n == options_.max_scatterings) break;
         if (v.bsdf.traits().finite) sum += throughput * ask_global_map(v, -w, out);

@@ -11,7 +11,9 @@ using Imath::V3d;
 
 constexpr double kFlat = SurfaceRegion::kFlattening;
 
-bool holds_photons(const Shape& shape) { return shape.material == nullptr || shape.material->traits().finite; }
+bool holds_photons(const Shape& shape) {
+    return !is_interface(shape) && (shape.material == nullptr || shape.material->traits().finite);
+}
 
 /// Area inside the region of the sphere that it is centred on; 0 for a sphere that it isn't centred on.
 double cap_area(const Sphere& sphere, const SurfaceRegion& region, double r) {

@@ -22,6 +22,7 @@ void extend(const Scene& scene, TracedSubPath& walk, From from, Vec3 w, SurfaceP
         start.point = origin;
         const auto hit = next_vertex(scene, start, w);
         if (!hit) return;
+        throughput *= scene.transmittance(origin, hit->point);
         walk.push_back(*hit, survival, throughput);
         if (hit->point.site == Site::infinite) return;
         Vertex& v = walk.vertices.back();

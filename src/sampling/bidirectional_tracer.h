@@ -12,7 +12,8 @@ namespace keyhole {
 struct TracedSubPath {
     SubPath vertices;
     InlineVector<double, kMaxScatterings + 2> survival; ///< probability that roulette let the walk reach vertex i
-    InlineVector<Rgb, kMaxScatterings + 2> throughput;  ///< product of scatterings before vertex i, over survival
+    InlineVector<Rgb, kMaxScatterings + 2>
+        throughput; ///< what scattering and media left before vertex i, over survival
 
     void push_back(const Vertex& v, double survived, const Rgb& arriving) {
         vertices.push_back(v);
@@ -40,8 +41,8 @@ struct TechniqueWeight {
 };
 TechniqueWeight technique_weight(const Path& path, int s);
 
-/// Traces one pair of sub-paths and tells sink.contribution(path, value, light_class) about every path of `set` that joins them:
-/// `value` is an estimate of radiance at path.image (window density 1), MIS weight included.
+/// Traces one pair of sub-paths and tells sink.contribution(path, value, light_class) about every path of `set` that
+/// joins them: `value` is an estimate of radiance at path.image (window density 1), MIS weight included.
 template <class Sink>
 void connect_subpaths(const Scene& scene, const TracedSubPath& light, const TracedSubPath& eye, const Vec2& image,
                       int max_scatterings, PathSet set, Sink& sink) {

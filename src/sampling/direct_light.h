@@ -20,13 +20,17 @@ struct DirectLight {
     Rgb value; ///< radiance scattered towards `back` [W/(m^2 sr)] if x0 is visible, MIS weight included
 };
 
-/// Draws a point on an emitter and scatters its light at `v`. None where that carries nothing. Visibility is left to
-/// the caller.
+/// Draws a point on an emitter, chosen by what it may do at `v`, and scatters its light at `v`. None where that carries
+/// nothing. Visibility is left to the caller.
 std::optional<DirectLight> sample_direct_light(const Scene& scene, const Vertex& v, const Vec3& back,
                                                SampleSource& source);
 
-/// Radiance that `hit` emits back along `w`, weighted against sample_direct_light() at the finite vertex `v`, whose BSDF
-/// drew `w` with density `pdf` per solid angle.
+/// Density with which sample_direct_light() draws the emitter point `x0` for `v`, in the coordinates of x0. The chains'
+/// own choice goes by power alone: emitter_point_pdf().
+double direct_light_pdf(const Scene& scene, const Vertex& v, const SurfacePoint& x0);
+
+/// Radiance that `hit` emits back along `w`, weighted against sample_direct_light() at the finite vertex `v`, whose
+/// BSDF drew `w` with density `pdf` per solid angle.
 Rgb emission_with_mis(const Scene& scene, const Vertex& v, const Vertex& hit, const Vec3& w, double pdf);
 
 } // namespace keyhole

@@ -10,12 +10,12 @@ namespace keyhole {
 /// Traces one light path with at most `max_scatterings` vertices after the emitter.
 ///
 /// Tells `sink`:
-///   sink.arrival(vertex, to_light, power, specular_only): light of RGB `power` [W] arrived at `vertex`, which lies on a
+///   sink.arrival(vertex, to_light, power, specular_only): light of RGB `power` [W] arrived at `vertex`, which lies on
+///   a
 ///     surface, from direction `to_light` (unit); `specular_only`: it met nothing but specular vertices, at least one,
 ///     since it left the emitter. False ends the path.
 /// The expected sum of power over the arrivals in a region is the flux that arrives there.
-template <class Sink>
-void trace_light_path(const Scene& scene, int max_scatterings, SampleSource& source, Sink& sink) {
+template <class Sink> void trace_light_path(const Scene& scene, int max_scatterings, SampleSource& source, Sink& sink) {
     const auto start = sample_emitter(scene, source);
     if (!start || !(start->pdf > 0)) return;
     Vertex v = start->vertex;
@@ -29,7 +29,8 @@ void trace_light_path(const Scene& scene, int max_scatterings, SampleSource& sou
     bool diffused = false, bent = false;
     for (int scatterings = 1; scatterings <= max_scatterings && !is_black(power); ++scatterings) {
         const auto hit = next_vertex(scene, v, w);
-        if (!hit) return;
+        if (!hit || hit->point.site == Site::infinite) return;
+        power *= scene.transmittance(v.point, hit->point);
         v = *hit;
         if (!sink.arrival(v, -w, power, bent && !diffused)) return;
         const auto next = continue_walk(v, -w, From::light, source);

@@ -43,7 +43,7 @@ void measure(const Scene& scene, Path& path) {
 
     // The light's end.
     const Emitter& emitter = scene.emitter(x[0].point.emitter);
-    x[0].value = emitter.radiance(x[0].point, to_eye);
+    x[0].value = emitter.radiance(x[0].point, to_eye) * scene.transmittance(x[0].point, x[1].point);
     x[0].pdf_from_light = emitter_point_pdf(scene, x[0].point);
     x[1].pdf_from_light = solid_angle_to_area(emitter.ray_pdf(x[0].point, to_eye), x[0].point, x[1].point);
     Rgb f = x[0].value * geometry_term(x[0].point, x[1].point);
@@ -53,10 +53,10 @@ void measure(const Scene& scene, Path& path) {
         const Vec3 to_light = -to_eye;
         to_eye = direction(v.point, x[i + 1].point);
         const ScatterValue s = scatter(v.point, v.bsdf, v.event, to_light, to_eye);
-        v.value = s.value;
+        v.value = s.value * scene.transmittance(v.point, x[i + 1].point);
         x[i + 1].pdf_from_light = solid_angle_to_area(s.pdf_to_eye, v.point, x[i + 1].point);
         x[i - 1].pdf_from_eye = solid_angle_to_area(s.pdf_to_light, v.point, x[i - 1].point);
-        f *= s.value * geometry_term(v.point, x[i + 1].point);
+        f *= v.value * geometry_term(v.point, x[i + 1].point);
     }
 
     // The eye's end: the importance is the density of the eye edge, so that the mean over the window is measured.

@@ -17,7 +17,8 @@ struct Vertex {
     Event event = Event::finite; ///< how light goes on here; finite at both ends of a path
 
     // ---- measure() ----
-    Rgb value{0.0};            ///< emitted radiance at x0, scattering inside, camera importance at the eye
+    Rgb value{0.0};            ///< emitted radiance at x0, scattering inside, camera importance at the eye; times what
+                               ///< media leave of it on the way to the next vertex towards the eye
     double pdf_from_light = 0; ///< density of this vertex when traced from its neighbour on the light's side
     double pdf_from_eye = 0;   ///< density of this vertex when traced from its neighbour on the eye's side
 

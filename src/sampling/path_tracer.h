@@ -48,6 +48,7 @@ void trace_path(const Scene& scene, const Vec2& image, int max_scatterings, Samp
     for (int scatterings = 0;; ++scatterings) {
         const auto hit = next_vertex(scene, walk.back(), w);
         if (!hit) return;
+        throughput *= scene.transmittance(walk.back().point, hit->point);
         if (hit->point.is_emitter()) {
             const bool after_specular = scatterings == 0 || walk.back().specular();
             const Rgb emitted = after_specular ? scene.emitter(hit->point.emitter).radiance(hit->point, -w)

@@ -5,6 +5,7 @@
 #include "scene/surface_point.h"
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace keyhole {
@@ -19,14 +20,23 @@ struct EmitterPoint {
 struct EmitterRay {
     SurfacePoint origin; ///< where to trace from: the emitter's point, or for an infinite one a place on its beam
                          ///< before everything in the scene
-    Vec3 w;     ///< unit, away from the emitter
-    double pdf; ///< per solid angle; from an infinite point per area of the beam's cross-section
+    Vec3 w;              ///< unit, away from the emitter
+    double pdf;          ///< per solid angle; from an infinite point per area of the beam's cross-section
 };
 
 /// Holds all geometry of a scene; world space, metres.
 struct BoundingSphere {
     Vec3 center{0, 0, 0};
     float radius = 1;
+};
+
+/// Where an emitter is and where its light may go.
+struct EmitterBounds {
+    Vec3 lower{0, 0, 0}, upper{0, 0, 0}; ///< box, world space
+    Vec3 axis{0, 0, 1};                  ///< unit; its normals lie within `spread` of this
+    double spread = kPi;                 ///< [rad]
+    double reach = kPi / 2;              ///< how far from a normal light goes [rad]
+    double intensity = 0;                ///< luminous, along the normal [W/sr]
 };
 
 /// Immutable once its scene is built, and thread-safe. The scene writes its index into the points that it makes.
@@ -52,6 +62,8 @@ class Emitter {
     /// Radiance leaving `point` along `w` [W/(m^2 sr)]; radiant intensity [W/sr] for a point in space; for a delta
     /// emitter at infinity irradiance on a plane across the beam [W/m^2].
     virtual Rgb radiance(const SurfacePoint& point, const Vec3& w) const = 0;
+    /// None for an emitter at infinity.
+    virtual std::optional<EmitterBounds> bounds() const { return std::nullopt; }
     virtual const char* kind() const = 0;
 };
 

@@ -1,5 +1,7 @@
 #include "scene/geometry.h"
 
+#include <string_view>
+
 namespace keyhole {
 namespace {
 
@@ -79,6 +81,11 @@ double surface_area(const Shape& shape) {
     double area = 0;
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) area += triangle_area(mesh, i);
     return area;
+}
+
+bool is_interface(const Shape& shape) {
+    if (shape.emission) return false;
+    return shape.material ? std::string_view(shape.material->kind()) == "interface" : bounds_media(shape);
 }
 
 } // namespace keyhole

@@ -3,6 +3,8 @@
 
 #include "scene/camera.h"
 #include "scene/emitter.h"
+#include "scene/light_tree.h"
+#include "scene/media.h"
 #include "scene/shape.h"
 
 #include <memory>
@@ -17,6 +19,7 @@ struct SceneDescription {
     std::vector<Shape> shapes;
     std::vector<std::unique_ptr<Emitter>> emitters; ///< those without geometry; area lights follow from shapes. Several
                                                     ///< environments become one, their sum
+    std::shared_ptr<const Medium> medium;           ///< fills what no shape encloses; null: vacuum
     CameraParameters camera;
     ImageWindow window;
 };
@@ -27,7 +30,7 @@ class Scene {
   public:
     /// @throws InputError for geometry that can't be rendered (bad indices, non-finite positions, nothing at all).
     explicit Scene(SceneDescription description);
-    ~Scene();
+    ~Scene() = default;
     Scene(const Scene&) = delete;
     Scene& operator=(const Scene&) = delete;
 
@@ -37,6 +40,11 @@ class Scene {
     /// Whether nothing stands between two points. At most one of them is infinite.
     bool visible(const SurfacePoint& a, const SurfacePoint& b) const;
 
+    /// Share of light that absorption leaves along the edge between two points, as far as media go: 1 without them.
+    Rgb transmittance(const SurfacePoint& a, const SurfacePoint& b) const {
+        return media_.empty() ? Rgb(1.0) : media_.transmittance(a, b);
+    }
+
     const Camera& camera() const { return camera_; }
     void set_window(const ImageWindow& window) { camera_ = Camera(camera_.parameters(), window); }
 
@@ -44,6 +52,8 @@ class Scene {
     const Emitter& emitter(std::uint32_t i) const { return *emitters_[i]; }
     /// By power; empty if nothing emits.
     const EmitterDistribution& emitter_distribution() const { return emitter_distribution_; }
+    /// By what they may do at a point. Nothing to be asked where the distribution is empty.
+    const LightTree& light_tree() const { return light_tree_; }
     const std::vector<Shape>& shapes() const { return shapes_; }
     /// Union of what the materials may do.
     const BsdfTraits& traits() const { return traits_; }
@@ -57,17 +67,20 @@ class Scene {
     std::size_t triangle_count() const;
 
   private:
-    struct Embree;
+    void attach_shapes();
+    void prepare_emitters();
 
     std::vector<Shape> shapes_;
+    Media media_;
     std::vector<std::unique_ptr<Emitter>> emitters_;
     EmitterDistribution emitter_distribution_;
+    LightTree light_tree_;
     std::vector<std::uint32_t> emitter_of_shape_;
     std::uint32_t environment_ = SurfacePoint::kNone; // index of the emitter that misses meet
     Camera camera_;
     BsdfTraits traits_;
     Vec3 lower_{0, 0, 0}, upper_{0, 0, 0};
-    std::unique_ptr<Embree> embree_;
+    Accelerator accelerator_;
 };
 
 } // namespace keyhole

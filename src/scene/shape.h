@@ -3,6 +3,7 @@
 
 #include "core/vec.h"
 #include "scene/material.h"
+#include "scene/medium.h"
 
 #include <array>
 #include <cstdint>
@@ -36,9 +37,16 @@ struct SurfaceEmission {
 /// Geometry with its material and, for area lights, its emission.
 struct Shape {
     std::variant<TriangleMesh, Sphere> geometry;
-    std::shared_ptr<const Material> material;
+    std::shared_ptr<const Material> material; ///< null: black; of a boundary of media: nothing that light would notice
     std::unique_ptr<SurfaceEmission> emission;
-    FloatTexture alpha{}; ///< opacity, as is_opaque() reads it; null: opaque
+    FloatTexture alpha{};                              ///< opacity, as is_opaque() reads it; null: opaque
+    std::shared_ptr<const Medium> inside{}, outside{}; ///< null: vacuum; both the same: whatever is around
 };
+
+/// Whether one medium ends at the surface of `shape` and another begins.
+inline bool bounds_media(const Shape& shape) { return shape.inside != shape.outside; }
+
+/// Whether rays and light pass `shape` as if it weren't there, but for the media that it parts.
+bool is_interface(const Shape& shape);
 
 } // namespace keyhole

@@ -19,6 +19,7 @@ const SceneCase kScenes[] = {
     {"PointLight", test::point_light_box},
     {"TwoRooms", [] { return test::two_rooms(0.5f); }},
     {"Furnace", [] { return test::furnace(0.6); }},
+    {"Haze", test::hazy_box},
     {"Sky", test::sky_box},
     {"DistantLight", test::distant_light_scene},
     {"Spot", test::spot_scene},

@@ -38,6 +38,19 @@ SceneMaker& SceneMaker::room(const Vec3& lo, const Vec3& hi, const MaterialPtr& 
     return rectangle(lo + x, z, y, m, radiance); // right
 }
 
+SceneMaker& SceneMaker::media(std::shared_ptr<const Medium> inside, std::shared_ptr<const Medium> outside) {
+    d_.shapes.back().inside = std::move(inside);
+    d_.shapes.back().outside = std::move(outside);
+    return *this;
+}
+
+SceneMaker& SceneMaker::cloud(const Vec3& lower, const Vec3& upper, const std::shared_ptr<const Medium>& inside) {
+    const std::size_t first = d_.shapes.size();
+    room(lower, upper, nullptr); // its sides face inwards: their outside is the cloud's inside
+    for (std::size_t i = first; i < d_.shapes.size(); ++i) d_.shapes[i].outside = inside;
+    return *this;
+}
+
 SceneMaker& SceneMaker::emitter(std::unique_ptr<Emitter> e) {
     d_.emitters.push_back(std::move(e));
     return *this;
@@ -98,6 +111,16 @@ std::unique_ptr<Scene> mirror_glass_box(float lens_radius) {
     add_light(m);
     m.sphere({-0.45f, 0.4f, -0.4f}, 0.4f, make_mirror(Rgb(0.9)));
     m.sphere({0.35f, 0.4f, 0.5f}, 0.4f, make_glass(1.5));
+    return m.build();
+}
+
+std::unique_ptr<Scene> hazy_box() {
+    const auto green = std::make_shared<Medium>(Medium{Rgb(2.0, 0.4, 1.5)});
+    const auto haze = std::make_shared<Medium>(Medium{Rgb(0.3, 0.5, 0.8)});
+    SceneMaker m = box_shell(make_mirror(Rgb(0.9)));
+    add_light(m);
+    m.sphere({0.1f, 0.4f, 0.5f}, 0.4f, make_glass(1.5)).media(green);
+    m.cloud({-0.9f, 0.3f, -0.8f}, {-0.4f, 1.6f, 1.5f}, haze);
     return m.build();
 }
 

@@ -17,6 +17,10 @@ class SceneMaker {
     SceneMaker& sphere(const Vec3& center, float radius, const MaterialPtr& m);
     /// Six walls of [lower, upper] that face inwards.
     SceneMaker& room(const Vec3& lower, const Vec3& upper, const MaterialPtr& m, const Rgb& radiance = Rgb(0.0));
+    /// The media inside and outside of the last shape.
+    SceneMaker& media(std::shared_ptr<const Medium> inside, std::shared_ptr<const Medium> outside = nullptr);
+    /// A box of `inside` without a surface, in vacuum.
+    SceneMaker& cloud(const Vec3& lower, const Vec3& upper, const std::shared_ptr<const Medium>& inside);
     SceneMaker& emitter(std::unique_ptr<Emitter> e);
     SceneMaker& camera(const Vec3& from, const Vec3& to, float fov, float lens_radius = 0, float focus = 1);
     SceneMaker& window(int width, int height, float margin = 0);
@@ -40,6 +44,9 @@ std::unique_ptr<Scene> furnace(double rho);
 
 /// Two diffuse rooms joined by a slit of the given width [m]; the light is in the far one.
 std::unique_ptr<Scene> two_rooms(float slit);
+
+/// mirror_glass_box() with a ball of green glass, and a block of haze that has no surface.
+std::unique_ptr<Scene> hazy_box();
 
 /// Open: a diffuse floor with a mirror ball and a glass ball under a sky that is bright on one side.
 std::unique_ptr<Scene> sky_box();

@@ -53,6 +53,7 @@ TEST(Measure_AgreesWithPathTracer, DiffuseBox) { expect_agreement(*test::diffuse
 TEST(Measure_AgreesWithPathTracer, MirrorAndGlass) { expect_agreement(*test::mirror_glass_box(), true); }
 TEST(Measure_AgreesWithPathTracer, ThinLens) { expect_agreement(*test::mirror_glass_box(0.1f), true); }
 TEST(Measure_AgreesWithPathTracer, PointLight) { expect_agreement(*test::point_light_box(), false); }
+TEST(Measure_AgreesWithPathTracer, Haze) { expect_agreement(*test::hazy_box(), true); }
 TEST(Measure_AgreesWithPathTracer, Sky) { expect_agreement(*test::sky_box(), true); }
 TEST(Measure_AgreesWithPathTracer, DistantLight) { expect_agreement(*test::distant_light_scene(), true); }
 TEST(Measure_AgreesWithPathTracer, Spot) { expect_agreement(*test::spot_scene(), false); }

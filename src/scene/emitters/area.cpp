@@ -7,6 +7,39 @@
 namespace keyhole {
 namespace {
 
+Vec3 normal_of(const TriangleMesh& mesh, std::uint32_t triangle) {
+    return triangle_point(mesh, triangle, 1.0f / 3, 1.0f / 3).ng;
+}
+
+/// Box of a shape, and the cone of its normals around their mean.
+EmitterBounds bounds_of(const TriangleMesh& mesh) {
+    EmitterBounds b;
+    b.lower = b.upper = mesh.positions[mesh.triangles[0][0]];
+    Vec3 sum(0, 0, 0);
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+        for (const auto corner : mesh.triangles[i])
+            for (int k = 0; k < 3; ++k) {
+                b.lower[k] = std::min(b.lower[k], mesh.positions[corner][k]);
+                b.upper[k] = std::max(b.upper[k], mesh.positions[corner][k]);
+            }
+        sum += normal_of(mesh, i) * static_cast<float>(triangle_area(mesh, i));
+    }
+    sum.normalize();
+    if (sum.length2() == 0) return b; // closed, most likely: everywhere
+    float least = 1;
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) least = std::min(least, sum.dot(normal_of(mesh, i)));
+    b.axis = sum;
+    b.spread = std::acos(std::clamp(static_cast<double>(least), -1.0, 1.0));
+    return b;
+}
+
+EmitterBounds bounds_of(const Sphere& sphere) {
+    EmitterBounds b;
+    b.lower = sphere.center - Vec3(sphere.radius);
+    b.upper = sphere.center + Vec3(sphere.radius);
+    return b;
+}
+
 class AreaEmitter final : public Emitter {
   public:
     AreaEmitter(const Shape& shape, std::uint32_t index) : shape_(shape), index_(index), area_(surface_area(shape)) {
@@ -16,6 +49,9 @@ class AreaEmitter final : public Emitter {
             for (std::uint32_t i = 0; i < areas.size(); ++i) areas[i] = triangle_area(*mesh, i);
             triangles_ = EmitterDistribution(areas);
         }
+        bounds_ = std::visit([](const auto& geometry) { return bounds_of(geometry); }, shape.geometry);
+        bounds_.intensity = luminance(shape.emission->radiance) * area_;
+        if (shape.emission->two_sided) bounds_.spread = kPi;
     }
 
     Site site() const override { return Site::surface; }
@@ -59,8 +95,10 @@ class AreaEmitter final : public Emitter {
     }
     Rgb radiance(const SurfacePoint& point, const Vec3& w) const override {
         const bool lit = shape_.emission->two_sided || point.ng.dot(w) > 0;
+        if (shape_.alpha && !is_opaque(shape_.alpha, point)) return Rgb(0.0);
         return lit ? shape_.emission->radiance : Rgb(0.0);
     }
+    std::optional<EmitterBounds> bounds() const override { return bounds_; }
     const char* kind() const override { return "area"; }
 
   private:
@@ -68,6 +106,7 @@ class AreaEmitter final : public Emitter {
     std::uint32_t index_;
     double area_;
     EmitterDistribution triangles_;
+    EmitterBounds bounds_;
 };
 
 } // namespace

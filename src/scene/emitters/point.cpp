@@ -29,6 +29,9 @@ class PointEmitter final : public Emitter {
     double ray_pdf(const SurfacePoint& /*point*/, const Vec3& /*w*/) const override { return kInvPi / 4; }
 
     Rgb radiance(const SurfacePoint& /*point*/, const Vec3& /*w*/) const override { return intensity_; }
+    std::optional<EmitterBounds> bounds() const override {
+        return EmitterBounds{.lower = position_, .upper = position_, .intensity = luminance(intensity_)};
+    }
     const char* kind() const override { return "point"; }
 
   private:

@@ -21,10 +21,8 @@ class SpotEmitter final : public Emitter {
     explicit SpotEmitter(const SpotParameters& p)
         : parameters_(p), frame_(p.axis), cos_full_(std::cos(p.full_degrees * kPi / 180)),
           cos_edge_(std::cos(p.edge_degrees * kPi / 180)) {
-        // Integrals of the falloff over solid angle; smoothstep's mean is 1/2.
-        const double full = 2 * kPi * (1 - cos_full_), fading = kPi * (cos_full_ - cos_edge_);
-        solid_angle_ = full + fading;
-        full_share_ = full / solid_angle_;
+        solid_angle_ = spot_solid_angle(p);
+        full_share_ = 2 * kPi * (1 - cos_full_) / solid_angle_;
     }
 
     Site site() const override { return Site::point; }
@@ -53,6 +51,15 @@ class SpotEmitter final : public Emitter {
     Rgb radiance(const SurfacePoint& /*point*/, const Vec3& w) const override {
         return parameters_.intensity * falloff(w);
     }
+    std::optional<EmitterBounds> bounds() const override {
+        const double full = parameters_.full_degrees * kPi / 180, edge = parameters_.edge_degrees * kPi / 180;
+        return EmitterBounds{.lower = parameters_.position,
+                             .upper = parameters_.position,
+                             .axis = parameters_.axis,
+                             .spread = full,
+                             .reach = edge - full,
+                             .intensity = luminance(parameters_.intensity)};
+    }
     const char* kind() const override { return "spot"; }
 
   private:
@@ -72,6 +79,13 @@ class SpotEmitter final : public Emitter {
 };
 
 } // namespace
+
+double spot_solid_angle(const SpotParameters& parameters) {
+    // The mean of smoothstep is 1/2: half of what lies between the two cones counts.
+    const double full = std::cos(parameters.full_degrees * kPi / 180),
+                 edge = std::cos(parameters.edge_degrees * kPi / 180);
+    return 2 * kPi * (1 - (full + edge) / 2);
+}
 
 std::unique_ptr<Emitter> make_spot_emitter(const SpotParameters& parameters) {
     const bool ordered = parameters.full_degrees >= 0 && parameters.full_degrees <= parameters.edge_degrees &&

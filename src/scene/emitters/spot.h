@@ -15,6 +15,9 @@ struct SpotParameters {
     double edge_degrees = 30; ///< dark from here on; above 0, at most 180
 };
 
+/// Power over intensity on the axis [sr].
+double spot_solid_angle(const SpotParameters& parameters);
+
 /// Directions are drawn in proportion to the intensity.
 /// @throws InputError for angles out of order.
 std::unique_ptr<Emitter> make_spot_emitter(const SpotParameters& parameters);

@@ -1,7 +1,7 @@
 #include "scene/load/scene_yaml.h"
 
-#include "scene/emitters/point.h"
 #include "scene/load/yaml_camera.h"
+#include "scene/load/yaml_emitters.h"
 #include "scene/load/yaml_materials.h"
 #include "scene/load/yaml_reader.h"
 #include "scene/load/yaml_shapes.h"
@@ -14,19 +14,6 @@
 
 namespace keyhole {
 namespace {
-
-std::unique_ptr<Emitter> read_emitter(const YamlNode& node) {
-    read_type(node, "an emitter", {"point"});
-    const MapReader map(node, "a point emitter", {"type", "position", "intensity", "power"});
-    const Imath::V3d position = read_vec3(map.at("position"), kCoordinate);
-    const YamlNode *intensity = map.find("intensity"), *power = map.find("power");
-    if ((intensity == nullptr) == (power == nullptr))
-        fail(node, fmt::format("found {} of 'intensity' and 'power', expected one", intensity ? "both" : "neither"));
-    const Rgb watts_per_steradian =
-        intensity != nullptr ? read_color(*intensity, kLight) : read_color(*power, kLight) / (4 * kPi);
-    if (is_black(watts_per_steradian)) return nullptr;
-    return make_point_emitter(Vec3(position), watts_per_steradian);
-}
 
 /// Gathers a scene from a file and its includes.
 class SceneReader {

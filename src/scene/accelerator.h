@@ -1,0 +1,50 @@
+// Rays against shapes. Embree is known in accelerator.cpp only.
+#pragma once
+
+#include "scene/shape.h"
+
+#include <memory>
+#include <optional>
+
+namespace keyhole {
+
+/// Where a ray meets a shape.
+struct RayHit {
+    std::uint32_t shape;     ///< as in attach()
+    std::uint32_t primitive; ///< triangle within it
+    float u, v;              ///< barycentric coordinates on a triangle
+    float t;                 ///< along the ray's direction, in its lengths
+};
+
+/// The point of `shape` that a ray from `origin` along `direction` met. Its emitter is left out.
+SurfacePoint hit_point(const Shape& shape, const RayHit& hit, const Vec3& origin, const Vec3& direction);
+
+/// A bounding volume hierarchy over shapes. Where a shape has an alpha texture, rays pass its holes; others don't pay
+/// for that. Thread-safe once committed.
+class Accelerator {
+  public:
+    Accelerator();
+    ~Accelerator();
+    Accelerator(const Accelerator&) = delete;
+    Accelerator& operator=(const Accelerator&) = delete;
+
+    /// Adds a shape under a number of its own. The shape must outlive this, and stay where it is.
+    void attach(const Shape& shape, std::uint32_t index);
+    /// Builds; to be called once, before rays.
+    void commit();
+
+    /// The first hit at t in [nearest, inf).
+    std::optional<RayHit> intersect(const Vec3& origin, const Vec3& direction, float nearest = 0) const;
+    /// Whether anything is hit at t in [0, farthest].
+    bool occluded(const Vec3& origin, const Vec3& direction, float farthest) const;
+
+    /// Bounding box of all shapes; lower > upper if there are none.
+    Vec3 lower() const;
+    Vec3 upper() const;
+
+  private:
+    struct Embree;
+    std::unique_ptr<Embree> embree_;
+};
+
+} // namespace keyhole

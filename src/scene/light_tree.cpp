@@ -1,0 +1,176 @@
+#include "scene/light_tree.h"
+
+#include <algorithm>
+
+namespace keyhole {
+namespace {
+
+constexpr double kByPower = 0.125; // share of the choice that looks at power only
+constexpr std::size_t kFewEmitters = 3;
+
+double safe_acos(double x) { return std::acos(std::clamp(x, -1.0, 1.0)); }
+
+/// The smallest cone around two cones of normals.
+void merge_cones(EmitterBounds& a, const EmitterBounds& b) {
+    const EmitterBounds &wide = a.spread >= b.spread ? a : b, &narrow = a.spread >= b.spread ? b : a;
+    const double between = safe_acos(wide.axis.dot(narrow.axis));
+    const double reach = std::max(a.reach, b.reach);
+    if (std::min(between + narrow.spread, kPi) <= wide.spread) {
+        a.axis = wide.axis;
+        a.spread = wide.spread;
+    } else {
+        const double spread = std::min((wide.spread + between + narrow.spread) / 2, kPi), turn = spread - wide.spread;
+        const Vec3 side = narrow.axis - wide.axis * wide.axis.dot(narrow.axis);
+        a.axis = side.length2() > 1e-8f ? wide.axis * static_cast<float>(std::cos(turn)) +
+                                              side.normalized() * static_cast<float>(std::sin(turn))
+                                        : wide.axis;
+        a.spread = side.length2() > 1e-8f ? spread : kPi;
+    }
+    a.reach = reach;
+}
+
+void merge(EmitterBounds& a, const EmitterBounds& b) {
+    merge_cones(a, b);
+    for (int k = 0; k < 3; ++k) {
+        a.lower[k] = std::min(a.lower[k], b.lower[k]);
+        a.upper[k] = std::max(a.upper[k], b.upper[k]);
+    }
+    a.intensity += b.intensity;
+}
+
+/// Bound on the irradiance that emitters within bounds bring to a point, as far as direction and distance go; never
+/// closer than half the size of the bounds.
+double importance(const SurfacePoint& point, const EmitterBounds& b) {
+    const Vec3 center = (b.lower + b.upper) / 2, to_light = center - point.p;
+    const double radius2 = Imath::V3d(b.upper - b.lower).length2() / 4, distance2 = Imath::V3d(to_light).length2();
+    const double near2 = std::max({distance2, radius2, 1e-30});
+    if (distance2 <= radius2) return b.intensity / near2; // within: nothing is known of directions
+    const Vec3 w = to_light.normalized();
+    const double half_width = std::asin(std::min(1.0, std::sqrt(radius2 / distance2)));
+    const double off_axis = std::max(0.0, safe_acos(-b.axis.dot(w)) - b.spread - half_width);
+    if (off_axis > b.reach) return 0;
+    // Scattering may go through the surface, so that both of its sides count.
+    const double slant = point.site == Site::surface ? std::max(0.0, safe_acos(point.abs_cos(w)) - half_width) : 0.0;
+    return b.intensity * std::cos(std::min(off_axis, kPi / 2)) * std::cos(slant) / near2;
+}
+
+} // namespace
+
+LightTree::LightTree(const std::vector<std::unique_ptr<Emitter>>& emitters, const EmitterDistribution& by_power,
+                     const BoundingSphere& scene)
+    : by_power_(&by_power) {
+    if (emitters.size() < kFewEmitters) return;
+    std::vector<Node> leaves;
+    for (std::uint32_t i = 0; i < emitters.size(); ++i) {
+        if (const auto bounds = emitters[i]->bounds()) {
+            Node& leaf = leaves.emplace_back();
+            leaf.bounds = *bounds;
+            leaf.emitter = i;
+        } else {
+            const double beam = kPi * static_cast<double>(scene.radius) * scene.radius;
+            far_.push_back({i, emitters[i]->power() / beam});
+            far_irradiance_ += far_.back().irradiance;
+        }
+    }
+    nodes_.reserve(2 * leaves.size());
+    leaf_of_.assign(emitters.size(), SurfacePoint::kNone);
+    if (!leaves.empty()) build(leaves, 0, leaves.size(), 0);
+}
+
+/// Splits at the median of the widest extent. Few scenes have emitters enough for more care to show.
+std::uint32_t LightTree::build(std::vector<Node>& leaves, std::size_t begin, std::size_t end, std::uint32_t parent) {
+    const auto index = static_cast<std::uint32_t>(nodes_.size());
+    if (end - begin == 1) {
+        nodes_.push_back(leaves[begin]);
+        nodes_[index].parent = parent;
+        leaf_of_[leaves[begin].emitter] = index;
+        return index;
+    }
+    const auto center = [&](const Node& n) { return (n.bounds.lower + n.bounds.upper) / 2; };
+    Vec3 lower = center(leaves[begin]), upper = lower;
+    for (std::size_t i = begin; i < end; ++i)
+        for (int k = 0; k < 3; ++k) {
+            lower[k] = std::min(lower[k], center(leaves[i])[k]);
+            upper[k] = std::max(upper[k], center(leaves[i])[k]);
+        }
+    const Vec3 extent = upper - lower;
+    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+    const std::size_t middle = (begin + end) / 2;
+    const auto at = [&](std::size_t i) { return leaves.begin() + static_cast<std::ptrdiff_t>(i); };
+    std::nth_element(at(begin), at(middle), at(end), [&](const Node& a, const Node& b) {
+        const float ca = center(a)[axis], cb = center(b)[axis];
+        return ca != cb ? ca < cb : a.emitter < b.emitter;
+    });
+    nodes_.emplace_back().parent = parent;
+    const std::uint32_t left = build(leaves, begin, middle, index), right = build(leaves, middle, end, index);
+    nodes_[index].left = left;
+    nodes_[index].right = right;
+    nodes_[index].bounds = nodes_[left].bounds;
+    merge(nodes_[index].bounds, nodes_[right].bounds);
+    return index;
+}
+
+double LightTree::left_share(const SurfacePoint& point, const Node& node) const {
+    const double l = importance(point, nodes_[node.left].bounds), r = importance(point, nodes_[node.right].bounds);
+    if (l + r > 0) return l / (l + r);
+    const double a = nodes_[node.left].bounds.intensity, b = nodes_[node.right].bounds.intensity;
+    return a + b > 0 ? a / (a + b) : 0.5;
+}
+
+LightTree::Choice LightTree::sample(const SurfacePoint& point, double u) const {
+    std::uint32_t chosen;
+    if (leaf_of_.empty()) {
+        chosen = by_power_->sample(u);
+    } else if (u < kByPower) {
+        chosen = by_power_->sample(u / kByPower);
+    } else {
+        chosen = sample_by_effect(point, (u - kByPower) / (1 - kByPower));
+    }
+    return {chosen, probability(point, chosen)};
+}
+
+double LightTree::probability(const SurfacePoint& point, std::uint32_t emitter) const {
+    const double power = by_power_->probability(emitter);
+    return leaf_of_.empty() ? power : kByPower * power + (1 - kByPower) * effect_probability(point, emitter);
+}
+
+std::uint32_t LightTree::sample_by_effect(const SurfacePoint& point, double u) const {
+    const double near = nodes_.empty() ? 0.0 : importance(point, nodes_[0].bounds), total = near + far_irradiance_;
+    if (!(total > 0)) return by_power_->sample(u);
+    u *= total;
+    if (u >= near && !far_.empty()) {
+        u -= near;
+        for (const Far& f : far_)
+            if ((u -= f.irradiance) < 0) return f.emitter;
+        return far_.back().emitter;
+    }
+    u /= near;
+    std::uint32_t i = 0;
+    while (nodes_[i].left != 0) {
+        const double share = left_share(point, nodes_[i]);
+        const bool left = u < share;
+        u = left ? u / share : (u - share) / (1 - share);
+        i = left ? nodes_[i].left : nodes_[i].right;
+    }
+    return nodes_[i].emitter;
+}
+
+double LightTree::effect_probability(const SurfacePoint& point, std::uint32_t emitter) const {
+    const double near = nodes_.empty() ? 0.0 : importance(point, nodes_[0].bounds), total = near + far_irradiance_;
+    if (!(total > 0)) return by_power_->probability(emitter);
+    std::uint32_t i = leaf_of_[emitter];
+    if (i == SurfacePoint::kNone) {
+        const auto f = std::ranges::find(far_, emitter, &Far::emitter);
+        return f->irradiance / total;
+    }
+    double p = near / total;
+    while (i != 0) {
+        const std::uint32_t parent = nodes_[i].parent;
+        const double left = left_share(point, nodes_[parent]);
+        p *= nodes_[parent].left == i ? left : 1 - left;
+        i = parent;
+    }
+    return p;
+}
+
+} // namespace keyhole
