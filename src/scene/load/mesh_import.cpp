@@ -2,6 +2,8 @@
 
 #include "core/error.h"
 #include "scene/load/geometry_transform.h"
+#include "scene/load/mesh_mend.h"
+#include "scene/load/ply.h"
 
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>
@@ -14,35 +16,14 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 
 namespace keyhole {
 namespace {
 
-constexpr float kMaxCoordinate = 1e12f; // as for coordinates in scene files
-
 [[noreturn]] void fail(const std::string& path, const std::string& message) { throw InputError({path, 0, 0}, message); }
 
-/// assimp reads on for ever where the header has no end, and believes every count in it.
-void check_ply_header(const std::string& path) {
-    std::error_code error;
-    const auto bytes = std::filesystem::file_size(path, error);
-    std::ifstream stream(path, std::ios::binary);
-    std::string line;
-    for (int i = 0; i < 1000 && std::getline(stream, line); ++i) {
-        std::istringstream words(line);
-        std::string first, name;
-        std::uintmax_t count = 0;
-        words >> first;
-        if (first == "end_header") return;
-        if (first == "element" && (!(words >> name >> count) || count > bytes))
-            fail(path, fmt::format("found '{}' in a file of {} bytes, expected a name and a count", line.substr(0, 60),
-                                   bytes));
-    }
-    fail(path, "found a broken mesh (its header doesn't end), expected a valid one");
-}
-
-void check_file(const std::string& path) {
+/// @returns the extension in lower case.
+std::string check_file(const std::string& path) {
     std::error_code error;
     const auto status = std::filesystem::status(path, error);
     if (!std::filesystem::exists(status)) fail(path, "found no such file, expected a mesh");
@@ -54,7 +35,7 @@ void check_file(const std::string& path) {
     if (extension != ".obj" && extension != ".ply" && extension != ".gltf" && extension != ".glb")
         fail(path, fmt::format("found the extension '{}', expected .obj, .ply, .gltf or .glb", extension));
     if (!std::ifstream(path)) fail(path, "found a file that can't be opened, expected a readable mesh");
-    if (extension == ".ply") check_ply_header(path);
+    return extension;
 }
 
 /// assimp's triangulation aborts where a face has no corners. (Indices out of range don't pass its validation.)
@@ -67,11 +48,6 @@ void check_faces(const aiScene& scene, const std::string& path) {
 
 Transform to_transform(const aiMatrix4x4& m) {
     return {m.a1, m.b1, m.c1, m.d1, m.a2, m.b2, m.c2, m.d2, m.a3, m.b3, m.c3, m.d3, m.a4, m.b4, m.c4, m.d4};
-}
-
-bool is_unit_like(const Vec3& n) {
-    const float l = n.length2();
-    return l > 0.25f && l < 4; // false for NaN
 }
 
 /// One part of the file, before its placement.
@@ -92,24 +68,7 @@ TriangleMesh convert(const aiMesh& source) {
         const std::array<std::uint32_t, 3> t{face.mIndices[0], face.mIndices[1], face.mIndices[2]};
         mesh.triangles.push_back(t);
     }
-    for (Vec2& uv : mesh.uvs)
-        if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) uv = {0, 0};
     return mesh;
-}
-
-Vec3 area_vector(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& t) {
-    const auto& p = mesh.positions;
-    const Imath::V3d a(p[t[0]]);
-    return Vec3((Imath::V3d(p[t[1]]) - a).cross(Imath::V3d(p[t[2]]) - a).normalized());
-}
-
-/// Files hold zero and NaN normals more often than one thinks.
-void mend_normals(TriangleMesh& mesh) {
-    if (mesh.normals.empty()) return;
-    for (const auto& t : mesh.triangles)
-        for (const auto i : t)
-            if (!is_unit_like(mesh.normals[i])) mesh.normals[i] = area_vector(mesh, t);
-    for (Vec3& n : mesh.normals) n = is_unit_like(n) ? n.normalized() : Vec3(0, 0, 1); // the latter: of no triangle
 }
 
 void append(TriangleMesh& all, TriangleMesh part) {
@@ -150,13 +109,8 @@ class Collector {
         if (!(regularity(to_world) > 1e-12))
             fail(path_, "found a singular placement of a part, expected a regular one");
         transform_mesh(part, to_world);
-        for (const Vec3& p : part.positions)
-            for (int axis = 0; axis < 3; ++axis)
-                if (!(std::abs(p[axis]) <= kMaxCoordinate))
-                    fail(path_, fmt::format("found the coordinate {}, expected one within 1e12", p[axis]));
-        std::erase_if(part.triangles, [&](const auto& t) { return area_vector(part, t).length2() == 0; });
+        mend_mesh(part, path_);
         if (part.triangles.empty()) return;
-        mend_normals(part);
         append(all_, std::move(part));
     }
 
@@ -168,7 +122,7 @@ class Collector {
 } // namespace
 
 TriangleMesh import_mesh(const std::string& path) {
-    check_file(path);
+    if (check_file(path) == ".ply") return read_ply(path);
     Assimp::Importer importer;
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
     const auto checked = [&](const aiScene* scene) {
@@ -183,21 +137,6 @@ TriangleMesh import_mesh(const std::string& path) {
     if (scene->mRootNode != nullptr) mesh = Collector(*scene, path).collect();
     if (mesh.triangles.empty()) fail(path, "found no triangles, expected at least one");
     return mesh;
-}
-
-void smooth_normals(TriangleMesh& mesh) {
-    mesh.normals.assign(mesh.positions.size(), Vec3(0.0f));
-    for (const auto& t : mesh.triangles) {
-        const Vec3 n = area_vector(mesh, t);
-        for (std::size_t k = 0; k < 3; ++k) {
-            const Vec3& p = mesh.positions[t[k]];
-            const Vec3 a = (mesh.positions[t[(k + 1) % 3]] - p).normalized();
-            const Vec3 b = (mesh.positions[t[(k + 2) % 3]] - p).normalized();
-            mesh.normals[t[k]] += n * std::acos(std::clamp(a.dot(b), -1.0f, 1.0f));
-        }
-    }
-    for (Vec3& n : mesh.normals) n.normalize();
-    mend_normals(mesh); // where normals cancel
 }
 
 } // namespace keyhole

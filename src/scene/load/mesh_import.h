@@ -14,10 +14,4 @@ namespace keyhole {
 /// 1e12, indices out of range, and more than kMaxMeshTriangles triangles.
 TriangleMesh import_mesh(const std::string& path);
 
-constexpr std::size_t kMaxMeshTriangles = std::size_t{1} << 26;
-
-/// Gives every position the mean of the normals of its triangles, weighted by their angle there (Thuermer and Wuethrich
-/// 1998).
-void smooth_normals(TriangleMesh& mesh);
-
 } // namespace keyhole

@@ -1,6 +1,7 @@
 #include "scene/load/yaml_primitives.h"
 
 #include "scene/load/mesh_import.h"
+#include "scene/load/mesh_mend.h"
 #include "scene/load/primitives.h"
 #include "scene/load/yaml_reader.h"
 

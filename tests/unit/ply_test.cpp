@@ -1,0 +1,104 @@
+// The PLY reader: every layout gives the same mesh, and nothing broken passes or hangs.
+#include "core/error.h"
+#include "scene/load/ply.h"
+#include "support/scratch_directory.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace keyhole {
+namespace {
+
+template <class T> void put(std::string& bytes, T value, bool big) {
+    std::array<char, sizeof(T)> raw;
+    std::memcpy(raw.data(), &value, sizeof(T));
+    if (big) std::reverse(raw.begin(), raw.end());
+    bytes.append(raw.data(), raw.size());
+}
+
+/// A quad and a triangle with normals, texture coordinates, and properties that nobody asked for.
+std::string header(const std::string& format) {
+    return "ply\r\nformat " + format +
+           " 1.0\ncomment made by hand\nelement stray 1\nproperty list uchar short junk\nelement vertex 5\n"
+           "property double x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\n"
+           "property float nz\nproperty uchar red\nproperty float s\nproperty float t\nelement face 2\n"
+           "property list uchar int vertex_indices\nproperty float quality\nend_header\n";
+}
+
+constexpr std::array<std::array<float, 8>, 5> kVertices{{{0, 0, 0, 0, 0, 1, 0, 0},
+                                                         {2, 0, 0, 0, 0, 2, 1, 0},
+                                                         {2, 1, 0, 0, 0, 0, 1, 1},
+                                                         {0, 1, 0, 0, 0, 1, 0, 1},
+                                                         {0, 2, 0.5f, 0, 0, 1, 0, 2}}};
+
+std::string binary_body(bool big) {
+    std::string b;
+    put<std::uint8_t>(b, 2, big), put<std::int16_t>(b, 7, big), put<std::int16_t>(b, -7, big);
+    for (const auto& v : kVertices) {
+        put<double>(b, v[0], big);
+        for (std::size_t i = 1; i < 6; ++i) put<float>(b, v[i], big);
+        put<std::uint8_t>(b, 255, big);
+        put<float>(b, v[6], big), put<float>(b, v[7], big);
+    }
+    put<std::uint8_t>(b, 4, big);
+    for (const int i : {0, 1, 2, 3}) put<std::int32_t>(b, i, big);
+    put<float>(b, 1, big);
+    put<std::uint8_t>(b, 3, big);
+    for (const int i : {3, 2, 4}) put<std::int32_t>(b, i, big);
+    put<float>(b, 1, big);
+    return b;
+}
+
+std::string text_body() {
+    std::string b = "2 7 -7\n";
+    for (const auto& v : kVertices) {
+        for (std::size_t i = 0; i < 6; ++i) b += std::to_string(v[i]) + " ";
+        b += "255 +" + std::to_string(v[6]) + "\t" + std::to_string(v[7]) + "\r\n";
+    }
+    return b + "4 0 1 2 3 1\n3 3 2 4 1e0\n";
+}
+
+void expect_the_mesh(const TriangleMesh& mesh) {
+    ASSERT_EQ(mesh.positions.size(), 5u);
+    EXPECT_EQ(mesh.positions[4], Vec3(0, 2, 0.5f));
+    EXPECT_EQ(mesh.normals[1], Vec3(0, 0, 1)) << "normals are made unit";
+    EXPECT_EQ(mesh.normals[2], Vec3(0, 0, 1)) << "a zero normal is replaced";
+    EXPECT_EQ(mesh.uvs[4], Vec2(0, 2));
+    using T = std::array<std::uint32_t, 3>;
+    EXPECT_THAT(mesh.triangles, testing::ElementsAre(T{0, 1, 2}, T{0, 2, 3}, T{3, 2, 4}));
+}
+
+TEST(Ply, AllLayoutsGiveTheSameMesh) {
+    const ScratchDirectory d;
+    expect_the_mesh(read_ply(d.write("t.ply", header("ascii") + text_body())));
+    expect_the_mesh(read_ply(d.write("l.ply", header("binary_little_endian") + binary_body(false))));
+    expect_the_mesh(read_ply(d.write("b.ply", header("binary_big_endian") + binary_body(true))));
+}
+
+TEST(Ply, EveryTruncationIsAnError) {
+    const ScratchDirectory d;
+    for (const std::string& whole :
+         {header("ascii") + text_body(), header("binary_little_endian") + binary_body(false)}) {
+        for (std::size_t n = 0; n + 4 < whole.size(); n += 7) // text may lose its last digits unseen
+            EXPECT_THROW(read_ply(d.write("cut.ply", whole.substr(0, n))), InputError) << n;
+    }
+}
+
+TEST(Ply, ImpossibleCountsAreErrors) {
+    const ScratchDirectory d;
+    const std::string xyz = "property float x\nproperty float y\nproperty float z\n";
+    const std::string ascii = "ply\nformat ascii 1.0\n";
+    for (const std::string& text :
+         {ascii + "element vertex 4000000000\n" + xyz + "end_header\n", ascii + "element vertex -1\n" + xyz,
+          ascii + "element face 1\nproperty list uchar int vertex_indices\nend_header\n4000000000 1 2",
+          ascii + "element face 1\nproperty list char int vertex_indices\nend_header\n-3 1 2 3",
+          ascii + "element face 9\nend_header\n0 0 0 0 0 0 0", "ply\nformat ascii 1.0\nproperty float x\n" + xyz,
+          std::string("ply\nformat zip 1.0\nend_header\n"), std::string("ply\nend_header\n"), std::string("solid")})
+        EXPECT_THROW(read_ply(d.write("bad.ply", text)), InputError) << text;
+}
+
+} // namespace
+} // namespace keyhole
