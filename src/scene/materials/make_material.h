@@ -30,7 +30,10 @@ template <class F, class... Textures>
 MaterialPtr make_material(const char* kind, const BsdfTraits& traits, F model, const Textures&... textures) {
     if (!(textures->is_constant() && ...)) return std::make_shared<FunctionMaterial<F>>(kind, traits, std::move(model));
     const Bsdf::Model same = model(SurfacePoint());
-    const auto uniform = [same](const SurfacePoint& /*point*/) -> const Bsdf::Model& { return same; };
+    // The model may point into what the closure that made it holds.
+    const auto uniform = [same, maker = std::move(model)](const SurfacePoint& /*point*/) -> const Bsdf::Model& {
+        return same;
+    };
     return std::make_shared<FunctionMaterial<decltype(uniform)>>(kind, Bsdf(SurfacePoint(), same).traits(), uniform);
 }
 
