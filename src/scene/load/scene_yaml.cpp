@@ -5,6 +5,7 @@
 #include "scene/load/yaml_materials.h"
 #include "scene/load/yaml_reader.h"
 #include "scene/load/yaml_shapes.h"
+#include "scene/pbrt/load_pbrt.h"
 
 #include <fmt/format.h>
 
@@ -18,6 +19,8 @@ namespace {
 /// Gathers a scene from a file and its includes.
 class SceneReader {
   public:
+    explicit SceneReader(std::vector<std::string>* warnings) : warnings_(warnings) {}
+
     /// Reads included files first, so that their materials stand ready and this file overrules their settings.
     void read_file(const std::string& path, const YamlNode* includer) {
         std::error_code error;
@@ -25,6 +28,7 @@ class SceneReader {
         if (std::find(open_.begin(), open_.end(), canonical) != open_.end())
             fail(*includer, fmt::format("found '{}' including itself, expected no cycle", path));
         if (!seen_.insert(canonical).second) return; // two includes may share a third
+        if (is_pbrt(path)) return read_pbrt(path, *includer);
         open_.push_back(canonical);
         if (open_.size() > 32) fail(*includer, "found includes nested more than 32 deep, expected fewer levels");
         documents_.push_back(parse_yaml(read_text(path, includer), path));
@@ -57,6 +61,19 @@ class SceneReader {
         } catch (const InputError& e) {
             fail(*includer, e.what());
         }
+    }
+
+    void read_pbrt(const std::string& path, const YamlNode& includer) {
+        LoadedScene part;
+        try {
+            part = load_pbrt(path, warnings_, settings_);
+        } catch (const InputError& e) {
+            fail(includer, e.what());
+        }
+        settings_ = part.settings;
+        camera_.set_base(part.description.camera, part.description.window);
+        shapes_.append(std::move(part.description.shapes));
+        for (auto& emitter : part.description.emitters) emitters_.push_back(std::move(emitter));
     }
 
     void read_sections(const YamlNode& root) {
@@ -94,6 +111,7 @@ class SceneReader {
         }
     }
 
+    std::vector<std::string>* warnings_;
     std::vector<YamlPtr> documents_; // what is read keeps pointers into them
     std::vector<std::string> open_;
     std::set<std::string> seen_;
@@ -106,8 +124,9 @@ class SceneReader {
 
 } // namespace
 
-LoadedScene load_scene(const std::string& path, const std::vector<std::string>& overrides) {
-    SceneReader reader;
+LoadedScene load_scene(const std::string& path, const std::vector<std::string>& overrides,
+                       std::vector<std::string>* warnings) {
+    SceneReader reader(warnings);
     reader.read_file(path, nullptr);
     return reader.finish(overrides);
 }

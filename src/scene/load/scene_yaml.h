@@ -18,7 +18,9 @@ struct LoadedScene {
 
 /// Reads a scene file, the files it includes and its meshes.
 /// @param overrides `key=value` settings, applied in order after those of the file.
+/// @param warnings receives what an included pbrt file makes necessary to say; may be null.
 /// @throws InputError "file:line:column: what was found, what was expected" for every mistake in the files.
-LoadedScene load_scene(const std::string& path, const std::vector<std::string>& overrides = {});
+LoadedScene load_scene(const std::string& path, const std::vector<std::string>& overrides = {},
+                       std::vector<std::string>* warnings = nullptr);
 
 } // namespace keyhole

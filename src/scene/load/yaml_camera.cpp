@@ -32,12 +32,27 @@ void CameraReader::read_camera(const YamlNode& section) {
         up_ = read_vec3(*(up_node_ = up), kCoordinate);
         if (!(up_.length() > 0)) fail(*up, "found the direction [0, 0, 0], expected one with a length");
     }
-    fov_ = map.number("fov", kFov, fov_);
-    lens_radius_ = map.number("lens_radius", kLens, lens_radius_);
+    if (const YamlNode* fov = map.find("fov")) fov_ = read_number(*fov, kFov);
+    if (const YamlNode* lens = map.find("lens_radius")) lens_radius_ = read_number(*lens, kLens);
     if (const YamlNode* focus = map.find("focus_distance")) focus_distance_ = read_number(*focus, kLength);
 }
 
+void CameraReader::set_base(const CameraParameters& camera, const ImageWindow& window) {
+    base_ = camera;
+    window_ = window;
+    from_.reset();
+    to_.reset();
+    fov_.reset();
+    lens_radius_.reset();
+    focus_distance_.reset();
+}
+
 CameraParameters CameraReader::camera(const YamlNode& scene) const {
+    CameraParameters camera = base_.value_or(CameraParameters{});
+    if (fov_) camera.fov_degrees = static_cast<float>(*fov_);
+    if (lens_radius_) camera.lens_radius = static_cast<float>(*lens_radius_);
+    if (focus_distance_) camera.focus_distance = static_cast<float>(*focus_distance_);
+    if (base_ && !from_ && !to_) return camera;
     if (!from_ || !to_)
         fail(scene, fmt::format("found no '{}' of the camera, expected camera: {{from: [x, y, z], to: [x, y, z]}}",
                                 from_ ? "to" : "from"));
@@ -47,14 +62,11 @@ CameraParameters CameraReader::camera(const YamlNode& scene) const {
     const Imath::V3d forward = view.normalized(), right = forward.cross(up_.normalized());
     if (!(right.length() > 1e-6))
         fail(up_node_ != nullptr ? *up_node_ : *to_node_, "found 'up' along the view, expected another direction");
-    CameraParameters camera;
     camera.origin = Vec3(*from_);
     camera.forward = Vec3(forward);
     camera.right = Vec3(right.normalized());
     camera.up = Vec3(right.normalized().cross(forward));
-    camera.fov_degrees = static_cast<float>(fov_);
-    camera.lens_radius = static_cast<float>(lens_radius_);
-    camera.focus_distance = static_cast<float>(focus_distance_.value_or(view.length()));
+    if (!focus_distance_) camera.focus_distance = static_cast<float>(view.length());
     return camera;
 }
 

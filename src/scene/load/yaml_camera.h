@@ -19,6 +19,9 @@ class CameraReader {
     /// @throws InputError for mistakes in the section.
     void read_camera(const YamlNode& section);
 
+    /// A camera and a film that stand ready, for the sections to overrule.
+    void set_base(const CameraParameters& camera, const ImageWindow& window);
+
     const ImageWindow& window() const { return window_; }
     /// @throws InputError at the responsible key where the view is degenerate; at `scene` where `from` or `to` is
     /// missing.
@@ -30,8 +33,8 @@ class CameraReader {
     Imath::V3d up_{0, 1, 0};
     const YamlNode* to_node_ = nullptr; ///< for messages, as the next
     const YamlNode* up_node_ = nullptr;
-    double fov_ = 40, lens_radius_ = 0;
-    std::optional<double> focus_distance_;
+    std::optional<double> fov_, lens_radius_, focus_distance_;
+    std::optional<CameraParameters> base_;
 };
 
 } // namespace keyhole

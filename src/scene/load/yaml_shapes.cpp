@@ -60,6 +60,13 @@ void ShapeReader::read_groups(const YamlNode& section) {
 
 void ShapeReader::read_shapes(const YamlNode& section) { read_list_of_shapes(section, {}); }
 
+void ShapeReader::append(std::vector<Shape> shapes) {
+    for (Shape& shape : shapes) {
+        triangles_ += count_triangles(shape.geometry);
+        shapes_.push_back(std::move(shape));
+    }
+}
+
 void ShapeReader::check_unused_groups() {
     const std::size_t count = shapes_.size();
     for (auto& [name, group] : groups_)

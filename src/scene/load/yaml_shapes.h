@@ -33,6 +33,9 @@ class ShapeReader {
     /// Reads the groups that nothing used and forgets their shapes, so that mistakes in them don't lie in wait.
     void check_unused_groups();
 
+    /// Appends shapes that stand ready.
+    void append(std::vector<Shape> shapes);
+
     std::vector<Shape> take_shapes() { return std::move(shapes_); }
     bool empty() const { return shapes_.empty(); }
 

@@ -174,7 +174,7 @@ YamlPtr parse_yaml(const std::string& text, const std::string& file) {
     return builder.root();
 }
 
-std::string read_text_file(const std::string& path) {
+std::string read_text_file(const std::string& path, std::size_t most_bytes) {
     const auto fail = [&](const std::string& what) -> std::string { throw InputError({path, 0, 0}, what); };
     std::error_code error;
     const auto status = std::filesystem::status(path, error);
@@ -182,8 +182,8 @@ std::string read_text_file(const std::string& path) {
     if (std::filesystem::is_directory(status)) return fail("found a directory, expected a scene file");
     if (!std::filesystem::is_regular_file(status))
         return fail("found something that is not a file, expected a scene file");
-    if (const auto bytes = std::filesystem::file_size(path, error); !error && bytes > kMaxYamlBytes)
-        return fail(fmt::format("found {} bytes, expected at most {}", bytes, kMaxYamlBytes));
+    if (const auto bytes = std::filesystem::file_size(path, error); !error && bytes > most_bytes)
+        return fail(fmt::format("found {} bytes, expected at most {}", bytes, most_bytes));
     std::ifstream stream(path, std::ios::binary);
     if (!stream) return fail("found a file that can't be opened, expected a readable one");
     std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());

@@ -45,7 +45,7 @@ constexpr std::size_t kMaxYamlBytes = std::size_t{1} << 26;
 YamlPtr parse_yaml(const std::string& text, const std::string& file);
 
 /// The text of a file.
-/// @throws InputError "path: what is wrong" for anything but a readable regular file within kMaxYamlBytes.
-std::string read_text_file(const std::string& path);
+/// @throws InputError "path: what is wrong" for anything but a readable regular file within `most_bytes`.
+std::string read_text_file(const std::string& path, std::size_t most_bytes = kMaxYamlBytes);
 
 } // namespace keyhole

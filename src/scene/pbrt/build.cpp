@@ -1,0 +1,192 @@
+#include "scene/pbrt/build.h"
+
+#include "core/parallel.h"
+#include "scene/geometry.h"
+#include "scene/load/ply.h"
+#include "scene/pbrt/quadrics.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <exception>
+#include <map>
+#include <numeric>
+
+namespace keyhole::pbrt {
+namespace {
+
+/// Runs body(i) for all i at once; of what they throw the first by i is thrown on.
+template <class Body> void parallel_attempt(std::size_t n, const Body& body) {
+    std::vector<std::exception_ptr> errors(n);
+    parallel_for(static_cast<std::int64_t>(n), [&](std::int64_t i) {
+        try {
+            body(static_cast<std::size_t>(i));
+        } catch (...) {
+            errors[static_cast<std::size_t>(i)] = std::current_exception();
+        }
+    });
+    for (const auto& error : errors)
+        if (error) std::rethrow_exception(error);
+}
+
+bool has_bounded_positions(const Geometry& geometry) {
+    const auto bounded = [](const Vec3& p) {
+        constexpr float kMost = 1e13f; // products of lengths stay finite
+        return std::abs(p.x) <= kMost && std::abs(p.y) <= kMost && std::abs(p.z) <= kMost;
+    };
+    if (const auto* s = std::get_if<Sphere>(&geometry)) return bounded(s->center) && bounded(Vec3(s->radius));
+    for (const Vec3& p : std::get<TriangleMesh>(geometry).positions)
+        if (!bounded(p)) return false;
+    return true;
+}
+
+/// Triangles `begin` to `end` of a mesh, with the positions that they use.
+TriangleMesh part_of(const TriangleMesh& mesh, std::size_t begin, std::size_t end) {
+    TriangleMesh part;
+    for (std::size_t i = begin; i < end; ++i) {
+        const auto first = static_cast<std::uint32_t>(part.positions.size());
+        for (const auto k : mesh.triangles[i]) {
+            part.positions.push_back(mesh.positions[k]);
+            if (!mesh.normals.empty()) part.normals.push_back(mesh.normals[k]);
+            if (!mesh.uvs.empty()) part.uvs.push_back(mesh.uvs[k]);
+        }
+        part.triangles.push_back({first, first + 1, first + 2});
+    }
+    return part;
+}
+
+class Builder {
+  public:
+    Builder(std::vector<ShapeRecord> records, const std::vector<Placement>& placements)
+        : records_(std::move(records)), placements_(placements), uses_(records_.size(), 0) {
+        for (const Placement& p : placements_) ++uses_[p.record];
+    }
+
+    void resolve_materials(const MaterialTable& materials, Warnings& warnings) {
+        for (ShapeRecord& r : records_) {
+            if (!r.material_name.empty()) r.material = materials.look_up(r.material_name, r.directive);
+            if (!r.light || !r.material.is_interface) continue;
+            r.light.reset();
+            warnings.add(r.directive.position, "interface light",
+                         r.directive.title() + ": the area light is ignored, as pbrt does on the material interface");
+        }
+    }
+
+    /// Files that several records name are read once.
+    void read_meshes() {
+        std::map<std::string, std::vector<std::size_t>> users;
+        for (std::size_t i = 0; i < records_.size(); ++i)
+            if (!records_[i].source.ply_path.empty()) users[records_[i].source.ply_path].push_back(i);
+        std::vector<const std::vector<std::size_t>*> files;
+        for (const auto& [path, list] : users) files.push_back(&list);
+        parallel_attempt(files.size(), [&](std::size_t f) {
+            const ShapeRecord& first = records_[files[f]->front()];
+            TriangleMesh mesh;
+            try {
+                mesh = read_ply(first.source.ply_path);
+            } catch (const InputError& e) {
+                first.directive.fail(e.what());
+            }
+            for (std::size_t k = 1; k < files[f]->size(); ++k) records_[(*files[f])[k]].source.geometry = mesh;
+            records_[files[f]->front()].source.geometry = std::move(mesh);
+        });
+    }
+
+    std::vector<Shape> place() {
+        check_limits();
+        std::vector<std::vector<Shape>> made(placements_.size());
+        parallel_attempt(placements_.size(), [&](std::size_t i) { made[i] = place(placements_[i]); });
+        std::vector<Shape> shapes;
+        for (auto& list : made)
+            for (Shape& shape : list) shapes.push_back(std::move(shape));
+        if (shapes.size() > kMaxShapes)
+            throw InputError(fmt::format("found more than {} shapes, expected fewer", kMaxShapes));
+        return shapes;
+    }
+
+  private:
+    void check_limits() const {
+        std::size_t triangles = 0, shapes = 0;
+        for (const Placement& p : placements_) {
+            const ShapeRecord& r = records_[p.record];
+            const auto* mesh = std::get_if<TriangleMesh>(&r.source.geometry);
+            triangles += mesh != nullptr ? mesh->triangles.size() : 0;
+            if (++shapes > kMaxShapes || triangles > kMaxTriangles)
+                r.directive.fail(fmt::format("found more than {} shapes or {} triangles, expected fewer", kMaxShapes,
+                                             kMaxTriangles));
+        }
+    }
+
+    std::vector<Shape> place(const Placement& placement) {
+        ShapeRecord& record = records_[placement.record];
+        Geometry geometry = uses_[placement.record] == 1 ? std::move(record.source.geometry) : record.source.geometry;
+        const Transform to_world = record.to_world * placement.to_world;
+        if (!(regularity(to_world) > 1e-12))
+            record.directive.fail("found a transform that flattens the shape, expected a regular one");
+        if (record.material.is_textured || record.alpha) parametrise(geometry);
+        transform_geometry(geometry, to_world);
+        if (auto* mesh = std::get_if<TriangleMesh>(&geometry)) turn_triangles_to_normals(*mesh);
+        if (record.reversed) flip(geometry);
+        if (!has_bounded_positions(geometry))
+            record.directive.fail("found a shape too large or too far, expected it within 1e13");
+        return finish(record, std::move(geometry));
+    }
+
+    static void parametrise(Geometry& geometry) {
+        if (const auto* sphere = std::get_if<Sphere>(&geometry))
+            geometry = parametrised_sphere(static_cast<double>(sphere->radius));
+        else if (std::get<TriangleMesh>(geometry).uvs.empty())
+            assume_uvs(std::get<TriangleMesh>(geometry));
+    }
+
+    /// Where power is given each triangle or patch has it, so that they part ways.
+    static std::vector<Shape> finish(const ShapeRecord& record, Geometry geometry) {
+        std::vector<Shape> shapes;
+        const auto* mesh = std::get_if<TriangleMesh>(&geometry);
+        const std::size_t step = record.source.faces_per_patch;
+        if (mesh != nullptr && record.light && record.light->power > 0 && mesh->triangles.size() > step) {
+            if (mesh->triangles.size() / step > kMaxShapes)
+                record.directive.fail(fmt::format("found more than {} lights, expected fewer", kMaxShapes));
+            for (std::size_t i = 0; i < mesh->triangles.size(); i += step)
+                shapes.push_back(make_shape(record, part_of(*mesh, i, std::min(i + step, mesh->triangles.size()))));
+        } else {
+            shapes.push_back(make_shape(record, std::move(geometry)));
+        }
+        return shapes;
+    }
+
+    static Shape make_shape(const ShapeRecord& record, Geometry geometry) {
+        Shape shape;
+        shape.geometry = std::move(geometry);
+        shape.material = record.material.material;
+        shape.alpha = record.alpha;
+        shape.inside = record.inside;
+        shape.outside = record.outside;
+        if (!record.light || is_black(record.light->radiance)) return shape;
+        const AreaLight& light = *record.light;
+        const double area = surface_area(shape);
+        if (!(area > 0)) return shape;
+        shape.emission = std::make_unique<SurfaceEmission>();
+        shape.emission->two_sided = light.two_sided;
+        // A Lambertian emitter of radiance L sends out pi L from each unit of area of each side.
+        shape.emission->radiance =
+            light.radiance * (light.power > 0 ? light.power / (kPi * area * (light.two_sided ? 2 : 1)) : 1.0);
+        return shape;
+    }
+
+    std::vector<ShapeRecord> records_;
+    const std::vector<Placement>& placements_;
+    std::vector<std::size_t> uses_;
+};
+
+} // namespace
+
+std::vector<Shape> build_shapes(std::vector<ShapeRecord> records, const std::vector<Placement>& placements,
+                                const MaterialTable& materials, Warnings& warnings) {
+    Builder builder(std::move(records), placements);
+    builder.resolve_materials(materials, warnings);
+    builder.read_meshes();
+    return builder.place();
+}
+
+} // namespace keyhole::pbrt

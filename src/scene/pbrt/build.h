@@ -1,0 +1,45 @@
+// From what a file says of its shapes to the shapes of a scene.
+#pragma once
+
+#include "scene/load/geometry_transform.h"
+#include "scene/pbrt/lights.h"
+#include "scene/pbrt/materials.h"
+#include "scene/pbrt/shapes.h"
+#include "scene/shape.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace keyhole::pbrt {
+
+/// A `Shape` directive with the state it stood in.
+struct ShapeRecord {
+    Directive directive; ///< for messages; its parameters are left out
+    ShapeSource source;
+    Transform to_world; ///< or to the space of the object that it belongs to
+    bool reversed = false;
+    MaterialEntry material;
+    std::string material_name; ///< looked up at the end if not empty: a name may be used before it is made
+    std::optional<AreaLight> light;
+    FloatTexture alpha;                            ///< may be null
+    std::shared_ptr<const Medium> inside, outside; ///< null: vacuum
+};
+
+/// A record where it stands in the world.
+struct Placement {
+    std::size_t record;
+    Transform to_world; ///< after the record's own
+};
+
+/// Limits on what instances may multiply to.
+constexpr std::size_t kMaxShapes = std::size_t{1} << 20;
+constexpr std::size_t kMaxTriangles = std::size_t{1} << 27;
+
+/// Reads the mesh files, each once and several at a time, and puts all shapes into world space. `records` are used up.
+/// @throws InputError for broken meshes, singular transforms, unknown materials, and too much of everything: the first
+/// by the order of `placements`.
+std::vector<Shape> build_shapes(std::vector<ShapeRecord> records, const std::vector<Placement>& placements,
+                                const MaterialTable& materials, Warnings& warnings);
+
+} // namespace keyhole::pbrt

@@ -1,0 +1,254 @@
+#include "scene/pbrt/directive.h"
+
+#include "scene/load/suggest.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+
+namespace keyhole::pbrt {
+namespace {
+
+struct Form {
+    std::size_t numbers = 0;
+    std::size_t least_words = 0, most_words = 0;
+    bool parameters = false;
+};
+
+const std::map<std::string_view, Form>& forms() {
+    static const std::map<std::string_view, Form> table{
+        {"Accelerator", {0, 1, 1, true}},
+        {"ActiveTransform", {0, 1, 1, false}},
+        {"AreaLightSource", {0, 1, 1, true}},
+        {"Attribute", {0, 1, 1, true}},
+        {"AttributeBegin", {}},
+        {"AttributeEnd", {}},
+        {"Camera", {0, 1, 1, true}},
+        {"ColorSpace", {0, 1, 1, false}},
+        {"ConcatTransform", {16, 0, 0, false}},
+        {"CoordinateSystem", {0, 1, 1, false}},
+        {"CoordSysTransform", {0, 1, 1, false}},
+        {"Film", {0, 1, 1, true}},
+        {"Identity", {}},
+        {"Import", {0, 1, 1, false}},
+        {"Include", {0, 1, 1, false}},
+        {"Integrator", {0, 1, 1, true}},
+        {"LightSource", {0, 1, 1, true}},
+        {"LookAt", {9, 0, 0, false}},
+        {"MakeNamedMaterial", {0, 1, 1, true}},
+        {"MakeNamedMedium", {0, 1, 1, true}},
+        {"Material", {0, 1, 1, true}},
+        {"MediumInterface", {0, 1, 2, false}},
+        {"NamedMaterial", {0, 1, 1, false}},
+        {"ObjectBegin", {0, 1, 1, false}},
+        {"ObjectEnd", {}},
+        {"ObjectInstance", {0, 1, 1, false}},
+        {"Option", {0, 0, 0, true}},
+        {"PixelFilter", {0, 1, 1, true}},
+        {"ReverseOrientation", {}},
+        {"Rotate", {4, 0, 0, false}},
+        {"Sampler", {0, 1, 1, true}},
+        {"Scale", {3, 0, 0, false}},
+        {"Shape", {0, 1, 1, true}},
+        {"SurfaceIntegrator", {0, 1, 1, true}}, // v2 and v3 betas
+        {"Texture", {0, 3, 3, true}},
+        {"Transform", {16, 0, 0, false}},
+        {"TransformBegin", {}},
+        {"TransformEnd", {}},
+        {"TransformTimes", {2, 0, 0, false}},
+        {"Translate", {3, 0, 0, false}},
+        {"WorldBegin", {}},
+        {"WorldEnd", {}}, // v3
+    };
+    return table;
+}
+
+enum class Values { integers, numbers, strings, bools, spectrum };
+struct Type {
+    std::string_view canonical;
+    Values values;
+    std::size_t components; ///< numbers come in multiples of this
+};
+
+/// v4's types, and v3's names for them.
+const std::map<std::string_view, Type>& types() {
+    static const std::map<std::string_view, Type> table{{"integer", {"integer", Values::integers, 1}},
+                                                        {"float", {"float", Values::numbers, 1}},
+                                                        {"point2", {"point2", Values::numbers, 2}},
+                                                        {"vector2", {"vector2", Values::numbers, 2}},
+                                                        {"point3", {"point3", Values::numbers, 3}},
+                                                        {"vector3", {"vector3", Values::numbers, 3}},
+                                                        {"normal", {"normal", Values::numbers, 3}},
+                                                        {"normal3", {"normal", Values::numbers, 3}},
+                                                        {"point", {"point3", Values::numbers, 3}},
+                                                        {"vector", {"vector3", Values::numbers, 3}},
+                                                        {"rgb", {"rgb", Values::numbers, 3}},
+                                                        {"color", {"rgb", Values::numbers, 3}},
+                                                        {"xyz", {"xyz", Values::numbers, 3}},
+                                                        {"blackbody", {"blackbody", Values::numbers, 1}},
+                                                        {"spectrum", {"spectrum", Values::spectrum, 2}},
+                                                        {"string", {"string", Values::strings, 1}},
+                                                        {"texture", {"texture", Values::strings, 1}},
+                                                        {"bool", {"bool", Values::bools, 1}}};
+    return table;
+}
+
+template <class T> std::vector<std::string_view> keys(const std::map<std::string_view, T>& table) {
+    std::vector<std::string_view> names;
+    for (const auto& [name, entry] : table) names.push_back(name);
+    return names;
+}
+
+std::optional<double> parse_number(std::string_view text) {
+    if (text.starts_with('+')) text.remove_prefix(1); // from_chars() knows no plus sign
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (end != text.data() + text.size() || error == std::errc::invalid_argument) return std::nullopt;
+    // Too small for a double is zero, too large infinite; from_chars() doesn't say which.
+    if (error == std::errc::result_out_of_range) return std::strtod(std::string(text).c_str(), nullptr);
+    return value;
+}
+
+bool is_words(std::string_view directive) { return directive == "ActiveTransform"; }
+
+} // namespace
+
+std::string Directive::title() const { return words.empty() ? name : fmt::format("{} \"{}\"", name, words.back()); }
+
+void Directive::fail(const std::string& message) const {
+    throw InputError(position, fmt::format("{}: {}", title(), message));
+}
+
+void Directive::fail(const Parameter& parameter, const std::string& message) const {
+    throw InputError(parameter.position, fmt::format("{}: {}", title(), message));
+}
+
+std::optional<Directive> DirectiveReader::next() {
+    const Token token = lexer_.next();
+    if (token.kind == Token::Kind::end) return std::nullopt;
+    const auto form = token.kind == Token::Kind::word ? forms().find(token.text) : forms().end();
+    if (form == forms().end()) {
+        const std::string hint = token.kind == Token::Kind::word ? expected_one_of(token.text, keys(forms())) : "";
+        throw InputError(
+            lexer_.position(token),
+            fmt::format("found {}, expected a directive{}", describe(token),
+                        hint.find("did you mean") == std::string::npos ? "" : hint.substr(hint.find(';'))));
+    }
+    Directive directive;
+    directive.name = token.text;
+    directive.position = lexer_.position(token);
+    read_numbers(directive, form->second.numbers);
+    while (directive.words.size() < form->second.most_words) {
+        const Token& word = lexer_.peek();
+        const bool fits = word.kind == (is_words(directive.name) ? Token::Kind::word : Token::Kind::string);
+        if (!fits && directive.words.size() >= form->second.least_words) break;
+        if (!fits)
+            throw InputError(lexer_.position(word),
+                             fmt::format("{}: found {}, expected a name in quotes", directive.title(), describe(word)));
+        directive.words.push_back(unescape(lexer_.next().text));
+    }
+    while (form->second.parameters && lexer_.peek().kind == Token::Kind::string) {
+        Parameter parameter = read_parameter(directive);
+        for (const Parameter& other : directive.parameters)
+            if (other.name == parameter.name)
+                directive.fail(parameter, fmt::format("found '{}' again, expected it once", parameter.name));
+        directive.parameters.push_back(std::move(parameter));
+    }
+    return directive;
+}
+
+double DirectiveReader::read_number(const Directive& directive) {
+    const Token token = lexer_.next();
+    const auto value = token.kind == Token::Kind::word ? parse_number(token.text) : std::nullopt;
+    if (!value || !std::isfinite(*value))
+        throw InputError(lexer_.position(token),
+                         fmt::format("{}: found {}, expected a finite number", directive.title(), describe(token)));
+    return *value;
+}
+
+/// Brackets around the numbers are optional, as pbrt has them around matrices.
+void DirectiveReader::read_numbers(Directive& directive, std::size_t count) {
+    if (count == 0) return;
+    const bool bracketed = lexer_.peek().kind == Token::Kind::open;
+    if (bracketed) lexer_.next();
+    for (std::size_t i = 0; i < count; ++i) directive.numbers.push_back(read_number(directive));
+    if (!bracketed) return;
+    const Token token = lexer_.next();
+    if (token.kind != Token::Kind::close)
+        throw InputError(lexer_.position(token), fmt::format("{}: found {} after {} numbers, expected ']'",
+                                                             directive.title(), describe(token), count));
+}
+
+Parameter DirectiveReader::read_parameter(const Directive& directive) {
+    const Token declaration = lexer_.next();
+    Parameter parameter;
+    parameter.position = lexer_.position(declaration);
+    const std::string text = unescape(declaration.text);
+    const auto fail = [&](const std::string& message) { directive.fail(parameter, message); };
+    constexpr const char* kSpace = " \t";
+    const std::size_t begin = std::min(text.find_first_not_of(kSpace), text.size());
+    const std::size_t end = std::min(text.find_first_of(kSpace, begin), text.size());
+    const std::size_t name = std::min(text.find_first_not_of(kSpace, end), text.size());
+    const std::string type = text.substr(begin, end - begin);
+    parameter.name = text.substr(name, text.find_last_not_of(kSpace) + 1 - std::min(name, text.size()));
+    if (type.empty() || parameter.name.empty())
+        fail(fmt::format("found {}, expected the type and the name of a parameter, as in \"float radius\"",
+                         describe(declaration)));
+    const auto known = types().find(type);
+    if (known == types().end())
+        fail(fmt::format("found the type '{}', {}", type, expected_one_of(type, keys(types()))));
+    parameter.type = known->second.canonical;
+    read_values(directive, parameter);
+    return parameter;
+}
+
+void DirectiveReader::read_values(const Directive& directive, Parameter& parameter) {
+    const Token first = lexer_.next();
+    if (first.kind == Token::Kind::open) {
+        for (Token token = lexer_.next(); token.kind != Token::Kind::close; token = lexer_.next())
+            read_value(directive, parameter, token);
+    } else {
+        read_value(directive, parameter, first);
+    }
+    const Type& type = types().at(parameter.type);
+    const std::size_t count = parameter.numbers.size();
+    if (count + parameter.strings.size() + parameter.bools.size() == 0)
+        directive.fail(parameter, fmt::format("found no value of '{}', expected one", parameter.name));
+    const bool whole = type.values == Values::spectrum && count == 1 ? false : count % type.components == 0;
+    if (!whole)
+        directive.fail(parameter, fmt::format("found {} numbers in '{} {}', expected a multiple of {}", count,
+                                              parameter.type, parameter.name, type.components));
+}
+
+void DirectiveReader::read_value(const Directive& directive, Parameter& parameter, const Token& token) {
+    const Values values = types().at(parameter.type).values;
+    const auto fail = [&](std::string_view expected) {
+        throw InputError(lexer_.position(token),
+                         fmt::format("{}: found {} as '{} {}', expected {}", directive.title(), describe(token),
+                                     parameter.type, parameter.name, expected));
+    };
+    if (values == Values::bools) {
+        // v3 quotes them.
+        if (token.text != "true" && token.text != "false") fail("true or false");
+        parameter.bools.push_back(token.text == "true");
+        return;
+    }
+    const bool is_string = token.kind == Token::Kind::string;
+    if (values == Values::strings || (values == Values::spectrum && is_string)) {
+        if (!is_string) fail("a string in quotes");
+        if (!parameter.numbers.empty()) fail("a number");
+        parameter.strings.push_back(unescape(token.text));
+        return;
+    }
+    const auto number = token.kind == Token::Kind::word ? parse_number(token.text) : std::nullopt;
+    if (!number || !std::isfinite(*number) || !parameter.strings.empty()) fail("a finite number");
+    if (values == Values::integers && (*number != std::trunc(*number) || std::abs(*number) > 2147483647.0))
+        fail("a whole number");
+    parameter.numbers.push_back(*number);
+}
+
+} // namespace keyhole::pbrt

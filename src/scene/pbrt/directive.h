@@ -1,0 +1,64 @@
+// The grammar of pbrt's text format: a file is a list of directives.
+//
+//     file      = { directive }
+//     directive = NAME { number } { "word" } { parameter }        as the table in directive.cpp says for each name
+//     parameter = "type name" value
+//     value     = number | "string" | true | false | "[" { number } "]" | "[" { "string" } "]" | "[" { true|false } "]"
+#pragma once
+
+#include "core/error.h"
+#include "scene/pbrt/lexer.h"
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace keyhole::pbrt {
+
+/// Values of a declared type. Numbers are finite and come in whole points, colours and the like.
+struct Parameter {
+    std::string type; ///< one of v4's names; v3's are translated ("color" to "rgb", "point" to "point3")
+    std::string name;
+    FilePosition position;
+    std::vector<double> numbers;      ///< of all types but the next three
+    std::vector<std::string> strings; ///< of string, texture, and spectra given by name
+    std::vector<bool> bools;
+};
+
+struct Directive {
+    std::string name;
+    FilePosition position;
+    std::vector<double> numbers;
+    std::vector<std::string> words;
+    std::vector<Parameter> parameters; ///< names are unique
+
+    /// As it begins in the file: `Shape "sphere"`.
+    std::string title() const;
+    /// @throws InputError "file:line:column: title: message".
+    [[noreturn]] void fail(const std::string& message) const;
+    [[noreturn]] void fail(const Parameter& parameter, const std::string& message) const;
+};
+
+/// Reads directives off a text, one at a time, so that a long file is never held as a whole.
+class DirectiveReader {
+  public:
+    DirectiveReader(std::string text, std::string file) : lexer_(std::move(text), std::move(file)) {}
+
+    /// None at the end of the file.
+    /// @throws InputError "file:line:column: what was found, what was expected" for all that the grammar excludes.
+    std::optional<Directive> next();
+
+    const std::string& file() const { return lexer_.file(); }
+
+  private:
+    double read_number(const Directive& directive);
+    void read_numbers(Directive& directive, std::size_t count);
+    Parameter read_parameter(const Directive& directive);
+    void read_values(const Directive& directive, Parameter& parameter);
+    void read_value(const Directive& directive, Parameter& parameter, const Token& token);
+
+    Lexer lexer_;
+};
+
+} // namespace keyhole::pbrt

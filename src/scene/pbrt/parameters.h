@@ -1,0 +1,89 @@
+// Typed access to the parameters of a directive.
+#pragma once
+
+#include "core/vec.h"
+#include "scene/pbrt/directive.h"
+#include "scene/pbrt/spectrum.h"
+
+#include <initializer_list>
+#include <limits>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace keyhole::pbrt {
+
+/// Collects warnings, each kind once.
+class Warnings {
+  public:
+    /// @param out may be null.
+    explicit Warnings(std::vector<std::string>* out) : out_(out) {}
+    /// Adds "file:line:column: message", unless one of this `kind` was added before.
+    void add(const FilePosition& where, const std::string& kind, const std::string& message);
+
+  private:
+    std::vector<std::string>* out_;
+    std::set<std::string> kinds_;
+};
+
+/// Numbers allowed for a parameter, both ends included.
+struct Bounds {
+    double least = -1e30, most = 1e30;
+};
+constexpr Bounds kPositive{1e-12, 1e12};
+constexpr Bounds kNotNegative{0, 1e12};
+constexpr Bounds kShare{0, 1};
+
+/// What the readers of all families need.
+struct ReadContext {
+    Warnings& warnings;
+    std::string directory; ///< that paths are relative to
+
+    std::string resolve(const std::string& path) const;
+};
+
+/// Parameters of one directive, with those that an `Attribute` set for its kind. All functions throw InputError, with
+/// the position of the parameter, where it has another type or is out of range.
+class Parameters {
+  public:
+    /// `inherited` may be null.
+    Parameters(const Directive& directive, const std::vector<Parameter>* inherited, const ReadContext& context)
+        : directive_(directive), inherited_(inherited), context_(context) {}
+
+    const Directive& directive() const { return directive_; }
+    const ReadContext& context() const { return context_; }
+
+    /// Null where it is not given. The parameter counts as read.
+    const Parameter* find(std::string_view name);
+    /// Of one of these types.
+    const Parameter* find(std::string_view name, std::initializer_list<std::string_view> types);
+    bool has(std::string_view name) { return find(name) != nullptr; }
+
+    double number(std::string_view name, double otherwise, const Bounds& bounds = {});
+    std::int64_t integer(std::string_view name, std::int64_t otherwise, std::int64_t least, std::int64_t most);
+    bool boolean(std::string_view name, bool otherwise);
+    std::string string(std::string_view name, const std::string& otherwise);
+    Imath::V3d point(std::string_view name, const Imath::V3d& otherwise);
+    Rgb spectrum(std::string_view name, const Rgb& otherwise, SpectrumUse use);
+    /// As many numbers as there are, in groups of `type`; empty where it is not given.
+    std::vector<double> numbers(std::string_view name, std::initializer_list<std::string_view> types);
+
+    /// Names that change nothing here, and are no mistake.
+    void ignore(std::initializer_list<std::string_view> names);
+    /// Warns of parameters that nothing read.
+    void warn_of_the_rest();
+
+    void warn(const std::string& kind, const std::string& message);
+    [[noreturn]] void fail(const std::string& message) const { directive_.fail(message); }
+
+  private:
+    const Parameter& single(const Parameter& parameter, std::size_t values) const;
+
+    const Directive& directive_;
+    const std::vector<Parameter>* inherited_;
+    const ReadContext& context_;
+    std::set<std::string, std::less<>> known_;
+};
+
+} // namespace keyhole::pbrt

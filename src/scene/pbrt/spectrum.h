@@ -1,0 +1,31 @@
+// Spectra of pbrt's format as RGB.
+#pragma once
+
+#include "core/vec.h"
+#include "scene/pbrt/directive.h"
+
+#include <string>
+
+namespace keyhole::pbrt {
+
+/// What a spectrum stands for decides how it becomes three numbers.
+enum class SpectrumUse {
+    reflectance, ///< as seen under daylight (D65), from 0 to 1
+    light,       ///< its colour, with luminance 1 as pbrt-v4 scales every light that isn't given as RGB
+    index,       ///< refractive index or absorption: its value at the wavelengths of the primaries
+};
+
+/// Wavelengths of red, green and blue [nm] where an index is read.
+constexpr double kPrimaryWavelengths[3] = {630, 532, 465};
+
+/// The value of an `rgb`, `xyz`, `blackbody` or `spectrum` parameter. Negative components, of colours that a screen
+/// can't show, become 0.
+/// @param directory of spectrum files.
+/// @throws InputError for unknown names, broken files, and values that make no sense for the use.
+Rgb read_spectrum(const Directive& directive, const Parameter& parameter, SpectrumUse use,
+                  const std::string& directory);
+
+/// Colour of a black body [K], with luminance 1, by Planck's law.
+Rgb blackbody_color(double kelvin);
+
+} // namespace keyhole::pbrt
