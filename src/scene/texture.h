@@ -51,7 +51,7 @@ struct ImageOptions {
     Filter filter = Filter::bilinear;
     double scale = 1;    ///< factor on the value
     bool invert = false; ///< 1 - value, after the scale
-    UvMapping mapping;
+    UvMapping mapping{};
 };
 
 /// A picture, its first row at v = 1. The mean of the channels where T is double. A file named several times is
