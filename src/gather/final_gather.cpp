@@ -65,6 +65,17 @@ Rgb FinalGather::direct_light(const Vertex& v, const Vec3& back, SampleSource& s
     return light && scene_.visible(v.point, light->x0.point) ? light->value : Rgb(0.0);
 }
 
+Rgb FinalGather::direct_light_alone(const Vertex& v, const Vec3& back, SampleSource& source) const {
+    Rgb sum = direct_light(v, back, source);
+    const auto next = continue_walk(v, back, From::eye, source);
+    if (!next || is_specular(next->event)) return sum;
+    const auto hit = next_vertex(scene_, v, next->w);
+    if (hit && hit->point.is_emitter())
+        sum += next->weight * scene_.transmittance(v.point, hit->point) *
+               emission_with_mis(scene_, v, *hit, next->w, next->pdf);
+    return sum;
+}
+
 Rgb FinalGather::gather_ray(const Vertex& from, const Vec3& back, int scatterings, SampleSource& source,
                             PixelSample& out, Rgb& direct) const {
     const auto first = continue_walk(from, back, From::eye, source);
@@ -80,7 +91,8 @@ Rgb FinalGather::gather_ray(const Vertex& from, const Vec3& back, int scattering
         if (n == scatterings) direct = throughput * emission_with_mis(scene_, v, *hit, w, first->pdf);
         v = *hit;
         if (n == options_.max_scatterings) break;
-        if (v.bsdf.traits().finite) sum += throughput * ask_global_map(v, -w, out);
+        if (v.bsdf.traits().finite)
+            sum += throughput * (ask_global_map(v, -w, out) + direct_light_alone(v, -w, source));
         if (!v.bsdf.traits().delta) break;
         const auto next = continue_walk(v, -w, From::eye, source);
         if (!next || !is_specular(next->event)) break;

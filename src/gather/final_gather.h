@@ -1,4 +1,5 @@
-// Stage three: what the eye sees, from direct light, the caustic map and gather rays that ask the global map.
+// Stage three: what the eye sees, from direct light, the caustic map, and gather rays that ask the global map and find
+// direct light at what they hit.
 #pragma once
 
 #include "core/pixel_sample.h"
@@ -37,6 +38,8 @@ class FinalGather {
     void shade(const Vertex& v, const Vec3& back, const Rgb& throughput, int scatterings, SampleSource& source,
                PixelSample& out) const;
     Rgb direct_light(const Vertex& v, const Vec3& back, SampleSource& source) const;
+    /// Direct light where no gather rays follow that would meet emitters: both techniques, one sample each.
+    Rgb direct_light_alone(const Vertex& v, const Vec3& back, SampleSource& source) const;
     /// One gather ray; `direct` takes its share of direct light (MIS against direct_light()).
     Rgb gather_ray(const Vertex& from, const Vec3& back, int scatterings, SampleSource& source, PixelSample& out,
                    Rgb& direct) const;

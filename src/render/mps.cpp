@@ -18,7 +18,7 @@ struct Radii {
     explicit Radii(const Scene& scene) {
         const float size = (scene.upper() - scene.lower()).length();
         importance = 0.1f * size;
-        global = 0.05f * size;
+        global = 0.02f * size;
         caustic = 0.02f * size;
     }
 };

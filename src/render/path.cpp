@@ -29,6 +29,7 @@ struct PixelSink {
         case LightClass::emission:
         case LightClass::direct: pixel.direct += value; break;
         case LightClass::caustic: pixel.caustic += value; break;
+        case LightClass::second:
         case LightClass::indirect: pixel.indirect += value; break;
         }
     }

@@ -10,11 +10,12 @@ enum class LightClass {
     emission, ///< L S* E
     direct,   ///< L D S* E
     caustic,  ///< L S+ D S* E
-    indirect, ///< two or more D
+    second,   ///< L D S* D S* E: direct light at the second D seen
+    indirect, ///< everything else with two or more D
 };
 
 inline LightClass light_class(const Path& path) {
-    if (nth_finite_from_eye(path, 2) > 0) return LightClass::indirect;
+    if (const int d2 = nth_finite_from_eye(path, 2); d2 > 0) return d2 > 1 ? LightClass::indirect : LightClass::second;
     const int d1 = nth_finite_from_eye(path, 1);
     return d1 == 0 ? LightClass::emission : d1 == 1 ? LightClass::direct : LightClass::caustic;
 }

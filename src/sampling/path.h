@@ -52,15 +52,18 @@ inline int nth_finite_from_eye(const Path& path, int n) {
 /// Which photon map a path stores its light sub-path in.
 enum class PhotonKind { none, global, caustic };
 
-/// Where a path stores a photon: MATHEMATICS of the photon map, "storage point". Global: at d2, the second
-/// non-specular vertex from the eye. Caustic: at d1, when light came to it through specular vertices only.
+/// Where a path stores a photon. Global: at d2, the second non-specular vertex from the eye, unless light came to it
+/// straight from the emitter: that is direct light, which stage three has from next-event estimation. Near a lamp it
+/// varies so fast that no density estimate could follow. Caustic: at d1, when light came to it through specular vertices
+/// only.
 struct StoragePoint {
     PhotonKind kind = PhotonKind::none;
     int vertex = 0;
 };
 
 inline StoragePoint storage_point(const Path& path) {
-    if (const int d2 = nth_finite_from_eye(path, 2); d2 > 0) return {PhotonKind::global, d2};
+    if (const int d2 = nth_finite_from_eye(path, 2); d2 > 0)
+        return d2 > 1 ? StoragePoint{PhotonKind::global, d2} : StoragePoint{};
     const int d1 = nth_finite_from_eye(path, 1);
     return d1 > 1 ? StoragePoint{PhotonKind::caustic, d1} : StoragePoint{};
 }

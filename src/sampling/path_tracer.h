@@ -54,7 +54,8 @@ void trace_path(const Scene& scene, const Vec2& image, int max_scatterings, Samp
             const Rgb emitted = after_specular ? scene.emitter(hit->point.emitter).radiance(hit->point, -w)
                                                : emission_with_mis(scene, walk.back(), *hit, w, pdf);
             const LightClass light = finite == 0      ? LightClass::emission
-                                     : finite >= 2    ? LightClass::indirect
+                                     : finite >= 3    ? LightClass::indirect
+                                     : finite == 2    ? (after_specular ? LightClass::indirect : LightClass::second)
                                      : after_specular ? LightClass::caustic
                                                       : LightClass::direct;
             if (!is_black(emitted)) sink.contribution(walk, *hit, throughput * emitted, light);
@@ -70,7 +71,9 @@ void trace_path(const Scene& scene, const Vec2& image, int max_scatterings, Samp
             const auto light = sample_direct_light(scene, v, back, source);
             if (light && scene.visible(v.point, light->x0.point))
                 sink.contribution(walk, light->x0, throughput * light->value,
-                                  finite == 0 ? LightClass::direct : LightClass::indirect);
+                                  finite == 0   ? LightClass::direct
+                                  : finite == 1 ? LightClass::second
+                                                : LightClass::indirect);
         }
         const auto next = continue_walk(v, back, From::eye, source);
         if (!next) return;

@@ -39,9 +39,11 @@ Energy by_light_tracing(const Scene& scene, std::int64_t paths) {
         std::array<double, kRegions> global{}, caustic{};
         int arrivals = 0;
         bool arrival(const Vertex& v, const Vec3&, const Rgb& power, bool specular_only) {
-            if (!v.bsdf.traits().finite) return ++arrivals < kMaxDepth;
             const std::size_t r = region(scene, v.point.p);
-            if (arrivals < kMaxDepth - 1) global[r] += luminance(power);
+            // Black surfaces scatter nothing on: no path stores there.
+            if (!v.bsdf.traits().finite || is_black(v.bsdf.eval(v.point.ns, v.point.ns))) return ++arrivals < kMaxDepth;
+            const bool straight = arrivals == 0; // direct light, which no map holds
+            if (!straight && arrivals < kMaxDepth - 1) global[r] += luminance(power);
             if (specular_only) caustic[r] += luminance(power);
             return ++arrivals < kMaxDepth;
         }
