@@ -29,6 +29,8 @@ Image read_image(const std::string& path) {
     std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
     if (extension == ".exr") return read_exr_image(path);
     if (extension == ".pfm") return read_pfm_image(path);
+    if (extension == ".tga") return read_tga_image(path);
+    if (extension == ".jpg" || extension == ".jpeg") return read_jpeg_image(path);
     return read_other_image(path);
 }
 

@@ -39,14 +39,16 @@ constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 28;
 /// Fails unless an image of this size is one that we are ready to hold. @throws InputError
 void check_image_size(const std::string& path, std::int64_t width, std::int64_t height);
 
-/// The image of a file, from a cache while anybody holds it: EXR and PFM, and what OpenImageIO reads, which is loaded
-/// when first needed, because it costs a third of a second and 130 MB.
+/// The image of a file, from a cache while anybody holds it: EXR, PFM, TGA and JPEG, and what OpenImageIO reads, which
+/// is loaded when first needed, because it costs a third of a second and 130 MB.
 /// @throws InputError "path: what is wrong"
 std::shared_ptr<const Image> load_image(const std::string& path);
 
 // The readers behind load_image(), by kind of file.
 Image read_exr_image(const std::string& path);
 Image read_pfm_image(const std::string& path);
+Image read_tga_image(const std::string& path);
+Image read_jpeg_image(const std::string& path);
 Image read_other_image(const std::string& path);
 
 } // namespace keyhole
