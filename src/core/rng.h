@@ -22,6 +22,7 @@ enum class StreamPurpose : std::uint64_t {
     path_tracing = 1,
     brightness,
     seed_choice,
+    importance,
     chain,
     thinning,
     emission,

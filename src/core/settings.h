@@ -15,7 +15,7 @@ struct Settings {
     std::int64_t seed = 1;
     std::int64_t max_depth = 24;
     std::int64_t brightness_samples = 400'000;
-    std::int64_t importons = 200'000;
+    std::int64_t importons = 600'000;
     std::int64_t chains = 1000;
     std::int64_t mutations = 1'000'000;
     std::int64_t photons = 200'000;
@@ -38,7 +38,7 @@ template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
     visit("seed", s.seed, I{0}, I{1} << 53, "seed of all random streams");
     visit("max_depth", s.max_depth, I{1}, I{30}, "most scatterings between light and eye");
     visit("brightness_samples", s.brightness_samples, I{1000}, I{1} << 40, "path samples of stage one");
-    visit("importons", s.importons, I{1000}, I{1} << 30, "size of the importance map");
+    visit("importons", s.importons, I{1000}, I{1} << 30, "eye paths traced for the importance map");
     visit("chains", s.chains, I{1}, I{1} << 20, "Markov chains; their number never follows the threads");
     visit("mutations", s.mutations, I{1}, I{1} << 50, "Metropolis steps over all chains");
     visit("photons", s.photons, I{1}, I{1} << 30, "most photons kept in a pass");

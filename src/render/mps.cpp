@@ -27,7 +27,7 @@ ImportanceMap make_importance_map(std::vector<Importon>& importons, std::int64_t
     std::vector<Photon> compact;
     compact.reserve(importons.size());
     for (const Importon& i : importons)
-        compact.emplace_back(i.point.p, i.point.ng, i.to_eye, i.weight / static_cast<double>(samples));
+        compact.emplace_back(i.position, i.ng, i.to_eye, i.weight / static_cast<double>(samples));
     std::vector<Importon>().swap(importons);
     return {std::move(compact), options};
 }
@@ -41,14 +41,15 @@ std::size_t caustic_share(const StageOne& one, const Scene& scene, std::int64_t 
 }
 
 /// Stage two: chains from the seeds of stage one, photons with the power that the importance map gives them.
-SampledPhotons run_stage_two(const Scene& scene, const Settings& settings, const StageOneSettings& first, StageOne& one,
+SampledPhotons run_stage_two(const Scene& scene, const Settings& settings, const StageOneSettings& first, const StageOne& one,
                              const SurfacePatches& patches, RenderStats& stats, const RunContext& context) {
     const StageClock clock(stats, "photons");
     const Radii radii(scene);
     const std::vector<Path> seeds = choose_seeds(scene, first, one, settings.chains);
     const ImportanceOptions options{.k = 50, .max_radius = radii.importance, .patches = &patches};
-    const ImportanceMap at_d1 = make_importance_map(one.first, one.importon_samples, options);
-    const ImportanceMap at_d2 = make_importance_map(one.second, one.importon_samples, options);
+    Importance importance = trace_importance(scene, first.max_scatterings, settings.importons, first.seed, context);
+    const ImportanceMap at_d1 = make_importance_map(importance.first, importance.samples, options);
+    const ImportanceMap at_d2 = make_importance_map(importance.second, importance.samples, options);
     stats.importons = at_d1.map().photons().size() + at_d2.map().photons().size();
     stats.importon_bytes = at_d1.bytes() + at_d2.bytes();
 
@@ -106,9 +107,8 @@ RenderResult render_mps(const Scene& scene, const Settings& settings, const RunC
 
     const StageOneSettings first{.max_scatterings = static_cast<int>(settings.max_depth),
                                  .samples = settings.brightness_samples,
-                                 .importons = settings.importons,
                                  .seed = static_cast<std::uint64_t>(settings.seed)};
-    StageOne one = run_stage_one(scene, first, stats, context);
+    const StageOne one = run_stage_one(scene, first, stats, context);
 
     SampledPhotons photons;
     if (one.brightness.mean() > 0) photons = run_stage_two(scene, settings, first, one, patches, stats, context);

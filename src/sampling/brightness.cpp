@@ -26,16 +26,11 @@ void trace_sample(const Scene& scene, const StageOneSettings& settings, Techniqu
     trace_independent(technique, scene, image_point(settings.seed, i), settings.max_scatterings, settings.set, rng, sink);
 }
 
-/// Adds up one sample and keeps its importons, those at vertices where stage three may ask the maps.
+/// Adds up one sample.
 struct EstimateSink {
-    bool keep_importons;
     double sum = 0, caustic = 0;
-    std::vector<Importon> first{}, second{};
 
-    void arrival(const Vertex& v, const Vec3& to_eye, const Rgb& throughput, int finite) {
-        if (keep_importons && finite < 2 && v.bsdf.traits().finite)
-            (finite == 0 ? first : second).push_back({v.point, to_eye, throughput});
-    }
+    void arrival(const Vertex&, const Vec3&, const Rgb&, int) {}
     void contribution(const Rgb& value, LightClass light, auto&& /*make_path*/) {
         sum += luminance(value);
         if (light == LightClass::caustic) caustic += luminance(value);
@@ -60,25 +55,19 @@ struct SeedSink {
 
 struct Block {
     RunningStats brightness, caustic;
-    std::vector<Importon> first, second;
     std::vector<double> groups;
 };
 
-Block run_block(const Scene& scene, const StageOneSettings& settings, Technique technique, Range samples,
-                std::int64_t importon_stride) {
+Block run_block(const Scene& scene, const StageOneSettings& settings, Technique technique, Range samples) {
     Block block;
-    EstimateSink sink{false};
     for (std::int64_t i = samples.begin; i < samples.end; ++i) {
-        sink.sum = sink.caustic = 0;
-        sink.keep_importons = importon_stride > 0 && i % importon_stride == 0;
+        EstimateSink sink;
         trace_sample(scene, settings, technique, i, sink);
         block.brightness.add(sink.sum);
         block.caustic.add(sink.caustic);
         if (i % StageOne::kGroup == 0) block.groups.push_back(0);
         block.groups.back() += sink.sum;
     }
-    block.first = std::move(sink.first);
-    block.second = std::move(sink.second);
     return block;
 }
 
@@ -91,7 +80,7 @@ Technique choose_technique(const Scene& scene, const StageOneSettings& settings)
         const std::uint64_t rays = rays_traced();
         parallel_for(16, [&](std::int64_t b) {
             parts[static_cast<std::size_t>(b)] =
-                run_block(scene, settings, technique, {b * kBlock, (b + 1) * kBlock}, 0).brightness;
+                run_block(scene, settings, technique, {b * kBlock, (b + 1) * kBlock}).brightness;
         });
         RunningStats all;
         for (const RunningStats& part : parts) all.merge(part);
@@ -103,20 +92,38 @@ Technique choose_technique(const Scene& scene, const StageOneSettings& settings)
     return cost[0] <= cost[1] ? Technique::path : Technique::bidirectional;
 }
 
-void append(std::vector<Importon>& to, const std::vector<Importon>& from) { to.insert(to.end(), from.begin(), from.end()); }
+/// The importons of one eye path.
+void trace_importons(const Scene& scene, const Vec2& image, int max_scatterings, SampleSource& source, Importance& out) {
+    Vertex v = sample_eye(scene, source);
+    Vec3 w = scene.camera().ray_direction(v.point, image);
+    Rgb throughput(1.0);
+    int finite = 0;
+    for (int i = 0; i < max_scatterings && finite < 2; ++i) {
+        const auto hit = next_vertex(scene, v, w);
+        if (!hit || hit->point.site != Site::surface) return;
+        throughput *= scene.transmittance(v.point, hit->point);
+        v = *hit;
+        if (v.bsdf.traits().finite)
+            (finite == 0 ? out.first : out.second).push_back({v.point.p, v.point.ng, -w, throughput});
+        const auto next = continue_walk(v, -w, From::eye, source);
+        if (!next) return;
+        finite += is_specular(next->event) ? 0 : 1;
+        throughput *= next->weight;
+        w = next->w;
+    }
+}
 
 } // namespace
 
 StageOne run_stage_one(const Scene& scene, const StageOneSettings& settings, const RunContext& context) {
     const Technique technique = choose_technique(scene, settings);
     const std::int64_t blocks = (settings.samples + kBlock - 1) / kBlock;
-    const std::int64_t stride = settings.importons > 0 ? std::max<std::int64_t>(1, settings.samples / settings.importons) : 0;
     std::vector<std::optional<Block>> done(static_cast<std::size_t>(blocks));
     context.begin("brightness", static_cast<std::uint64_t>(settings.samples), "paths");
     parallel_for(blocks, [&](std::int64_t b) {
         if (context.stopped()) return;
         const Range range{b * kBlock, std::min(settings.samples, (b + 1) * kBlock)};
-        done[static_cast<std::size_t>(b)] = run_block(scene, settings, technique, range, stride);
+        done[static_cast<std::size_t>(b)] = run_block(scene, settings, technique, range);
         context.advance(static_cast<std::uint64_t>(range.size()));
     });
     context.end();
@@ -127,14 +134,35 @@ StageOne run_stage_one(const Scene& scene, const StageOneSettings& settings, con
         if (!block) break; // after a stop, the leading blocks are a valid smaller run
         stage.brightness.merge(block->brightness);
         stage.caustic.merge(block->caustic);
-        append(stage.first, block->first);
-        append(stage.second, block->second);
         stage.groups.insert(stage.groups.end(), block->groups.begin(), block->groups.end());
         block.reset();
     }
     stage.samples = static_cast<std::int64_t>(stage.brightness.count());
-    stage.importon_samples = stride > 0 ? (stage.samples + stride - 1) / stride : 0;
     return stage;
+}
+
+Importance trace_importance(const Scene& scene, int max_scatterings, std::int64_t samples, std::uint64_t seed,
+                            const RunContext& context) {
+    const std::int64_t blocks = (samples + kBlock - 1) / kBlock;
+    std::vector<Importance> parts(static_cast<std::size_t>(blocks));
+    context.begin("importance", static_cast<std::uint64_t>(samples), "paths");
+    parallel_for(blocks, [&](std::int64_t b) {
+        const Range range{b * kBlock, std::min(samples, (b + 1) * kBlock)};
+        for (std::int64_t i = range.begin; i < range.end; ++i) {
+            Rng rng(seed, StreamPurpose::importance, static_cast<std::uint64_t>(i));
+            trace_importons(scene, image_point(seed + 1, i), max_scatterings, rng, parts[static_cast<std::size_t>(b)]);
+        }
+        context.advance(static_cast<std::uint64_t>(range.size()));
+    });
+    context.end();
+    Importance all;
+    all.samples = samples;
+    for (Importance& part : parts) {
+        all.first.insert(all.first.end(), part.first.begin(), part.first.end());
+        all.second.insert(all.second.end(), part.second.begin(), part.second.end());
+        part = {};
+    }
+    return all;
 }
 
 std::vector<Path> choose_seeds(const Scene& scene, const StageOneSettings& settings, const StageOne& stage,

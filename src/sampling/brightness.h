@@ -14,16 +14,22 @@ namespace keyhole {
 /// Importance that arrived at a surface from the eye; the adjoint of a photon. `weight` is RGB throughput from a window
 /// of density 1, so that the mean over samples of a sum over importons is an integral over eye sides.
 struct Importon {
-    SurfacePoint point;
+    Vec3 position;
+    Vec3 ng;     ///< unit geometric normal, of either orientation
     Vec3 to_eye; ///< unit
     Rgb weight;
+};
+
+/// Importons at the first and second non-specular vertex seen.
+struct Importance {
+    std::int64_t samples = 0; ///< eye paths that were traced for them
+    std::vector<Importon> first, second;
 };
 
 struct StageOneSettings {
     PathSet set = PathSet::stored;
     int max_scatterings = 24;
     std::int64_t samples = 400'000;
-    std::int64_t importons = 0; ///< about how many to keep of each kind; 0: none
     std::uint64_t seed = 1;
 };
 
@@ -33,8 +39,6 @@ struct StageOne {
     RunningStats brightness;           ///< B_eye [W/(m^2 sr)] over the window, one entry a sample
     RunningStats caustic;              ///< the part of it that the caustic map holds
     std::int64_t samples = 0;          ///< samples taken; fewer than asked for after a stop
-    std::int64_t importon_samples = 0; ///< samples that importons were kept from
-    std::vector<Importon> first, second; ///< at the first and second non-specular vertex seen
     std::vector<double> groups;        ///< sum of contributions of each kGroup consecutive samples
 
     static constexpr std::int64_t kGroup = 32;
@@ -42,6 +46,10 @@ struct StageOne {
 
 /// Independent paths over the window, by whichever technique needs less work for the same error here.
 StageOne run_stage_one(const Scene& scene, const StageOneSettings& settings, const RunContext& context);
+
+/// Traces `samples` eye paths as far as their second non-specular vertex. Reproducible on any number of threads.
+Importance trace_importance(const Scene& scene, int max_scatterings, std::int64_t samples, std::uint64_t seed,
+                            const RunContext& context);
 
 /// `count` of the traced paths, drawn with probability proportional to the luminance of their contributions by
 /// systematic resampling, traced again from their random streams. Empty if no path found light.

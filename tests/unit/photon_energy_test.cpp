@@ -64,7 +64,7 @@ Energy by_light_tracing(const Scene& scene, std::int64_t paths) {
 ImportanceMap importance_map(const std::vector<Importon>& importons, std::int64_t samples, const SurfacePatches& patches) {
     std::vector<Photon> compact;
     for (const Importon& i : importons)
-        compact.emplace_back(i.point.p, i.point.ng, i.to_eye, i.weight / static_cast<double>(samples));
+        compact.emplace_back(i.position, i.ng, i.to_eye, i.weight / static_cast<double>(samples));
     return {std::move(compact), {.k = 50, .max_radius = 0.5f, .patches = &patches}};
 }
 
@@ -75,10 +75,11 @@ Energy by_chains(const Scene& scene, int runs) {
     for (int run = 0; run < runs; ++run) {
         const auto seed = static_cast<std::uint64_t>(100 + run);
         const StageOneSettings first{
-            .max_scatterings = kMaxDepth, .samples = 100'000, .importons = 100'000, .seed = seed};
+            .max_scatterings = kMaxDepth, .samples = 100'000,  .seed = seed};
         const StageOne one = run_stage_one(scene, first, {});
-        const ImportanceMap at_d1 = importance_map(one.first, one.importon_samples, patches);
-        const ImportanceMap at_d2 = importance_map(one.second, one.importon_samples, patches);
+        const Importance importance = trace_importance(scene, kMaxDepth, 200'000, seed, {});
+        const ImportanceMap at_d1 = importance_map(importance.first, importance.samples, patches);
+        const ImportanceMap at_d2 = importance_map(importance.second, importance.samples, patches);
         const Mixture<Path> mixture = make_mixture({&scene, PathSet::stored, kMaxDepth}, Settings{});
         const SampledPhotons photons =
             sample_photons(choose_seeds(scene, first, one, 2000), mixture, {&at_d2, &at_d1},
