@@ -3,6 +3,7 @@ include(architecture)
 
 option(KEYHOLE_TESTS "Build the tests" ON)
 option(KEYHOLE_BENCHMARKS "Build the benchmarks (needs Google Benchmark)" OFF)
+option(KEYHOLE_FUZZ "Build the fuzz targets (needs clang)" OFF)
 option(KEYHOLE_WARNINGS_AS_ERRORS "Treat warnings as errors" OFF)
 keyhole_detect_arch(detected)
 set(KEYHOLE_ARCH "${detected}" CACHE STRING "Value of -march; empty: the compiler's default")
@@ -31,4 +32,7 @@ if(KEYHOLE_SANITIZE)
   target_compile_options(keyhole_flags INTERFACE
     -fsanitize=${KEYHOLE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g)
   target_link_options(keyhole_flags INTERFACE -fsanitize=${KEYHOLE_SANITIZE})
+endif()
+if(KEYHOLE_FUZZ)
+  target_compile_options(keyhole_flags INTERFACE -fsanitize=fuzzer-no-link) # lets the fuzzer see which code ran
 endif()

@@ -11,7 +11,7 @@
 #include "cli/terminal_progress.h"
 #include "core/error.h"
 #include "core/parallel.h"
-#include "scene/load/scene_yaml.h"
+#include "scene/load/load.h"
 
 #include <fmt/format.h>
 
@@ -74,9 +74,11 @@ int run(RenderOptions options) {
     options.outputs.check();
 
     const InterruptHandler interrupts(stop);
-    LoadedScene loaded = load_scene(options.scene, options.overrides);
+    std::vector<std::string> load_warnings;
+    LoadedScene loaded = load(options.scene, options.overrides, &load_warnings);
     if (!options.resolution.empty()) set_resolution(loaded.description.window, options.resolution);
     RenderResult result = render_scene(loaded, options, stop);
+    result.stats.warnings.insert(result.stats.warnings.begin(), load_warnings.begin(), load_warnings.end());
     if (!options.quiet) print_warnings(result.stats);
     if (!has_picture(result)) {
         if (!stop.requested()) throw InputError("the time was up before the first pixel: nothing was written");
@@ -109,7 +111,7 @@ void add_render_command(CLI::App& app, Action& action, const std::string& comman
     CLI::App* command = app.add_subcommand("render", "Render a scene");
     auto o = std::make_shared<RenderOptions>();
     o->command_line = command_line;
-    command->add_option("SCENE", o->scene, "scene file (YAML)")->required();
+    command->add_option("SCENE", o->scene, "scene file (YAML, or .pbrt)")->required();
     command->add_option("-o,--output", o->outputs.exr,
                         "picture to write (.exr); default: the scene's name, in this folder");
     auto* png = command->add_option("--png", o->outputs.png, "tone-mapped picture; default: beside the EXR");
