@@ -13,8 +13,8 @@ namespace {
 constexpr std::int64_t kBlock = 64 * StageOne::kGroup;
 
 /// Image point of sample i: a rank-1 lattice (Roberts' R2), shifted by the seed, covers the window evenly at any count.
-Vec2 image_point(std::uint64_t seed, std::int64_t i) {
-    Rng shift(seed, StreamPurpose::brightness, ~0ULL);
+Vec2 image_point(std::uint64_t seed, StreamPurpose purpose, std::int64_t i) {
+    Rng shift(seed, purpose, ~0ULL);
     const auto k = static_cast<double>(i);
     const double x = shift.next() + k * 0.7548776662466927, y = shift.next() + k * 0.5698402909980532;
     return {std::min(static_cast<float>(x - std::floor(x)), 0x1.fffffep-1f),
@@ -23,7 +23,7 @@ Vec2 image_point(std::uint64_t seed, std::int64_t i) {
 
 void trace_sample(const Scene& scene, const StageOneSettings& settings, Technique technique, std::int64_t i, auto& sink) {
     Rng rng(settings.seed, StreamPurpose::brightness, static_cast<std::uint64_t>(i));
-    trace_independent(technique, scene, image_point(settings.seed, i), settings.max_scatterings, settings.set, rng, sink);
+    trace_independent(technique, scene, image_point(settings.seed, StreamPurpose::brightness, i), settings.max_scatterings, settings.set, rng, sink);
 }
 
 /// Adds up one sample.
@@ -74,6 +74,10 @@ Block run_block(const Scene& scene, const StageOneSettings& settings, Technique 
 /// The technique that needs fewer rays for the same error, tried on the first samples. Rays and not seconds, so that the
 /// choice is the same on every machine; a connection costs about as much again as its ray.
 Technique choose_technique(const Scene& scene, const StageOneSettings& settings) {
+    // Caustics of emitters that no ray can hit are found from the light alone; a trial couldn't know what it missed.
+    const auto is_delta = [](const auto& emitter) { return emitter->is_delta(); };
+    if (scene.traits().delta && std::any_of(scene.emitters().begin(), scene.emitters().end(), is_delta))
+        return Technique::bidirectional;
     std::array<double, 2> cost{};
     for (const Technique technique : {Technique::path, Technique::bidirectional}) {
         std::array<RunningStats, 16> parts;
@@ -150,7 +154,7 @@ Importance trace_importance(const Scene& scene, int max_scatterings, std::int64_
         const Range range{b * kBlock, std::min(samples, (b + 1) * kBlock)};
         for (std::int64_t i = range.begin; i < range.end; ++i) {
             Rng rng(seed, StreamPurpose::importance, static_cast<std::uint64_t>(i));
-            trace_importons(scene, image_point(seed + 1, i), max_scatterings, rng, parts[static_cast<std::size_t>(b)]);
+            trace_importons(scene, image_point(seed, StreamPurpose::importance, i), max_scatterings, rng, parts[static_cast<std::size_t>(b)]);
         }
         context.advance(static_cast<std::uint64_t>(range.size()));
     });
