@@ -120,11 +120,17 @@ def door_handle(d, width):
 
 
 def casing(x0, x1, height, z0, z1):
-    """Lining and architrave of a doorway through a wall: one piece, like an upturned U."""
-    rim, lip = 0.075, 0.02
-    outline = [(x0 - rim, -0.005), (x0 + lip, -0.005), (x0 + lip, height - lip), (x1 - lip, height - lip), (x1 - lip, -0.005),
-               (x1 + rim, -0.005), (x1 + rim, height + rim), (x0 - rim, height + rim)]
-    return board(outline, [], z0 - 0.018, z1 + 0.018)
+    """Lining and architraves of a doorway through a wall. They are three pieces, since a face that ran through the wall would
+    have its lit end in one room and its dark end in the other, closer together than photons of one estimate."""
+    return joined(_arch(x0, x1, height, -0.02, 0.01, z0 + 0.001, z1 - 0.001),
+                  *(_arch(x0, x1, height, -0.014, 0.075, *z) for z in ((z0 - 0.018, z0 + 0.002), (z1 - 0.002, z1 + 0.018))))
+
+
+def _arch(x0, x1, height, inner, outer, z0, z1):
+    """An upturned U around an opening, from `inner` to `outer` beyond its edge."""
+    outline = [(x0 - outer, -0.005), (x0 - inner, -0.005), (x0 - inner, height + inner), (x1 + inner, height + inner),
+               (x1 + inner, -0.005), (x1 + outer, -0.005), (x1 + outer, height + outer), (x0 - outer, height + outer)]
+    return board(outline, [], z0, z1)
 
 
 def steps(n):

@@ -38,8 +38,8 @@ class Progress {
 
 /// What a stage needs from its caller besides its input.
 struct RunContext {
-    StopToken* stop = nullptr;     ///< may be null: never stopped
-    Progress* progress = nullptr;  ///< may be null: silent
+    StopToken* stop = nullptr;    ///< may be null: never stopped
+    Progress* progress = nullptr; ///< may be null: silent
 
     bool stopped() const { return stop != nullptr && stop->stopped(); }
     void begin(std::string_view stage, std::uint64_t total, std::string_view unit) const {

@@ -17,10 +17,10 @@ struct GatherMaps {
 };
 
 struct GatherOptions {
-    int rays = 4;          ///< gather rays from each visible point
-    int nearest = 60;      ///< photons in a radiance estimate
-    float max_radius;      ///< of a lookup in the global map [m]
-    float caustic_radius;  ///< of a lookup in the caustic map [m]
+    int rays = 4;         ///< gather rays from each visible point
+    int nearest = 60;     ///< photons in a radiance estimate
+    float max_radius;     ///< of a lookup in the global map [m]
+    float caustic_radius; ///< of a lookup in the caustic map [m]
     int max_scatterings = 24;
 };
 

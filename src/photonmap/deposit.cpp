@@ -48,7 +48,8 @@ void PathDepositor::store(Pending& pending) {
         return;
     }
     PhotonBuffer& buffer = global ? global_ : caustic_;
-    buffer.photons.emplace_back(pending.vertex.point.p, pending.vertex.point.ng, pending.to_light, pending.flux / visible);
+    buffer.photons.emplace_back(pending.vertex.point.p, pending.vertex.point.ng, pending.to_light,
+                                pending.flux / visible);
     buffer.weights.push_back(static_cast<float>(weight));
 }
 

@@ -13,9 +13,9 @@ struct DepositImportance {
     const ImportanceMap* caustic; ///< at d1
 };
 
-/// Collects the photons of one chain: power f_map / Y(f_map E) for each path, times its weight (MATHEMATICS: "marginal").
-/// Times B/N this makes the sum of power over a region the flux that arrives there, and gives every photon the same
-/// weight where it is asked. Not thread-safe: one for each chain.
+/// Collects the photons of one chain: power f_map / Y(f_map E) for each path, times its weight (MATHEMATICS:
+/// "marginal"). Times B/N this makes the sum of power over a region the flux that arrives there, and gives every photon
+/// the same weight where it is asked. Not thread-safe: one for each chain.
 class PathDepositor {
   public:
     PathDepositor(const DepositImportance& importance, const Rng& rng) : importance_(importance), rng_(rng) {}

@@ -12,7 +12,8 @@ ImportanceMap::Importance ImportanceMap::importance(const SurfacePoint& d2, cons
         return scatter(d2, bsdf, Event::finite, to_light, importon.direction()).value;
     };
     const DensityEstimate e = estimate_density(map_, query, options_.unbiased, options_.patches, scattering);
-    // With few importons the reciprocal of n has a heavy tail; that of n + 1 has the right expectation for a Poisson count.
+    // With few importons the reciprocal of n has a heavy tail; that of n + 1 has the right expectation for a Poisson
+    // count.
     const bool few = e.photons > 0 && e.photons < options_.k;
     return {few ? e.value * (1 + 1.0 / e.photons) : e.value, e.photons};
 }

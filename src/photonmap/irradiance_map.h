@@ -7,9 +7,9 @@
 namespace keyhole {
 
 struct IrradianceOptions {
-    int k = 60;          ///< photons in an estimate
-    float max_radius;    ///< [m]
-    int stride = 4;      ///< one estimate for so many photons
+    int k = 60;                              ///< photons in an estimate
+    float max_radius;                        ///< [m]
+    int stride = 4;                          ///< one estimate for so many photons
     const SurfacePatches* patches = nullptr; ///< for the area at edges; null: the disc's
 };
 

@@ -14,8 +14,8 @@ struct ChainRun {
     Chain<Path> chain;
     PathDepositor depositor;
 
-    ChainRun(const Path& seed, const Mixture<Path>& mixture, const DepositImportance& importance, std::uint64_t seed_number,
-             std::uint64_t index)
+    ChainRun(const Path& seed, const Mixture<Path>& mixture, const DepositImportance& importance,
+             std::uint64_t seed_number, std::uint64_t index)
         : chain(seed, mixture, Rng(seed_number, StreamPurpose::chain, 2 * index)),
           depositor(importance, Rng(seed_number, StreamPurpose::chain, 2 * index + 1)) {}
 
@@ -41,7 +41,8 @@ SampledPhotons sample_photons(const std::vector<Path>& seeds, const Mixture<Path
     std::vector<std::unique_ptr<ChainRun>> runs(seeds.size());
     parallel_for(chains, [&](std::int64_t c) {
         const auto i = static_cast<std::size_t>(c);
-        runs[i] = std::make_unique<ChainRun>(seeds[i], mixture, importance, options.seed, static_cast<std::uint64_t>(c));
+        runs[i] =
+            std::make_unique<ChainRun>(seeds[i], mixture, importance, options.seed, static_cast<std::uint64_t>(c));
     });
 
     // Stores are shared: chains differ in what they find, and thinning must treat all photons alike. The threshold that

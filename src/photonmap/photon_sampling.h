@@ -11,10 +11,10 @@
 namespace keyhole {
 
 struct PhotonSamplingOptions {
-    std::int64_t mutations;         ///< over all chains
-    std::size_t global_photons;     ///< ceiling for the global map; 0: none are kept
-    std::size_t caustic_photons;    ///< ceiling for the caustic map; 0: none are kept
-    double brightness;              ///< B_eye [W/(m^2 sr)]
+    std::int64_t mutations;      ///< over all chains
+    std::size_t global_photons;  ///< ceiling for the global map; 0: none are kept
+    std::size_t caustic_photons; ///< ceiling for the caustic map; 0: none are kept
+    double brightness;           ///< B_eye [W/(m^2 sr)]
     std::uint64_t seed;
 };
 
@@ -22,8 +22,8 @@ struct SampledPhotons {
     std::vector<Photon> global, caustic; ///< power in W
     Ledger ledger;                       ///< in the order of the mixture
     std::uint64_t steps = 0;
-    std::uint64_t longest_stay = 0;      ///< of any chain at one state
-    double lost_share = 0;               ///< share of the deposits whose importance came out as zero
+    std::uint64_t longest_stay = 0; ///< of any chain at one state
+    double lost_share = 0;          ///< share of the deposits whose importance came out as zero
 };
 
 /// Runs one chain from each seed, all equally long, and stores their photons. The number of chains is that of the seeds

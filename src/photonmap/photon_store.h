@@ -26,8 +26,8 @@ struct PhotonBuffer {
 
 /// Collects weighted photons and never holds more than its capacity. Weights below a threshold t survive with
 /// probability w / t and then weigh t; when the store is full, t rises and what is stored goes through the same
-/// roulette. Every region's total keeps its expectation whatever is thinned. Not thread-safe. Depends on nothing but the
-/// deposits, their order and its own random stream.
+/// roulette. Every region's total keeps its expectation whatever is thinned. Not thread-safe. Depends on nothing but
+/// the deposits, their order and its own random stream.
 class PhotonStore {
   public:
     /// Memory for `capacity` photons is taken at once. With a capacity of 0 everything is dropped.

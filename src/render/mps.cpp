@@ -23,7 +23,8 @@ struct Radii {
     }
 };
 
-ImportanceMap make_importance_map(std::vector<Importon>& importons, std::int64_t samples, const ImportanceOptions& options) {
+ImportanceMap make_importance_map(std::vector<Importon>& importons, std::int64_t samples,
+                                  const ImportanceOptions& options) {
     std::vector<Photon> compact;
     compact.reserve(importons.size());
     for (const Importon& i : importons)
@@ -41,8 +42,9 @@ std::size_t caustic_share(const StageOne& one, const Scene& scene, std::int64_t 
 }
 
 /// Stage two: chains from the seeds of stage one, photons with the power that the importance map gives them.
-SampledPhotons run_stage_two(const Scene& scene, const Settings& settings, const StageOneSettings& first, const StageOne& one,
-                             const SurfacePatches& patches, RenderStats& stats, const RunContext& context) {
+SampledPhotons run_stage_two(const Scene& scene, const Settings& settings, const StageOneSettings& first,
+                             const StageOne& one, const SurfacePatches& patches, RenderStats& stats,
+                             const RunContext& context) {
     const StageClock clock(stats, "photons");
     const Radii radii(scene);
     const std::vector<Path> seeds = choose_seeds(scene, first, one, settings.chains);
@@ -64,7 +66,8 @@ SampledPhotons run_stage_two(const Scene& scene, const Settings& settings, const
     SampledPhotons photons = sample_photons(seeds, mixture, {&at_d2, &at_d1}, sampling, context);
     for (std::size_t k = 0; k < photons.ledger.size(); ++k) {
         const LedgerEntry& e = photons.ledger[k];
-        ProposalStats line{std::string(mixture.kind(k).name()), e.proposed, e.zero, e.nan, e.rejected, e.accepted, {}, e.seconds};
+        ProposalStats line{
+            std::string(mixture.kind(k).name()), e.proposed, e.zero, e.nan, e.rejected, e.accepted, {}, e.seconds};
         for (std::size_t f = 0; f < kFailures; ++f) line.failed[std::string(kFailureNames[f])] = e.failed[f];
         stats.proposals.push_back(line);
     }
@@ -78,7 +81,8 @@ SampledPhotons run_stage_two(const Scene& scene, const Settings& settings, const
 }
 
 /// Stage one: B_eye, seeds and importance.
-StageOne run_stage_one(const Scene& scene, const StageOneSettings& settings, RenderStats& stats, const RunContext& context) {
+StageOne run_stage_one(const Scene& scene, const StageOneSettings& settings, RenderStats& stats,
+                       const RunContext& context) {
     const StageClock clock(stats, "brightness");
     StageOne one = run_stage_one(scene, settings, context);
     stats.brightness = one.brightness.mean();
@@ -88,12 +92,14 @@ StageOne run_stage_one(const Scene& scene, const StageOneSettings& settings, Ren
     stats.values["brightness by bidirectional tracing"] = one.technique == Technique::bidirectional ? 1 : 0;
     stats.values["brightness samples"] = static_cast<double>(one.samples);
     if (!(stats.brightness > 0))
-        stats.warnings.emplace_back("no sampled path carried indirect light or a caustic: only direct light is rendered. If there is "
-                                    "more, try more brightness_samples");
+        stats.warnings.emplace_back(
+            "no sampled path carried indirect light or a caustic: only direct light is rendered. If there is "
+            "more, try more brightness_samples");
     else if (stats.brightness_error > 0.05 * stats.brightness)
-        stats.warnings.push_back(fmt::format("the brightness of indirect light is known to {:.0f} % only (standard error): "
-                                             "raise brightness_samples",
-                                             100 * stats.brightness_error / stats.brightness));
+        stats.warnings.push_back(
+            fmt::format("the brightness of indirect light is known to {:.0f} % only (standard error): "
+                        "raise brightness_samples",
+                        100 * stats.brightness_error / stats.brightness));
     return one;
 }
 
@@ -133,8 +139,8 @@ RenderResult render_mps(const Scene& scene, const Settings& settings, const RunC
                                       .max_scatterings = static_cast<int>(settings.max_depth)};
         const FinalGather gather(scene, maps, gathering);
         const auto rounds = sample_pixels(
-            scene, film, settings.spp, static_cast<std::uint64_t>(settings.seed), StreamPurpose::gather, "gather", context,
-            [&](const Vec2& image, SampleSource& source) { return gather.sample(image, source); });
+            scene, film, settings.spp, static_cast<std::uint64_t>(settings.seed), StreamPurpose::gather, "gather",
+            context, [&](const Vec2& image, SampleSource& source) { return gather.sample(image, source); });
         stats.complete = rounds == settings.spp;
     }
     film.report(stats);

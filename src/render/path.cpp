@@ -27,10 +27,16 @@ struct PixelSink {
     void contribution(const EyeWalk& /*walk*/, const Vertex& /*x0*/, const Rgb& value, LightClass light) {
         switch (light) {
         case LightClass::emission:
-        case LightClass::direct: pixel.direct += value; break;
-        case LightClass::caustic: pixel.caustic += value; break;
+        case LightClass::direct:
+            pixel.direct += value;
+            break;
+        case LightClass::caustic:
+            pixel.caustic += value;
+            break;
         case LightClass::second:
-        case LightClass::indirect: pixel.indirect += value; break;
+        case LightClass::indirect:
+            pixel.indirect += value;
+            break;
         }
     }
 };

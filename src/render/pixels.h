@@ -14,9 +14,9 @@
 
 namespace keyhole {
 
-/// Takes `spp` samples of every pixel: sample(window point, random source) -> PixelSample. Works in rounds of one sample
-/// for every pixel, so that a stop leaves a whole picture. Each sample has a random stream of its own. Returns the
-/// number of full rounds.
+/// Takes `spp` samples of every pixel: sample(window point, random source) -> PixelSample. Works in rounds of one
+/// sample for every pixel, so that a stop leaves a whole picture. Each sample has a random stream of its own. Returns
+/// the number of full rounds.
 template <class Sample>
 std::int64_t sample_pixels(const Scene& scene, Film& film, std::int64_t spp, std::uint64_t seed, StreamPurpose purpose,
                            std::string_view stage, const RunContext& context, Sample&& sample) {

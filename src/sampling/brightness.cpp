@@ -21,9 +21,11 @@ Vec2 image_point(std::uint64_t seed, StreamPurpose purpose, std::int64_t i) {
             std::min(static_cast<float>(y - std::floor(y)), 0x1.fffffep-1f)};
 }
 
-void trace_sample(const Scene& scene, const StageOneSettings& settings, Technique technique, std::int64_t i, auto& sink) {
+void trace_sample(const Scene& scene, const StageOneSettings& settings, Technique technique, std::int64_t i,
+                  auto& sink) {
     Rng rng(settings.seed, StreamPurpose::brightness, static_cast<std::uint64_t>(i));
-    trace_independent(technique, scene, image_point(settings.seed, StreamPurpose::brightness, i), settings.max_scatterings, settings.set, rng, sink);
+    trace_independent(technique, scene, image_point(settings.seed, StreamPurpose::brightness, i),
+                      settings.max_scatterings, settings.set, rng, sink);
 }
 
 /// Adds up one sample.
@@ -71,8 +73,8 @@ Block run_block(const Scene& scene, const StageOneSettings& settings, Technique 
     return block;
 }
 
-/// The technique that needs fewer rays for the same error, tried on the first samples. Rays and not seconds, so that the
-/// choice is the same on every machine; a connection costs about as much again as its ray.
+/// The technique that needs fewer rays for the same error, tried on the first samples. Rays and not seconds, so that
+/// the choice is the same on every machine; a connection costs about as much again as its ray.
 Technique choose_technique(const Scene& scene, const StageOneSettings& settings) {
     // Caustics of emitters that no ray can hit are found from the light alone; a trial couldn't know what it missed.
     const auto is_delta = [](const auto& emitter) { return emitter->is_delta(); };
@@ -97,7 +99,8 @@ Technique choose_technique(const Scene& scene, const StageOneSettings& settings)
 }
 
 /// The importons of one eye path.
-void trace_importons(const Scene& scene, const Vec2& image, int max_scatterings, SampleSource& source, Importance& out) {
+void trace_importons(const Scene& scene, const Vec2& image, int max_scatterings, SampleSource& source,
+                     Importance& out) {
     Vertex v = sample_eye(scene, source);
     Vec3 w = scene.camera().ray_direction(v.point, image);
     Rgb throughput(1.0);
@@ -154,7 +157,8 @@ Importance trace_importance(const Scene& scene, int max_scatterings, std::int64_
         const Range range{b * kBlock, std::min(samples, (b + 1) * kBlock)};
         for (std::int64_t i = range.begin; i < range.end; ++i) {
             Rng rng(seed, StreamPurpose::importance, static_cast<std::uint64_t>(i));
-            trace_importons(scene, image_point(seed, StreamPurpose::importance, i), max_scatterings, rng, parts[static_cast<std::size_t>(b)]);
+            trace_importons(scene, image_point(seed, StreamPurpose::importance, i), max_scatterings, rng,
+                            parts[static_cast<std::size_t>(b)]);
         }
         context.advance(static_cast<std::uint64_t>(range.size()));
     });

@@ -36,10 +36,10 @@ struct StageOneSettings {
 /// Result of stage one. Reproducible bit for bit on any number of threads.
 struct StageOne {
     Technique technique = Technique::path; ///< that made it, chosen by trial
-    RunningStats brightness;           ///< B_eye [W/(m^2 sr)] over the window, one entry a sample
-    RunningStats caustic;              ///< the part of it that the caustic map holds
-    std::int64_t samples = 0;          ///< samples taken; fewer than asked for after a stop
-    std::vector<double> groups;        ///< sum of contributions of each kGroup consecutive samples
+    RunningStats brightness;               ///< B_eye [W/(m^2 sr)] over the window, one entry a sample
+    RunningStats caustic;                  ///< the part of it that the caustic map holds
+    std::int64_t samples = 0;              ///< samples taken; fewer than asked for after a stop
+    std::vector<double> groups;            ///< sum of contributions of each kGroup consecutive samples
 
     static constexpr std::int64_t kGroup = 32;
 };

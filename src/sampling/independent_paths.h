@@ -50,7 +50,8 @@ void trace_independent(Technique technique, const Scene& scene, const Vec2& imag
             return true;
         }
         void contribution(const EyeWalk& walk, const Vertex& x0, const Rgb& value, LightClass light) {
-            if (in_set(light, set)) sink.contribution(value, light, [&] { return complete_path(scene, walk, x0, image); });
+            if (in_set(light, set))
+                sink.contribution(value, light, [&] { return complete_path(scene, walk, x0, image); });
         }
     } adapter{scene, image, set, sink};
     trace_path(scene, image, max_scatterings, source, adapter);

@@ -15,7 +15,7 @@ struct LedgerEntry {
     std::uint64_t zero = 0;                        ///< evaluated, and the target was 0
     std::uint64_t nan = 0;                         ///< acceptance was not a number: rejected
     std::uint64_t rejected = 0, accepted = 0;
-    double seconds = 0;                            ///< wall time of the thread that ran the steps
+    double seconds = 0; ///< wall time of the thread that ran the steps
 
     LedgerEntry& operator+=(const LedgerEntry& o) {
         proposed += o.proposed;

@@ -54,8 +54,8 @@ enum class PhotonKind { none, global, caustic };
 
 /// Where a path stores a photon. Global: at d2, the second non-specular vertex from the eye, unless light came to it
 /// straight from the emitter: that is direct light, which stage three has from next-event estimation. Near a lamp it
-/// varies so fast that no density estimate could follow. Caustic: at d1, when light came to it through specular vertices
-/// only.
+/// varies so fast that no density estimate could follow. Caustic: at d1, when light came to it through specular
+/// vertices only.
 struct StoragePoint {
     PhotonKind kind = PhotonKind::none;
     int vertex = 0;

@@ -33,9 +33,9 @@ struct ImageWindow {
 struct CameraParameters {
     Vec3 origin{0, 0, 0};
     Vec3 right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1}; ///< unit and perpendicular; right may be mirrored
-    float fov_degrees = 40;   ///< full angle along the shorter side of the film
-    float lens_radius = 0;    ///< 0: pinhole
-    float focus_distance = 1; ///< distance of the plane in focus, along `forward`
+    float fov_degrees = 40;                              ///< full angle along the shorter side of the film
+    float lens_radius = 0;                               ///< 0: pinhole
+    float focus_distance = 1;                            ///< distance of the plane in focus, along `forward`
 };
 
 /// Pinhole or thin-lens camera. The image measure is uniform on the window: the importance of every point of the

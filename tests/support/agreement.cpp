@@ -18,7 +18,8 @@ double incomplete_beta(double a, double b, double x) {
     if (x <= 0) return 0;
     if (x >= 1) return 1;
     if (x > (a + 1) / (a + b + 2)) return 1 - incomplete_beta(b, a, 1 - x);
-    const double front = std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x)) / a;
+    const double front =
+        std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x)) / a;
     double f = 1, c = 1, d = 0;
     for (int i = 0; i <= 300; ++i) {
         const int m = i / 2;
@@ -65,8 +66,9 @@ Disagreement compare(const Blocks& a, const Blocks& b, double tolerance) {
         const double vb = b[i].variance() / static_cast<double>(b[i].count());
         const double difference = std::abs(a[i].mean() - b[i].mean()), reference = b[i].mean();
         const double excess = std::max(0.0, difference - tolerance * reference);
-        const double dof = (va + vb) * (va + vb) /
-                           (va * va / static_cast<double>(a[i].count() - 1) + vb * vb / static_cast<double>(b[i].count() - 1));
+        const double dof =
+            (va + vb) * (va + vb) /
+            (va * va / static_cast<double>(a[i].count() - 1) + vb * vb / static_cast<double>(b[i].count() - 1));
         p[i] = va + vb > 0 ? student_p_value(excess / std::sqrt(va + vb), dof) : (excess > 0 ? 0.0 : 1.0);
         d.worst = std::max(d.worst, reference > 0 ? difference / reference : 0.0);
         d.largest_error = std::max(d.largest_error, reference > 0 ? std::sqrt(va) / reference : 0.0);

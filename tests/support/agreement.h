@@ -17,15 +17,15 @@ using Blocks = std::vector<RunningStats>;
 Blocks render_blocks(Scene& scene, Settings settings, int runs, const std::string& layer = "beauty");
 
 struct Disagreement {
-    int rejected = 0;        ///< blocks whose difference can't be chance, after Holm's correction
-    double worst = 0;        ///< largest relative difference of a block
+    int rejected = 0;         ///< blocks whose difference can't be chance, after Holm's correction
+    double worst = 0;         ///< largest relative difference of a block
     double largest_error = 0; ///< largest relative standard error of a block of the first picture
-    double ratio = 1;        ///< of mean brightness
-    std::string report;      ///< blocks that were rejected
+    double ratio = 1;         ///< of mean brightness
+    std::string report;       ///< blocks that were rejected
 };
 
-/// Tests each block of `a` against `b` for a difference beyond `tolerance` times b (Welch's t-test, Holm's correction at
-/// a family-wise level of 1 %).
+/// Tests each block of `a` against `b` for a difference beyond `tolerance` times b (Welch's t-test, Holm's correction
+/// at a family-wise level of 1 %).
 Disagreement compare(const Blocks& a, const Blocks& b, double tolerance);
 
 /// Two-sided p-value of a t-distributed statistic.

@@ -26,8 +26,9 @@ struct Invariance {
     std::string report() const;
 };
 
-/// Draws `samples` path-traced samples of `scene`; each of their paths, weighted with its contribution, is an exact draw
-/// from the target. Applies one step of `mixture` to each and compares statistics before and after (expected values).
+/// Draws `samples` path-traced samples of `scene`; each of their paths, weighted with its contribution, is an exact
+/// draw from the target. Applies one step of `mixture` to each and compares statistics before and after (expected
+/// values).
 Invariance measure_invariance(const Scene& scene, const Mixture<Path>& mixture, PathSet set, std::int64_t samples,
                               std::uint64_t seed, int max_scatterings = 8);
 

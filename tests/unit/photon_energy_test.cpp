@@ -61,7 +61,8 @@ Energy by_light_tracing(const Scene& scene, std::int64_t paths) {
     return e;
 }
 
-ImportanceMap importance_map(const std::vector<Importon>& importons, std::int64_t samples, const SurfacePatches& patches) {
+ImportanceMap importance_map(const std::vector<Importon>& importons, std::int64_t samples,
+                             const SurfacePatches& patches) {
     std::vector<Photon> compact;
     for (const Importon& i : importons)
         compact.emplace_back(i.position, i.ng, i.to_eye, i.weight / static_cast<double>(samples));
@@ -74,18 +75,19 @@ Energy by_chains(const Scene& scene, int runs) {
     Energy e;
     for (int run = 0; run < runs; ++run) {
         const auto seed = static_cast<std::uint64_t>(100 + run);
-        const StageOneSettings first{
-            .max_scatterings = kMaxDepth, .samples = 100'000,  .seed = seed};
+        const StageOneSettings first{.max_scatterings = kMaxDepth, .samples = 100'000, .seed = seed};
         const StageOne one = run_stage_one(scene, first, {});
         const Importance importance = trace_importance(scene, kMaxDepth, 200'000, seed, {});
         const ImportanceMap at_d1 = importance_map(importance.first, importance.samples, patches);
         const ImportanceMap at_d2 = importance_map(importance.second, importance.samples, patches);
         const Mixture<Path> mixture = make_mixture({&scene, PathSet::stored, kMaxDepth}, Settings{});
-        const SampledPhotons photons =
-            sample_photons(choose_seeds(scene, first, one, 2000), mixture, {&at_d2, &at_d1},
-                           {.mutations = 100'000, .global_photons = 100'000, .caustic_photons = 50'000,
-                            .brightness = one.brightness.mean(), .seed = seed},
-                           {});
+        const SampledPhotons photons = sample_photons(choose_seeds(scene, first, one, 2000), mixture, {&at_d2, &at_d1},
+                                                      {.mutations = 100'000,
+                                                       .global_photons = 100'000,
+                                                       .caustic_photons = 50'000,
+                                                       .brightness = one.brightness.mean(),
+                                                       .seed = seed},
+                                                      {});
         EXPECT_LT(photons.lost_share, 1e-3);
         std::array<double, kRegions> global{}, caustic{};
         for (const Photon& p : photons.global) global[region(scene, p.position())] += luminance(p.power());

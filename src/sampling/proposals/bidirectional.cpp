@@ -197,7 +197,8 @@ double Bidirectional::transition_density(const Path& x, const Path& y) const {
     double from_light = 1;
     for (int s = 0; s <= most; ++s) {
         const int last = cut.light + s; // last vertex on the light's side of the joint
-        const bool joint = last < 0 || joinable(y.x[static_cast<std::size_t>(last)], y.x[static_cast<std::size_t>(last) + 1]);
+        const bool joint =
+            last < 0 || joinable(y.x[static_cast<std::size_t>(last)], y.x[static_cast<std::size_t>(last) + 1]);
         if (joint) sum += from_light * eye_density[static_cast<std::size_t>(s)];
         if (s < most) from_light *= y.x[static_cast<std::size_t>(first + s)].pdf_from_light;
     }

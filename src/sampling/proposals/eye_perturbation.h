@@ -2,8 +2,8 @@
 //
 // A pivot stays where it is and the direction in which the path leaves it towards the light changes a little. The
 // specular events after it are traced again; the non-specular vertex they lead to is joined to the kept rest. Where the
-// rest begins with a specular vertex nothing can be joined: then that vertex is the next pivot, and so on, at the latest
-// until the light is hit.
+// rest begins with a specular vertex nothing can be joined: then that vertex is the next pivot, and so on, at the
+// latest until the light is hit.
 #pragma once
 
 #include "sampling/proposals/edit.h"

@@ -1,6 +1,6 @@
 // PM, photon map: d1 and everything on its eye side stay; the direction in which light comes to d1 is perturbed, the
-// chain to the next non-specular vertex is traced again and joined to the vertex after it. It moves the storage point of
-// the global map and nothing else (Fan, Chenney, Lai 2005, section 5.3).
+// chain to the next non-specular vertex is traced again and joined to the vertex after it. It moves the storage point
+// of the global map and nothing else (Fan, Chenney, Lai 2005, section 5.3).
 #include "sampling/proposals/eye_perturbation.h"
 #include "sampling/proposals/registry.h"
 
