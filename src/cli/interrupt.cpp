@@ -1,6 +1,7 @@
 #include "cli/interrupt.h"
 
 #include "cli/command.h"
+#include "film/atomic_file.h"
 
 #include <atomic>
 #include <csignal>
@@ -14,7 +15,10 @@ static_assert(std::atomic<StopToken*>::is_always_lock_free, "signal handlers may
 
 extern "C" void on_signal(int /*signal*/) {
     StopToken* stop = handled.load();
-    if (stop == nullptr || stop->requested()) _exit(kInterrupted);
+    if (stop == nullptr || stop->requested()) {
+        remove_unfinished_file();
+        _exit(kInterrupted);
+    }
     stop->request();
 }
 

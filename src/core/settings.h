@@ -33,7 +33,7 @@ struct Settings {
 /// visitor(key, member, choices, help) for words; members are references into `settings`.
 template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
     using I = std::int64_t;
-    visit("method", s.method, std::vector<std::string_view>{"mps", "path"}, "rendering method");
+    visit("method", s.method, std::vector<std::string_view>{"mps", "mlt", "path"}, "rendering method");
     visit("spp", s.spp, I{1}, I{1} << 24, "samples per pixel");
     visit("seed", s.seed, I{0}, I{1} << 53, "seed of all random streams");
     visit("max_depth", s.max_depth, I{1}, I{30}, "most scatterings between light and eye");

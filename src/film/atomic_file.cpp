@@ -4,7 +4,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <atomic>
 #include <cerrno>
+#include <climits>
 #include <cstring>
 #include <fcntl.h>
 #include <filesystem>
@@ -20,6 +24,16 @@ namespace fs = std::filesystem;
     throw InputError(fmt::format("{}: cannot write: {}", path, std::strerror(error)));
 }
 
+/// Name of the temporary file that is being written, for a signal handler; empty: none. Only one is written at a time.
+std::array<char, PATH_MAX> unfinished{};
+std::atomic<bool> is_unfinished{false};
+
+void remember(const std::string& name) {
+    if (name.size() >= unfinished.size()) return;
+    std::copy(name.c_str(), name.c_str() + name.size() + 1, unfinished.begin());
+    is_unfinished = true;
+}
+
 /// An open file; closed, and removed if it is still temporary, at the end of its scope.
 struct File {
     int descriptor = -1;
@@ -30,6 +44,7 @@ struct File {
     ~File() {
         if (descriptor >= 0) close(descriptor);
         if (!temporary.empty()) unlink(temporary.c_str());
+        is_unfinished = false;
     }
 };
 
@@ -59,6 +74,7 @@ void open_temporary(File& file, const std::string& path, const fs::path& target)
     const fs::path folder = target.parent_path();
     for (int attempt = 0;; ++attempt) {
         const std::string name = (folder / fmt::format(".keyhole-{}-{}.tmp", getpid(), attempt)).string();
+        remember(name);
         file.descriptor = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (file.descriptor >= 0) {
             file.temporary = name;
@@ -94,6 +110,10 @@ void write_file_atomically(const std::string& path, std::span<const char> bytes)
     if (fsync(file.descriptor) != 0) fail(path, errno);
     if (rename(file.temporary.c_str(), target.c_str()) != 0) fail(path, errno);
     file.temporary.clear();
+}
+
+void remove_unfinished_file() noexcept {
+    if (is_unfinished) unlink(unfinished.data());
 }
 
 void check_writable(const std::string& path) {

@@ -11,6 +11,10 @@ namespace keyhole {
 /// @throws InputError with the path and the reason.
 void write_file_atomically(const std::string& path, std::span<const char> bytes);
 
+/// Removes the temporary file of a write_file_atomically() that is under way, if there is one. Signal-safe: for a
+/// process that is about to end.
+void remove_unfinished_file() noexcept;
+
 /// Finds out now whether write_file_atomically() could work: makes a file in the folder and removes it.
 /// @throws InputError with the path and the reason.
 void check_writable(const std::string& path);

@@ -1,29 +1,11 @@
 #include "photonmap/photon_sampling.h"
 
-#include "core/parallel.h"
-
 #include <algorithm>
 #include <memory>
 #include <utility>
 
 namespace keyhole {
 namespace {
-
-/// A chain with what it is about to store.
-struct ChainRun {
-    Chain<Path> chain;
-    PathDepositor depositor;
-
-    ChainRun(const Path& seed, const Mixture<Path>& mixture, const DepositImportance& importance,
-             std::uint64_t seed_number, std::uint64_t index)
-        : chain(seed, mixture, Rng(seed_number, StreamPurpose::chain, 2 * index)),
-          depositor(importance, Rng(seed_number, StreamPurpose::chain, 2 * index + 1)) {}
-
-    void run(std::int64_t steps) {
-        for (std::int64_t i = 0; i < steps; ++i)
-            chain.step([this](const Path& path, double weight) { depositor.deposit(path, weight); });
-    }
-};
 
 /// Steps of each chain between two visits to the stores, so that the chains' buffers stay small beside these.
 std::int64_t round_length(std::int64_t photons, std::int64_t chains) {
@@ -38,12 +20,11 @@ SampledPhotons sample_photons(const std::vector<Path>& seeds, const Mixture<Path
     const auto chains = static_cast<std::int64_t>(seeds.size());
     SampledPhotons out;
     if (chains == 0) return out;
-    std::vector<std::unique_ptr<ChainRun>> runs(seeds.size());
-    parallel_for(chains, [&](std::int64_t c) {
-        const auto i = static_cast<std::size_t>(c);
-        runs[i] =
-            std::make_unique<ChainRun>(seeds[i], mixture, importance, options.seed, static_cast<std::uint64_t>(c));
-    });
+    auto set = std::make_unique<ChainSet>(seeds, mixture, options.seed);
+    std::vector<PathDepositor> depositors;
+    depositors.reserve(seeds.size());
+    for (std::uint64_t c = 0; c < seeds.size(); ++c)
+        depositors.emplace_back(importance, Rng(options.seed, StreamPurpose::chain, 2 * c + 1));
 
     // Stores are shared: chains differ in what they find, and thinning must treat all photons alike. The threshold that
     // the run is expected to end with is there from the start.
@@ -54,40 +35,34 @@ SampledPhotons sample_photons(const std::vector<Path>& seeds, const Mixture<Path
     PhotonStore global(options.global_photons, threshold, Rng(options.seed, StreamPurpose::thinning, 0));
     PhotonStore caustic(options.caustic_photons, threshold, Rng(options.seed, StreamPurpose::thinning, 1));
     const auto collect = [&] {
-        for (auto& run : runs) {
-            global.absorb(run->depositor.global());
-            caustic.absorb(run->depositor.caustic());
+        for (PathDepositor& depositor : depositors) {
+            global.absorb(depositor.global());
+            caustic.absorb(depositor.caustic());
         }
     };
 
     // In rounds, so that a stop finds all chains equally long.
     const std::int64_t round = round_length(photons, chains);
-    std::int64_t done = 0;
     context.begin("photons", static_cast<std::uint64_t>(per_chain * chains), "mutations");
-    while (done < per_chain && !(context.stopped() && done > 0)) {
-        const std::int64_t steps = std::min(round, per_chain - done);
-        parallel_for(chains, [&](std::int64_t c) {
-            ChainRun& run = *runs[static_cast<std::size_t>(c)];
-            run.depositor.set_thresholds(global.threshold(), caustic.threshold());
-            run.run(steps);
-            context.advance(static_cast<std::uint64_t>(steps));
-        });
+    while (set->steps() < per_chain && !(context.stopped() && set->steps() > 0)) {
+        for (PathDepositor& depositor : depositors) depositor.set_thresholds(global.threshold(), caustic.threshold());
+        set->advance(std::min(round, per_chain - set->steps()), context,
+                     [&](std::int64_t c, const Path& path, double weight) {
+                         depositors[static_cast<std::size_t>(c)].deposit(path, weight);
+                     });
         collect();
-        done += steps;
     }
     context.end();
-    for (auto& run : runs) run->depositor.flush();
+    for (PathDepositor& depositor : depositors) depositor.flush();
     collect();
 
-    out.steps = static_cast<std::uint64_t>(done * chains);
-    const double scale = options.brightness / static_cast<double>(out.steps);
+    out.chains = set->summary();
+    set.reset(); // its memory is needed below
+    const double scale = options.brightness / static_cast<double>(out.chains.steps);
     double lost = 0, total = 0;
-    for (auto& run : runs) {
-        merge(out.ledger, run->chain.ledger());
-        out.longest_stay = std::max(out.longest_stay, run->chain.longest_stay());
-        lost += run->depositor.lost_weight();
-        total += run->depositor.total_weight();
-        run.reset();
+    for (const PathDepositor& depositor : depositors) {
+        lost += depositor.lost_weight();
+        total += depositor.total_weight();
     }
     global.release_into(out.global, scale);
     caustic.release_into(out.caustic, scale);

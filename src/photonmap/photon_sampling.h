@@ -4,7 +4,7 @@
 #include "core/progress.h"
 #include "photonmap/deposit.h"
 #include "sampling/brightness.h"
-#include "sampling/chain.h"
+#include "sampling/chain_set.h"
 
 #include <vector>
 
@@ -20,10 +20,8 @@ struct PhotonSamplingOptions {
 
 struct SampledPhotons {
     std::vector<Photon> global, caustic; ///< power in W
-    Ledger ledger;                       ///< in the order of the mixture
-    std::uint64_t steps = 0;
-    std::uint64_t longest_stay = 0; ///< of any chain at one state
-    double lost_share = 0;          ///< share of the deposits whose importance came out as zero
+    ChainSummary chains;
+    double lost_share = 0; ///< share of the deposits whose importance came out as zero
 };
 
 /// Runs one chain from each seed, all equally long, and stores their photons. The number of chains is that of the seeds

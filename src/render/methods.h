@@ -8,6 +8,9 @@ namespace keyhole {
 /// Metropolis photon sampling: Fan, Chenney, Lai 2005.
 RenderResult render_mps(const Scene& scene, const Settings& settings, const RunContext& context);
 
+/// Metropolis light transport (Veach and Guibas 1997): the chains of Metropolis photon sampling, drawn directly.
+RenderResult render_mlt(const Scene& scene, const Settings& settings, const RunContext& context);
+
 /// Path tracing with next-event estimation, the reference.
 RenderResult render_path(const Scene& scene, const Settings& settings, const RunContext& context);
 

@@ -1,12 +1,11 @@
 // --method mps: the three stages of Metropolis photon sampling (Fan, Chenney, Lai 2005).
 #include "gather/final_gather.h"
 #include "photonmap/photon_sampling.h"
+#include "render/chain_report.h"
 #include "render/methods.h"
 #include "render/pixels.h"
 #include "render/stage_clock.h"
 #include "sampling/proposals/registry.h"
-
-#include <fmt/format.h>
 
 namespace keyhole {
 namespace {
@@ -64,43 +63,11 @@ SampledPhotons run_stage_two(const Scene& scene, const Settings& settings, const
                                          .brightness = one.brightness.mean(),
                                          .seed = static_cast<std::uint64_t>(settings.seed)};
     SampledPhotons photons = sample_photons(seeds, mixture, {&at_d2, &at_d1}, sampling, context);
-    for (std::size_t k = 0; k < photons.ledger.size(); ++k) {
-        const LedgerEntry& e = photons.ledger[k];
-        ProposalStats line{
-            std::string(mixture.kind(k).name()), e.proposed, e.zero, e.nan, e.rejected, e.accepted, {}, e.seconds};
-        for (std::size_t f = 0; f < kFailures; ++f) line.failed[std::string(kFailureNames[f])] = e.failed[f];
-        stats.proposals.push_back(line);
-    }
+    report_chains(stats, mixture, photons.chains);
     stats.photons_global = photons.global.size();
     stats.photons_caustic = photons.caustic.size();
-    stats.values["chains"] = static_cast<double>(seeds.size());
-    stats.values["mutations"] = static_cast<double>(photons.steps);
-    stats.values["longest stay"] = static_cast<double>(photons.longest_stay);
     stats.values["share of power without importance"] = photons.lost_share;
     return photons;
-}
-
-/// Stage one: B_eye, seeds and importance.
-StageOne run_stage_one(const Scene& scene, const StageOneSettings& settings, RenderStats& stats,
-                       const RunContext& context) {
-    const StageClock clock(stats, "brightness");
-    StageOne one = run_stage_one(scene, settings, context);
-    stats.brightness = one.brightness.mean();
-    stats.brightness_error = one.brightness.standard_error();
-    stats.values["brightness of caustics"] = one.caustic.mean();
-    stats.values["brightness of caustics, error"] = one.caustic.standard_error();
-    stats.values["brightness by bidirectional tracing"] = one.technique == Technique::bidirectional ? 1 : 0;
-    stats.values["brightness samples"] = static_cast<double>(one.samples);
-    if (!(stats.brightness > 0))
-        stats.warnings.emplace_back(
-            "no sampled path carried indirect light or a caustic: only direct light is rendered. If there is "
-            "more, try more brightness_samples");
-    else if (stats.brightness_error > 0.05 * stats.brightness)
-        stats.warnings.push_back(
-            fmt::format("the brightness of indirect light is known to {:.0f} % only (standard error): "
-                        "raise brightness_samples",
-                        100 * stats.brightness_error / stats.brightness));
-    return one;
 }
 
 } // namespace
@@ -114,7 +81,7 @@ RenderResult render_mps(const Scene& scene, const Settings& settings, const RunC
     const StageOneSettings first{.max_scatterings = static_cast<int>(settings.max_depth),
                                  .samples = settings.brightness_samples,
                                  .seed = static_cast<std::uint64_t>(settings.seed)};
-    const StageOne one = run_stage_one(scene, first, stats, context);
+    const StageOne one = measure_brightness(scene, first, stats, context);
 
     SampledPhotons photons;
     if (one.brightness.mean() > 0) photons = run_stage_two(scene, settings, first, one, patches, stats, context);

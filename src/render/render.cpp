@@ -13,6 +13,7 @@ RenderResult render(Scene& scene, const Settings& settings, const RunContext& co
     window.margin = std::max(2.0f, 0.03f * static_cast<float>(std::max(window.width, window.height)));
     scene.set_window(window);
     if (settings.method == "path") return render_path(scene, settings, context);
+    if (settings.method == "mlt") return render_mlt(scene, settings, context);
     if (settings.method == "mps") return render_mps(scene, settings, context);
     throw InputError("unknown method '" + settings.method + "'");
 }

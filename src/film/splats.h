@@ -1,0 +1,34 @@
+// Where paths land that choose their pixel themselves.
+#pragma once
+
+#include "core/fixed_sum.h"
+#include "core/vec.h"
+#include "film/filter.h"
+#include "film/picture.h"
+
+#include <vector>
+
+namespace keyhole {
+
+/// Sums of what chains deposit, by pixel, unscaled: what they are worth is known at the end only. add() is thread-safe,
+/// and the sums don't depend on the order of its calls.
+class SplatFilm {
+  public:
+    enum class Layer { indirect, caustic };
+
+    /// @param width,height in pixels, at least 1.
+    SplatFilm(int width, int height);
+
+    /// Adds `value` at `position` [pixels] to all pixels whose filter reaches it. Positions may lie outside the film.
+    void add(const Vec2& position, Layer layer, const Rgb& value);
+
+    /// Adds scale times the sums to the layer of that name, and to "beauty".
+    void add_to(Picture& picture, double scale) const;
+
+  private:
+    int width_, height_;
+    GaussianFilter filter_;
+    std::vector<FixedSum> sums_; ///< by pixel, layer and channel
+};
+
+} // namespace keyhole

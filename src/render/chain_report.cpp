@@ -1,0 +1,86 @@
+#include "render/chain_report.h"
+
+#include "render/stage_clock.h"
+
+#include <fmt/format.h>
+
+namespace keyhole {
+namespace {
+
+/// Beyond these a set of chains is not to be trusted.
+constexpr double kMostStuck = 0.02; ///< share of the chains
+constexpr double kMostRHat = 1.5;   ///< independent draws in 16 parts stay below 1.15; see docs/proposals.md
+constexpr double kMostError = 0.1;  ///< of the brightness of a block
+
+void warn_of_chains(RenderStats& stats, const ChainSummary& chains) {
+    const auto steps = chains.steps_per_chain();
+    if (static_cast<double>(chains.stuck) > kMostStuck * static_cast<double>(chains.chains))
+        stats.warnings.push_back(fmt::format(
+            "{} of {} chains spent more than half of their {} steps on a single path: expect bright spots that are not "
+            "there. Try more mutations",
+            chains.stuck, chains.chains, steps));
+    if (!chains.agreement) {
+        stats.warnings.push_back(fmt::format(
+            "the chains made {} steps each, too few to tell whether they agree: indirect light and caustics "
+            "can't be trusted. Try more mutations",
+            steps));
+    } else if (chains.agreement->r_hat > kMostRHat && chains.agreement->error > kMostError) {
+        stats.warnings.push_back(
+            fmt::format("independent groups of chains disagree on the brightness of parts of the image (split R-hat "
+                        "{:.2f}, {:.0f} % standard error): indirect light and caustics can't be trusted. Try more "
+                        "mutations",
+                        chains.agreement->r_hat, 100 * chains.agreement->error));
+    }
+}
+
+} // namespace
+
+StageOne measure_brightness(const Scene& scene, const StageOneSettings& settings, RenderStats& stats,
+                            const RunContext& context) {
+    const StageClock clock(stats, "brightness");
+    StageOne one = run_stage_one(scene, settings, context);
+    stats.brightness = one.brightness.mean();
+    stats.brightness_error = one.brightness.standard_error();
+    stats.values["brightness of caustics"] = one.caustic.mean();
+    stats.values["brightness of caustics, error"] = one.caustic.standard_error();
+    stats.values["brightness by bidirectional tracing"] = one.technique == Technique::bidirectional ? 1 : 0;
+    stats.values["brightness samples"] = static_cast<double>(one.samples);
+    if (!(stats.brightness > 0))
+        stats.warnings.emplace_back(
+            one.samples < settings.samples
+                ? "stopped before any indirect light or caustic was found: only direct light is "
+                  "rendered"
+                : "no sampled path carried indirect light or a caustic: only direct light is "
+                  "rendered. If there is more, try more brightness_samples");
+    else if (stats.brightness_error > 0.05 * stats.brightness)
+        stats.warnings.push_back(
+            fmt::format("the brightness of indirect light is known to {:.0f} % only (standard error): "
+                        "raise brightness_samples",
+                        100 * stats.brightness_error / stats.brightness));
+    return one;
+}
+
+void report_chains(RenderStats& stats, const Mixture<Path>& mixture, const ChainSummary& chains) {
+    LedgerEntry all;
+    for (std::size_t k = 0; k < chains.ledger.size(); ++k) {
+        const LedgerEntry& e = chains.ledger[k];
+        all += e;
+        ProposalStats line{
+            std::string(mixture.kind(k).name()), e.proposed, e.zero, e.nan, e.rejected, e.accepted, {}, e.seconds};
+        for (std::size_t f = 0; f < kFailures; ++f) line.failed[std::string(kFailureNames[f])] = e.failed[f];
+        stats.proposals.push_back(line);
+    }
+    stats.values["chains"] = static_cast<double>(chains.chains);
+    stats.values["mutations"] = static_cast<double>(chains.steps);
+    stats.values["chains, longest stay"] = static_cast<double>(chains.longest_stay);
+    stats.values["chains, stuck"] = static_cast<double>(chains.stuck);
+    if (all.proposed > 0)
+        stats.values["chains, acceptance"] = static_cast<double>(all.accepted) / static_cast<double>(all.proposed);
+    if (chains.agreement) {
+        stats.values["chains, agreement (split R-hat)"] = chains.agreement->r_hat;
+        stats.values["chains, error of block brightness"] = chains.agreement->error;
+    }
+    warn_of_chains(stats, chains);
+}
+
+} // namespace keyhole

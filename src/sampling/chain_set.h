@@ -1,0 +1,78 @@
+// Many chains side by side.
+#pragma once
+
+#include "core/parallel.h"
+#include "core/progress.h"
+#include "sampling/agreement.h"
+#include "sampling/chain.h"
+#include "sampling/path.h"
+
+#include <algorithm>
+#include <memory>
+
+namespace keyhole {
+
+/// What became of a set of chains.
+struct ChainSummary {
+    std::size_t chains = 0;
+    std::uint64_t steps = 0;        ///< of all chains
+    Ledger ledger;                  ///< in the order of the mixture
+    std::uint64_t longest_stay = 0; ///< of any chain at one state
+    std::size_t stuck = 0;          ///< chains that spent more than half of their steps at one state
+    std::optional<Agreement> agreement;
+
+    std::uint64_t steps_per_chain() const { return chains == 0 ? 0 : steps / chains; }
+};
+
+/// One chain from each seed, all equally long at any time. Their number is that of the seeds and never follows the
+/// threads: the result is the same on any number of them.
+class ChainSet {
+  public:
+    /// `mixture` must outlive the set.
+    ChainSet(const std::vector<Path>& seeds, const Mixture<Path>& mixture, std::uint64_t seed) : chains_(seeds.size()) {
+        parallel_for(size(), [&](std::int64_t c) {
+            const auto i = static_cast<std::size_t>(c);
+            chains_[i] = std::make_unique<Chain<Path>>(
+                seeds[i], mixture, Rng(seed, StreamPurpose::chain, 2 * static_cast<std::uint64_t>(c)));
+        });
+    }
+
+    std::int64_t size() const { return static_cast<std::int64_t>(chains_.size()); }
+    /// Steps that each chain has made.
+    std::int64_t steps() const { return steps_; }
+
+    /// Advances every chain by `steps` steps. Calls deposit(chain, path, weight), for different chains at once.
+    template <class Deposit> void advance(std::int64_t steps, const RunContext& context, Deposit&& deposit) {
+        parallel_for(size(), [&](std::int64_t c) {
+            Chain<Path>& chain = *chains_[static_cast<std::size_t>(c)];
+            for (std::int64_t i = 0; i < steps; ++i)
+                chain.step([&](const Path& path, double weight) {
+                    monitor_.add(c, path.image, weight);
+                    deposit(c, path, weight);
+                });
+            context.advance(static_cast<std::uint64_t>(steps));
+        });
+        monitor_.end_round(steps);
+        steps_ += steps;
+    }
+
+    ChainSummary summary() const {
+        ChainSummary s;
+        s.chains = chains_.size();
+        s.steps = static_cast<std::uint64_t>(steps_ * size());
+        for (const auto& chain : chains_) {
+            merge(s.ledger, chain->ledger());
+            s.longest_stay = std::max(s.longest_stay, chain->longest_stay());
+            s.stuck += 2 * chain->longest_stay() > static_cast<std::uint64_t>(steps_) ? 1 : 0;
+        }
+        s.agreement = monitor_.agreement();
+        return s;
+    }
+
+  private:
+    std::vector<std::unique_ptr<Chain<Path>>> chains_;
+    AgreementMonitor monitor_;
+    std::int64_t steps_ = 0;
+};
+
+} // namespace keyhole

@@ -1,0 +1,55 @@
+// Metropolis light transport and path tracing make the same picture.
+#include "scene/load/scene_yaml.h"
+#include "support/agreement.h"
+#include "support/test_scenes.h"
+
+#include <gtest/gtest.h>
+
+namespace keyhole {
+namespace {
+
+std::unique_ptr<Scene> rooms_low() {
+    return std::make_unique<Scene>(load_scene(KEYHOLE_SOURCE_DIR "/tests/data/rooms_low/rooms.yaml").description);
+}
+
+struct MltCase {
+    const char* name;
+    std::unique_ptr<Scene> (*make)();
+    int path_spp;
+    double tolerance; ///< relative; what path tracing misses of a caustic, or has not seen yet
+};
+
+class Mlt_AgreesWithPathTracing : public testing::TestWithParam<MltCase> {};
+
+TEST_P(Mlt_AgreesWithPathTracing, BlockByBlock) {
+    const auto scene = GetParam().make();
+    scene->set_window({96, 64, 0});
+    Settings path;
+    path.method = "path";
+    path.spp = GetParam().path_spp;
+    path.seed = 1000;
+    Settings mlt;
+    mlt.method = "mlt";
+    mlt.spp = 8;
+    mlt.brightness_samples = 50'000;
+    mlt.chains = 400;
+    mlt.mutations = 80'000;
+    const test::Blocks reference = test::render_blocks(*scene, path, 4);
+    const test::Disagreement d = test::compare(test::render_blocks(*scene, mlt, 4), reference, GetParam().tolerance);
+    RecordProperty("ratio", std::to_string(d.ratio));
+    EXPECT_EQ(d.rejected, 0) << d.report << "mean brightness ratio " << d.ratio;
+    EXPECT_LT(d.largest_error, 0.5) << "the test couldn't see a difference";
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Mlt_AgreesWithPathTracing,
+                         testing::Values(MltCase{"DiffuseBox", test::diffuse_box, 20, 0.01},
+                                         MltCase{"MirrorGlassBox", [] { return test::mirror_glass_box(); }, 20, 0.01},
+                                         MltCase{"ThinLens", [] { return test::mirror_glass_box(0.1f); }, 20, 0.01},
+                                         MltCase{"TwoRooms", [] { return test::two_rooms(0.5f); }, 20, 0.01},
+                                         MltCase{"Haze", test::hazy_box, 20, 0.01},
+                                         MltCase{"Sky", test::sky_box, 20, 0.01},
+                                         MltCase{"RoomsLow", rooms_low, 20, 0.01}),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+} // namespace
+} // namespace keyhole

@@ -1,0 +1,59 @@
+#include "film/splats.h"
+
+#include "core/parallel.h"
+#include "core/rng.h"
+
+#include <gtest/gtest.h>
+
+namespace keyhole {
+namespace {
+
+Picture blank(int width, int height) {
+    Picture p{width, height, {}, {}};
+    for (const char* layer : {"beauty", "indirect", "caustic"}) p.layers[layer] = Image(width, height, 3);
+    return p;
+}
+
+// A film is a mean over samples spread as its filter: uniform splats of value 1 must give 1 everywhere, borders
+// included if splats fall beyond them.
+TEST(Splats_OfUniformPoints, FillTheFilmEvenly) {
+    constexpr int width = 5, height = 3, margin = 2, per_unit = 64;
+    SplatFilm splats(width, height);
+    for (int j = 0; j < (height + 2 * margin) * per_unit; ++j)
+        for (int i = 0; i < (width + 2 * margin) * per_unit; ++i)
+            splats.add({(static_cast<float>(i) + 0.5f) / per_unit - margin,
+                        (static_cast<float>(j) + 0.5f) / per_unit - margin},
+                       SplatFilm::Layer::caustic, Rgb(1, 2, 3));
+    Picture picture = blank(width, height);
+    picture.layers["beauty"].data.assign(picture.layers["beauty"].data.size(), 10.0f);
+    splats.add_to(picture, 1.0 / (per_unit * per_unit));
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            for (int c = 0; c < 3; ++c) {
+                EXPECT_NEAR(picture.layers["caustic"].at(x, y)[c], c + 1.0, 1e-3);
+                EXPECT_NEAR(picture.layers["beauty"].at(x, y)[c], c + 11.0, 1e-3);
+                EXPECT_EQ(picture.layers["indirect"].at(x, y)[c], 0);
+            }
+}
+
+TEST(Splats_FromManyThreads, AddUpTheSame) {
+    std::vector<float> first;
+    for (const int threads : {1, 4}) {
+        SplatFilm splats(4, 4);
+        with_threads(threads, [&] {
+            parallel_for(64, [&](std::int64_t i) {
+                Rng rng(1, StreamPurpose::test, static_cast<std::uint64_t>(i));
+                for (int k = 0; k < 500; ++k)
+                    splats.add({static_cast<float>(4 * rng.next()), static_cast<float>(4 * rng.next())},
+                               SplatFilm::Layer::indirect, Rgb(rng.next()));
+            });
+        });
+        Picture picture = blank(4, 4);
+        splats.add_to(picture, 1);
+        if (first.empty()) first = picture.layers["indirect"].data;
+        EXPECT_EQ(first, picture.layers["indirect"].data);
+    }
+}
+
+} // namespace
+} // namespace keyhole
