@@ -142,7 +142,7 @@ void Binder::check_scattering(std::size_t i, const Vec3& to_eye) const {
 
 bool Binder::is_seen() const {
     const Vertex& v = found_.back();
-    const SurfacePoint eye = scene_.camera().eye(0.5, 0.5);
+    const SurfacePoint eye = scene_.camera().eye(0, 0);
     const Vec3 w = direction(eye, v.point), to_light = direction(v.point, found_[found_.size() - 2].point);
     return scene_.camera().image_point(eye, w) && scene_.visible(v.point, eye) &&
            !is_black(scatter(v.point, v.bsdf, Event::finite, to_light, -w).value);

@@ -41,4 +41,16 @@ std::span<const ProposalKind> proposal_kinds();
 /// weights; together with BD they are one family.
 Mixture<Path> make_mixture(const ProposalContext& context, const Settings& settings, const UserPaths& paths = {});
 
+/// Mixtures for a set of chains.
+struct ChainMixtures {
+    Mixture<Path> mixture;
+    std::optional<Mixture<Path>> control; ///< the same without user paths, where there are any
+
+    ChainMixtures(const ProposalContext& context, const Settings& settings, const UserPaths& paths)
+        : mixture(make_mixture(context, settings, paths)) {
+        if (!paths.empty() && settings.p_user_path > 0) control = make_mixture(context, settings);
+    }
+    const Mixture<Path>* control_or_null() const { return control ? &*control : nullptr; }
+};
+
 } // namespace keyhole

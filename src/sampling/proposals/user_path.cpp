@@ -15,7 +15,8 @@ namespace {
 class UserPathProposal final : public Proposal<Path> {
   public:
     UserPathProposal(const ProposalContext& context, const UserPath& path)
-        : scene_(*context.scene), set_(context.set), max_vertices_(context.max_scatterings + 2), path_(path) {
+        : scene_(*context.scene), set_(context.set), max_vertices_(context.max_scatterings + 2), path_(path),
+          label_("user path: " + path.name) {
         events_.x.push_back({});
         for (const UserVertex& v : path.vertices) {
             events_.x.push_back({});
@@ -23,7 +24,7 @@ class UserPathProposal final : public Proposal<Path> {
         }
     }
 
-    std::string_view name() const override { return path_.name; }
+    std::string_view name() const override { return label_; }
     double suitability(const Path& x) const override { return path_.seen || nth_finite_from_eye(x, 1) > 0 ? 1 : 0; }
     std::optional<Path> propose(const Path& x, Rng& rng, Failure& why) const override;
     double transition_density(const Path& x, const Path& y) const override;
@@ -49,6 +50,7 @@ class UserPathProposal final : public Proposal<Path> {
     PathSet set_;
     int max_vertices_;
     UserPath path_;
+    std::string label_;
     Path events_; ///< only the events of its vertices count; x0 and those of path_
 };
 
