@@ -9,7 +9,7 @@ import sys
 
 sys.dont_write_bytecode = True
 
-from modelling import furniture, lantern, rooms, things  # noqa: E402
+from modelling import furniture, lantern, papers, rooms, things  # noqa: E402
 from modelling.detail import Detail  # noqa: E402
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -62,6 +62,15 @@ def lantern_meshes(d):
     }
 
 
+def paper_meshes(d):
+    return {
+        'egg': papers.egg(d),
+        'uplight': papers.uplight(d),
+        'disco_ball': papers.disco_ball(0.3),
+        'disco_mirrors': papers.disco_mirrors(0.3, 0.001),
+    }
+
+
 def write(meshes, folder):
     folder.mkdir(parents=True, exist_ok=True)
     for name, mesh in meshes.items():
@@ -77,7 +86,7 @@ def main():
         write(rooms_meshes(Detail(False)), arguments.low / 'meshes')
         (arguments.low / 'rooms.yaml').write_text((HERE / 'rooms.yaml').read_text())
     else:
-        write(rooms_meshes(Detail(True)) | lantern_meshes(Detail(True)), arguments.out)
+        write(rooms_meshes(Detail(True)) | lantern_meshes(Detail(True)) | paper_meshes(Detail(True)), arguments.out)
 
 
 if __name__ == '__main__':

@@ -9,7 +9,7 @@ namespace keyhole {
 std::string settings_text(const Settings& settings) {
     std::string text;
     visit_settings(settings, [&](const char* key, const auto& value, const auto&...) {
-        text += fmt::format("{}{}={}", text.empty() ? "" : " ", key, value);
+        text += fmt::format("{}{}={}", text.empty() ? "" : " ", key, printable(value));
     });
     return text;
 }

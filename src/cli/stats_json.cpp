@@ -19,8 +19,7 @@ Json stats_json(const RenderStats& s) {
                              {"nan", p.nan},
                              {"rejected", p.rejected},
                              {"accepted", p.accepted},
-                             {"seconds", p.seconds},
-                             {"deposited", p.deposited}});
+                             {"seconds", p.seconds}});
     return {{"complete", s.complete},
             {"brightness", s.brightness},
             {"brightness_error", s.brightness_error},

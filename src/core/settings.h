@@ -1,12 +1,28 @@
 // Every setting of a render, in one table: scene files, `-D key=value` and the help text all read it.
 #pragma once
 
+#include <array>
+#include <charconv>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace keyhole {
+
+/// A number, or the renderer's own choice.
+struct AutoNumber {
+    std::optional<double> value; ///< none: automatic
+};
+
+/// A setting as something that can be printed.
+template <class T> const T& printable(const T& setting) { return setting; }
+inline std::string printable(const AutoNumber& setting) {
+    if (!setting.value) return "auto";
+    std::array<char, 32> text;
+    return {text.data(), std::to_chars(text.begin(), text.end(), *setting.value).ptr};
+}
 
 /// Settings of a render. Ranges and meanings stand in visit_settings(), the only other place that lists them.
 struct Settings {
@@ -21,20 +37,26 @@ struct Settings {
     std::int64_t photons = 200'000;
     std::int64_t nearest = 60;
     std::int64_t gather_rays = 4;
+    std::string mis = "power";
+    std::string builder = "bidirectional";
+    std::string failures = "reject";
+    AutoNumber p_large;
+    std::string large_step_mis = "on";
     double p_bidirectional = 0.4;
     double p_lens_subpath = 0.1;
     double p_lens_perturbation = 0.2;
     double p_multi_chain_perturbation = 0.2;
     double p_caustic_perturbation = 0.2;
     double p_photon_map = 0.2;
-    double p_user_path = 0.2;
 };
 
 /// One line of the table. `Visitor` is called as visitor(key, member, minimum, maximum, help) for numbers and
-/// visitor(key, member, choices, help) for words; members are references into `settings`.
+/// visitor(key, member, choices, help) for words; an
+/// AutoNumber is a number or `auto`; members are references into `settings`.
 template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
     using I = std::int64_t;
-    visit("method", s.method, std::vector<std::string_view>{"mps", "mlt", "path"}, "rendering method");
+    visit("method", s.method, std::vector<std::string_view>{"mps", "mlt", "path", "bdpt", "pssmlt", "mmlt", "rjmlt"},
+          "rendering method");
     visit("spp", s.spp, I{1}, I{1} << 24, "samples per pixel");
     visit("seed", s.seed, I{0}, I{1} << 53, "seed of all random streams");
     visit("max_depth", s.max_depth, I{1}, I{30}, "most scatterings between light and eye");
@@ -45,6 +67,15 @@ template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
     visit("photons", s.photons, I{1}, I{1} << 30, "most photons kept in a pass");
     visit("nearest", s.nearest, I{1}, I{10'000}, "photons in a radiance estimate");
     visit("gather_rays", s.gather_rays, I{1}, I{1} << 16, "gather rays per sample of a pixel");
+    visit("mis", s.mis, std::vector<std::string_view>{"balance", "power", "maximum"},
+          "how the techniques of bidirectional paths share them");
+    visit("builder", s.builder, std::vector<std::string_view>{"path", "endpoints", "bidirectional"},
+          "how pssmlt makes paths");
+    visit("failures", s.failures, std::vector<std::string_view>{"exclude", "reject", "exclude_large", "delay"},
+          "what pssmlt and mmlt do with proposals that make no path; exclude is biased");
+    visit("p_large", s.p_large, 0.0, 1.0, "probability of large steps of pssmlt and mmlt");
+    visit("large_step_mis", s.large_step_mis, std::vector<std::string_view>{"on", "off"},
+          "whether large steps deposit as samples on their own account");
     visit("p_bidirectional", s.p_bidirectional, 0.0, 1.0, "relative frequency of bidirectional proposals");
     visit("p_lens_subpath", s.p_lens_subpath, 0.0, 1.0, "relative frequency of lens sub-path proposals");
     visit("p_lens_perturbation", s.p_lens_perturbation, 0.0, 1.0, "relative frequency of lens perturbations");
@@ -52,8 +83,6 @@ template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
           "relative frequency of multi-chain perturbations");
     visit("p_caustic_perturbation", s.p_caustic_perturbation, 0.0, 1.0, "relative frequency of caustic perturbations");
     visit("p_photon_map", s.p_photon_map, 0.0, 1.0, "relative frequency of photon map perturbations");
-    visit("p_user_path", s.p_user_path, 0.0, 1.0,
-          "relative frequency of proposals along user paths, where there are any");
 }
 
 } // namespace keyhole

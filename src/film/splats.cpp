@@ -7,7 +7,7 @@
 namespace keyhole {
 namespace {
 
-constexpr std::size_t kChannels = 3, kPerPixel = 2 * kChannels;
+constexpr std::size_t kChannels = 3, kPerPixel = 3 * kChannels;
 
 } // namespace
 
@@ -34,7 +34,8 @@ void SplatFilm::add(const Vec2& position, Layer layer, const Rgb& value) {
 
 void SplatFilm::add_to(Picture& picture, double scale) const {
     Image& beauty = picture.layers.at("beauty");
-    Image* const layers[] = {&picture.layers.at("indirect"), &picture.layers.at("caustic")};
+    Image* const layers[] = {&picture.layers.at("direct"), &picture.layers.at("indirect"),
+                             &picture.layers.at("caustic")};
     for (std::size_t i = 0; i < sums_.size(); ++i) {
         const auto value = static_cast<float>(scale * sums_[i].value());
         const std::size_t at = i / kPerPixel * kChannels + i % kChannels;

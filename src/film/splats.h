@@ -5,6 +5,7 @@
 #include "core/vec.h"
 #include "film/filter.h"
 #include "film/picture.h"
+#include "sampling/light_class.h"
 
 #include <vector>
 
@@ -14,7 +15,21 @@ namespace keyhole {
 /// and the sums don't depend on the order of its calls.
 class SplatFilm {
   public:
-    enum class Layer { indirect, caustic };
+    enum class Layer { direct, indirect, caustic };
+
+    static Layer layer_of(LightClass light) {
+        switch (light) {
+        case LightClass::emission:
+        case LightClass::direct:
+            return Layer::direct;
+        case LightClass::caustic:
+            return Layer::caustic;
+        case LightClass::second:
+        case LightClass::indirect:
+            break;
+        }
+        return Layer::indirect;
+    }
 
     /// @param width,height in pixels, at least 1.
     SplatFilm(int width, int height);
@@ -22,7 +37,7 @@ class SplatFilm {
     /// Adds `value` at `position` [pixels] to all pixels whose filter reaches it. Positions may lie outside the film.
     void add(const Vec2& position, Layer layer, const Rgb& value);
 
-    /// Adds scale times the sums to the layer of that name, and to "beauty".
+    /// Adds scale times the sums to the layers of these names, and to "beauty".
     void add_to(Picture& picture, double scale) const;
 
   private:

@@ -2,19 +2,23 @@
 #pragma once
 
 #include "render/render.h"
-#include "sampling/user_paths.h"
 
 namespace keyhole {
 
 /// Metropolis photon sampling: Fan, Chenney, Lai 2005.
-RenderResult render_mps(const Scene& scene, const Settings& settings, const UserPaths& paths,
-                        const RunContext& context);
+RenderResult render_mps(const Scene& scene, const Settings& settings, const RunContext& context);
 
 /// Metropolis light transport (Veach and Guibas 1997): the chains of Metropolis photon sampling, drawn directly.
-RenderResult render_mlt(const Scene& scene, const Settings& settings, const UserPaths& paths,
-                        const RunContext& context);
+RenderResult render_mlt(const Scene& scene, const Settings& settings, const RunContext& context);
 
 /// Path tracing with next-event estimation, the reference.
 RenderResult render_path(const Scene& scene, const Settings& settings, const RunContext& context);
+
+/// Bidirectional path tracing (Veach 1997, chapter 10).
+RenderResult render_bdpt(const Scene& scene, const Settings& settings, const RunContext& context);
+
+/// Metropolis light transport in primary sample space: pssmlt (Kelemen et al. 2002), mmlt (Hachisuka, Kaplanyan and
+/// Dachsbacher 2014) or rjmlt (after Bitterli et al. 2017), by settings.method.
+RenderResult render_primary(const Scene& scene, const Settings& settings, const RunContext& context);
 
 } // namespace keyhole

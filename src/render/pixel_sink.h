@@ -14,20 +14,27 @@ struct PixelSink {
     PixelSample pixel{};
 
     bool arrival(const EyeWalk& walk, const Rgb& /*throughput*/, int finite) {
-        const Vertex& v = walk.back();
-        if (walk.size() == 2) pixel.depth = Vec3(v.point.p - walk[0].point.p).length();
-        if (finite == 0 && v.bsdf.traits().finite && pixel.normal.length2() == 0) {
-            const Vec3 back = direction(v.point, walk[walk.size() - 2].point);
-            const Vec3 n = v.bsdf.shading_normal();
-            const Vec3 facing = n.dot(back) < 0 ? -n : n;
-            pixel.normal = facing;
-            pixel.albedo = v.bsdf.eval(facing, back) * kPi;
-        }
+        if (finite == 0) see(walk.back(), walk[walk.size() - 2], walk.size() == 2);
         return elsewhere == Elsewhere::nothing || finite < 2;
     }
 
     void contribution(const EyeWalk& /*walk*/, const Vertex& /*x0*/, const Rgb& value, LightClass light) {
-        if (elsewhere == Elsewhere::stored && in_set(light, PathSet::stored)) return;
+        if (elsewhere == Elsewhere::nothing || !in_set(light, PathSet::stored)) add(value, light);
+    }
+
+    /// Notes what vertex `v` looks like from `before`, the one nearer to the eye.
+    void see(const Vertex& v, const Vertex& before, bool first) {
+        if (v.point.site == Site::infinite) return;
+        if (first) pixel.depth = Vec3(v.point.p - before.point.p).length();
+        if (!v.bsdf.traits().finite || saw_surface()) return;
+        const Vec3 back = direction(v.point, before.point);
+        const Vec3 n = v.bsdf.shading_normal();
+        pixel.normal = n.dot(back) < 0 ? -n : n;
+        pixel.albedo = v.bsdf.eval(pixel.normal, back) * kPi;
+    }
+    bool saw_surface() const { return pixel.normal.length2() > 0; }
+
+    void add(const Rgb& value, LightClass light) {
         switch (light) {
         case LightClass::emission:
         case LightClass::direct:

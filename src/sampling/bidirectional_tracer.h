@@ -2,61 +2,39 @@
 // light, every pair of their vertices joined, weighted by multiple importance sampling.
 #pragma once
 
-#include "sampling/light_class.h"
-#include "sampling/measure.h"
-#include "sampling/proposals/edit.h"
+#include "sampling/bidirectional_joint.h"
 
 namespace keyhole {
 
-/// A sub-path as a walk made it.
-struct TracedSubPath {
-    SubPath vertices;
-    InlineVector<double, kMaxScatterings + 2> survival; ///< probability that roulette let the walk reach vertex i
-    InlineVector<Rgb, kMaxScatterings + 2>
-        throughput; ///< what scattering and media left before vertex i, over survival
+/// Most vertices that the sub-paths of paths with `max_scatterings` need.
+inline int most_eye_vertices(int max_scatterings) { return std::min(max_scatterings, kMaxScatterings) + 2; }
+inline int most_light_vertices(int max_scatterings) { return std::min(max_scatterings, kMaxScatterings) + 1; }
 
-    void push_back(const Vertex& v, double survived, const Rgb& arriving) {
-        vertices.push_back(v);
-        survival.push_back(survived);
-        throughput.push_back(arriving);
-    }
-};
+/// The eye's sub-path through window point `image`, [0] the eye, with at most `most_vertices`. Longer walks are ended
+/// by numbers from `roulette`; null: they are not.
+TracedSubPath trace_eye_subpath(const Scene& scene, const Vec2& image, int most_vertices, SampleSource& source,
+                                SampleSource* roulette);
 
-/// The eye's sub-path through window point `image`, [0] the eye, with at most `max_scatterings` further vertices.
-TracedSubPath trace_eye_subpath(const Scene& scene, const Vec2& image, int max_scatterings, SampleSource& source);
+/// A light sub-path, [0] on an emitter, with at most `most_vertices`; empty if nothing emits.
+TracedSubPath trace_light_subpath(const Scene& scene, int most_vertices, SampleSource& source, SampleSource* roulette);
 
-/// A light sub-path, [0] on an emitter; empty if nothing emits.
-TracedSubPath trace_light_subpath(const Scene& scene, int max_scatterings, SampleSource& source);
-
-/// The path that joins the first s vertices of `light` and the first t of `eye`, measured; its image point is `image`
-/// unless t = 1. None if they can't be joined, carry nothing, don't see each other or aren't in `set`. s = 0: the eye
-/// sub-path lies on an emitter.
-std::optional<Path> join_subpaths(const Scene& scene, const SubPath& light, int s, const SubPath& eye, int t,
-                                  const Vec2& image, PathSet set);
-
-/// Weight of making a measured path with s vertices from the light: the power heuristic with exponent 2 over all s, and
-/// the density of that technique.
-struct TechniqueWeight {
-    double density, mis;
-};
-TechniqueWeight technique_weight(const Path& path, int s);
-
-/// Traces one pair of sub-paths and tells sink.contribution(path, value, light_class) about every path of `set` that
-/// joins them: `value` is an estimate of radiance at path.image (window density 1), MIS weight included.
+/// Joins every pair of vertices of two sub-paths and tells sink.contribution(connection, value, light_class) about
+/// every path of `set` among them with at most `max_scatterings`: `connection` is a Joint at connection.image() (window
+/// point), `value` an estimate of radiance there (window density 1), MIS weight included. `image` is that of the eye
+/// sub-path.
 template <class Sink>
 void connect_subpaths(const Scene& scene, const TracedSubPath& light, const TracedSubPath& eye, const Vec2& image,
-                      int max_scatterings, PathSet set, Sink& sink) {
-    const int most_s = static_cast<int>(light.vertices.size()), most_t = static_cast<int>(eye.vertices.size());
+                      int max_scatterings, PathSet set, MisHeuristic heuristic, Sink& sink) {
+    const int most_s = light.size(), most_t = eye.size();
     for (int t = 1; t <= most_t; ++t) {
         for (int s = 0; s <= most_s && s + t - 2 <= max_scatterings; ++s) {
             if (s + t < 2) continue;
-            const auto path = join_subpaths(scene, light.vertices, s, eye.vertices, t, image, set);
-            if (!path) continue;
-            const TechniqueWeight w = technique_weight(*path, s);
-            const double survival = eye.survival[static_cast<std::size_t>(t) - 1] *
-                                    (s > 0 ? light.survival[static_cast<std::size_t>(s) - 1] : 1.0);
-            if (w.density > 0)
-                sink.contribution(*path, path->contribution * (w.mis / (w.density * survival)), light_class(*path));
+            Joint joint(scene, light, s, eye, t, image);
+            if (!joint.possible()) continue;
+            const LightClass kind = joint.light_class();
+            if (!in_set(kind, set)) continue;
+            const Rgb value = joint.value(heuristic);
+            if (luminance(value) > 0 && joint.visible()) sink.contribution(joint, value, kind);
         }
     }
 }

@@ -21,8 +21,8 @@ template <class Sink>
 void trace_independent(Technique technique, const Scene& scene, const Vec2& image, int max_scatterings, PathSet set,
                        SampleSource& source, Sink& sink) {
     if (technique == Technique::bidirectional) {
-        const TracedSubPath eye = trace_eye_subpath(scene, image, max_scatterings, source);
-        const TracedSubPath light = trace_light_subpath(scene, max_scatterings, source);
+        const TracedSubPath eye = trace_eye_subpath(scene, image, most_eye_vertices(max_scatterings), source, &source);
+        const TracedSubPath light = trace_light_subpath(scene, most_light_vertices(max_scatterings), source, &source);
         int finite = 0;
         for (std::size_t i = 1; i < eye.vertices.size(); ++i) {
             const Vertex& v = eye.vertices[i];
@@ -32,11 +32,11 @@ void trace_independent(Technique technique, const Scene& scene, const Vec2& imag
         }
         struct {
             Sink& sink;
-            void contribution(const Path& path, const Rgb& value, LightClass light) {
-                sink.contribution(value, light, [&] { return path; });
+            void contribution(const Joint& joint, const Rgb& value, LightClass light) {
+                sink.contribution(value, light, [&] { return joint.path(); });
             }
         } adapter{sink};
-        connect_subpaths(scene, light, eye, image, max_scatterings, set, adapter);
+        connect_subpaths(scene, light, eye, image, max_scatterings, set, MisHeuristic::power, adapter);
         return;
     }
     struct {

@@ -44,7 +44,8 @@ std::optional<Continuation> continue_walk(const Vertex& v, const Vec3& back, Fro
     const ScatterValue value = scatter(v.point, v.bsdf, s->event, eye ? s->to : back, eye ? back : s->to);
     const double pdf = eye ? value.pdf_to_light : value.pdf_to_eye;
     if (!(pdf > 0)) return std::nullopt;
-    return Continuation{s->to, s->event, value.value * (v.point.abs_cos(s->to) / pdf), s->pdf};
+    return Continuation{s->to,  s->event, value.value * (v.point.abs_cos(s->to) / pdf),
+                        s->pdf, pdf,      eye ? value.pdf_to_eye : value.pdf_to_light};
 }
 
 double finite_probability(const Vertex& v, const Vec3& back) {

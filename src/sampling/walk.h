@@ -36,8 +36,10 @@ enum class From { eye, light };
 struct Continuation {
     Vec3 w; ///< unit
     Event event;
-    Rgb weight; ///< factor of the walk's throughput: scattering times cosine over density
-    double pdf; ///< per solid angle; probability of the event where specular
+    Rgb weight;               ///< factor of the walk's throughput: scattering times cosine over density
+    double pdf;               ///< per solid angle; probability of the event where specular
+    double forward, backward; ///< densities per solid angle in the convention of measure.h: of `w`, and of `back` for a
+                              ///< walk from the other end
 };
 
 /// Samples the BSDF at `v`, reached along `back` (unit, pointing back). None: absorbed.

@@ -31,7 +31,8 @@ TEST_P(Picture_IsTheSameOnAnyNumberOfThreads, BitForBit) {
             EXPECT_EQ(image.data, pictures[i].layers.at(name).data) << name << " with " << i + 1 << " threads";
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, Picture_IsTheSameOnAnyNumberOfThreads, testing::Values("mps", "mlt", "path"),
+INSTANTIATE_TEST_SUITE_P(Methods, Picture_IsTheSameOnAnyNumberOfThreads,
+                         testing::Values("mps", "mlt", "path", "bdpt", "pssmlt", "mmlt", "rjmlt"),
                          [](const auto& info) { return std::string(info.param); });
 
 } // namespace

@@ -10,7 +10,7 @@ namespace {
 
 Picture blank(int width, int height) {
     Picture p{width, height, {}, {}};
-    for (const char* layer : {"beauty", "indirect", "caustic"}) p.layers[layer] = Image(width, height, 3);
+    for (const char* layer : {"beauty", "direct", "indirect", "caustic"}) p.layers[layer] = Image(width, height, 3);
     return p;
 }
 

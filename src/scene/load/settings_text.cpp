@@ -69,6 +69,13 @@ struct Setter {
             return refuse(fmt::format("expected a number from {} to {}", minimum, maximum));
         member = *x;
     }
+    void operator()(const char* name, AutoNumber& member, double minimum, double maximum, const char*) {
+        if (!matches(name)) return;
+        const auto x = value == "auto" ? std::nullopt : parse_all<double>(value);
+        if (value != "auto" && (!x || !(*x >= minimum && *x <= maximum)))
+            return refuse(fmt::format("expected a number from {} to {}, or auto", minimum, maximum));
+        member.value = x;
+    }
     void operator()(const char* name, std::string& member, const std::vector<std::string_view>& choices, const char*) {
         if (!matches(name)) return;
         if (std::find(choices.begin(), choices.end(), value) == choices.end())

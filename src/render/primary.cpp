@@ -1,0 +1,150 @@
+// --method pssmlt, mmlt, rjmlt: chains in primary sample space, drawn to the film.
+#include "core/parallel.h"
+#include "film/splats.h"
+#include "render/methods.h"
+#include "render/mis_heuristic.h"
+#include "render/stage_clock.h"
+#include "sampling/primary/p_large.h"
+#include "sampling/primary/primary_chains.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace keyhole {
+namespace {
+
+/// The first stretch, in parts of the whole. It learns how often large steps are accepted and fail, with half of the
+/// steps large, and draws nothing.
+constexpr std::int64_t kStretch = 32;
+
+/// Rounds of the rest: the brightness that weights refer to is brought up to date between them.
+constexpr std::int64_t kRounds = 64;
+
+Failures failures_of(std::string_view word) {
+    return word == "exclude"         ? Failures::exclude
+           : word == "exclude_large" ? Failures::exclude_large
+           : word == "delay"         ? Failures::delay
+                                     : Failures::reject;
+}
+
+std::vector<PrimaryStratum> start(const Scene& scene, const Settings& settings, const EmitterInverse& inverses,
+                                  RenderStats& stats, const RunContext& context) {
+    const StageClock clock(stats, "brightness");
+    const BuilderContext builders{&scene, static_cast<int>(settings.max_depth), mis_heuristic(settings.mis)};
+    const PrimaryStartOptions options{.samples = settings.brightness_samples,
+                                      .chains = settings.chains,
+                                      .seed = static_cast<std::uint64_t>(settings.seed)};
+    if (settings.method == "mmlt") return start_by_length(builders, nullptr, options, context);
+    if (settings.method == "rjmlt") return start_by_length(builders, &inverses, options, context);
+    auto builder = settings.builder == "path"        ? make_path_builder(builders)
+                   : settings.builder == "endpoints" ? make_endpoint_builder(builders)
+                                                     : make_bidirectional_builder(builders);
+    std::vector<PrimaryStratum> strata;
+    strata.push_back(start_whole(std::move(builder), options, context));
+    return strata;
+}
+
+/// Learns p_large where it is not prescribed.
+double learn_p_large(PrimaryChains& chains, const Settings& settings, std::int64_t steps, RenderStats& stats,
+                     const RunContext& context) {
+    chains.advance({failures_of(settings.failures), 0.5}, steps, context, nullptr);
+    const LargeStepRule rule = large_step_rule(chains.counts());
+    const double p = settings.p_large.value.value_or(rule.p_large);
+    stats.values["p_large"] = p;
+    stats.values["p_large by the rule"] = rule.p_large;
+    stats.values["p_large by its first branch"] = rule.by_formula ? 1 : 0;
+    stats.values["eta_s"] = rule.eta_s;
+    stats.values["eta_l"] = rule.eta_l;
+    stats.values["eta_0"] = rule.eta_0;
+    return p;
+}
+
+ProposalStats line(std::string name, const StepCounts& c) {
+    return {std::move(name),         c.proposed, 0, 0, c.proposed - c.failed - c.accepted, c.accepted,
+            {{"no_path", c.failed}}, 0};
+}
+
+void report(const PrimaryChains& chains, RenderStats& stats) {
+    const PrimaryCounts counts = chains.counts();
+    stats.proposals = {line("small step", counts.small), line("large step", counts.large),
+                       line("second try", counts.second)};
+    stats.brightness = chains.brightness();
+    stats.brightness_error = chains.brightness_error();
+    const auto share = [&](std::uint64_t n) {
+        return static_cast<double>(n) / static_cast<double>(counts.proposals());
+    };
+    stats.values["chains"] = static_cast<double>(chains.size());
+    stats.values["mutations"] = static_cast<double>(counts.proposals());
+    stats.values["steps"] = static_cast<double>(counts.steps());
+    stats.values["failure rate"] = share(counts.small.failed + counts.large.failed);
+    stats.values["acceptance rate"] = share(counts.small.accepted + counts.large.accepted + counts.second.accepted);
+    stats.values["remedied paths"] = share(counts.remedied());
+    if (const ChangeCounts& c = chains.changes(); c.proposed > 0) {
+        const auto of_changes = [&](std::uint64_t n) {
+            return static_cast<double>(n) / static_cast<double>(c.proposed);
+        };
+        stats.values["technique changes"] = static_cast<double>(c.proposed);
+        stats.values["technique changes accepted"] = of_changes(c.accepted);
+        stats.values["technique changes without inverse"] = of_changes(c.no_inverse);
+        stats.values["technique changes that drifted"] = of_changes(c.drifted);
+    }
+    if (chains.broken() > 0)
+        stats.warnings.push_back(fmt::format("{} candidates had a value that is not a number", chains.broken()));
+    if (stats.brightness_error > 0.05 * stats.brightness)
+        stats.warnings.push_back(
+            fmt::format("the brightness of the picture is known to {:.0f} % only (standard error): "
+                        "raise brightness_samples",
+                        100 * stats.brightness_error / stats.brightness));
+}
+
+/// Runs the chains and adds what they draw to `picture`.
+void draw(PrimaryChains& chains, const Scene& scene, const Settings& settings, Picture& picture, RenderStats& stats,
+          const RunContext& context) {
+    const StageClock clock(stats, "chains");
+    const ImageWindow& window = scene.camera().window();
+    SplatFilm film(picture.width, picture.height);
+    // Deposits are of the size of the brightness; the film's sums want numbers about 1.
+    const double unit = std::exp2(std::round(std::log2(chains.brightness())));
+    const auto deposit = [&](const Splat& s, double factor) {
+        film.add(window.to_pixel(s.image), SplatFilm::layer_of(s.light), s.value * (factor / unit));
+    };
+    const std::int64_t per_chain = std::max<std::int64_t>(1, settings.mutations / chains.size());
+    context.begin("chains", static_cast<std::uint64_t>(per_chain * chains.size()), "steps");
+    const std::int64_t stretch = std::max<std::int64_t>(1, per_chain / kStretch);
+    PrimaryKernel kernel{failures_of(settings.failures), learn_p_large(chains, settings, stretch, stats, context)};
+    std::int64_t drawn = 0;
+    const std::int64_t rest = std::max<std::int64_t>(1, per_chain - stretch), rounds = std::min(kRounds, rest);
+    for (std::int64_t r = 0; r < rounds && (r == 0 || !context.stopped()); ++r) {
+        const std::int64_t steps = split(rest, rounds, r).size();
+        chains.advance(kernel, steps, context, deposit);
+        drawn += steps;
+    }
+    context.end();
+    stats.complete = drawn == rest;
+    film.add_to(picture, unit * window.pixels() / static_cast<double>(drawn * chains.size()));
+    report(chains, stats);
+}
+
+} // namespace
+
+RenderResult render_primary(const Scene& scene, const Settings& settings, const RunContext& context) {
+    RenderResult result;
+    Picture& picture = result.picture;
+    picture.width = scene.camera().window().width;
+    picture.height = scene.camera().window().height;
+    for (const char* layer : {"beauty", "direct", "indirect", "caustic"})
+        picture.layers[layer] = Image(picture.width, picture.height, 3);
+    const EmitterInverse inverses(scene);
+    const std::vector<PrimaryStratum> strata = start(scene, settings, inverses, result.stats, context);
+    PrimaryChains chains(strata, static_cast<std::uint64_t>(settings.seed), settings.large_step_mis == "on");
+    if (chains.size() > 0)
+        draw(chains, scene, settings, picture, result.stats, context);
+    else
+        result.stats.warnings.emplace_back(
+            "no sampled path carried light: the picture is black. If there is any, try more "
+            "brightness_samples");
+    return result;
+}
+
+} // namespace keyhole

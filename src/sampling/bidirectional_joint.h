@@ -1,0 +1,70 @@
+// One way of joining a light sub-path to an eye sub-path: what the path carries, and its weight among all ways of
+// making it. Costs no copy of the sub-paths: densities change at the two vertices on either side of the joint only.
+#pragma once
+
+#include "sampling/light_class.h"
+#include "sampling/measure.h"
+#include "sampling/proposals/edit.h"
+
+namespace keyhole {
+
+/// How techniques that make the same path share it (Veach 1997, section 9.2).
+enum class MisHeuristic { balance, power, maximum };
+
+/// A sub-path as a walk made it. Its vertices carry the density with which they were traced and, but for the last two,
+/// that of the other direction.
+struct TracedSubPath {
+    SubPath vertices;
+    InlineVector<Rgb, kMaxScatterings + 2> throughput; ///< contribution over density of what lies before vertex i,
+                                                       ///< scattering there left out, roulette included
+
+    int size() const { return static_cast<int>(vertices.size()); }
+    void push_back(const Vertex& v, const Rgb& arriving) {
+        vertices.push_back(v);
+        throughput.push_back(arriving);
+    }
+};
+
+/// The path x that joins the first s vertices of `light` and the first t of `eye`. s = 0: the eye sub-path lies on an
+/// emitter. t = 1: the light sub-path is joined to the eye itself, and the image point follows from that. s + t >= 2,
+/// t >= 1. Refers to the sub-paths.
+class Joint {
+  public:
+    Joint(const Scene& scene, const TracedSubPath& light, int s, const TracedSubPath& eye, int t, const Vec2& image);
+
+    int s() const { return s_; }
+    int t() const { return t_; }
+    /// False where the two can't be joined at all; nothing else may be asked then.
+    bool possible() const { return possible_; }
+    const Vec2& image() const { return image_; }
+    LightClass light_class() const;
+
+    /// Contribution over density times the weight among all techniques. Black where the weight is zero. Visibility is
+    /// assumed.
+    Rgb value(MisHeuristic heuristic);
+
+    /// Whether the joining edge is free. True for s = 0.
+    bool visible() const;
+
+    /// The path itself, measured.
+    Path path() const;
+
+  private:
+    const Vertex& vertex(int i) const; ///< of the path, 0 at the light
+    bool specular(int i) const { return i != s_ - 1 && i != s_ && vertex(i).specular(); }
+    Rgb join();
+    Rgb leave_light(const Vec3& to_eye);
+    Rgb leave_eye(const Vec3& to_light);
+    double weight(MisHeuristic heuristic) const;
+    double pdf_from_light(int i) const;
+    double pdf_from_eye(int i) const;
+
+    const Scene* scene_;
+    const TracedSubPath *light_, *eye_;
+    int s_, t_;
+    Vec2 image_;
+    bool possible_ = false;
+    double from_light_[2]{}, from_eye_[2]{}; // of x[s], x[s + 1] when traced from the light; of x[s - 1], x[s - 2]
+};
+
+} // namespace keyhole

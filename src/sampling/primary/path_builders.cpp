@@ -1,0 +1,129 @@
+#include "sampling/path_tracer.h"
+#include "sampling/primary/path_builder.h"
+
+namespace keyhole {
+namespace {
+
+class PathTracingBuilder final : public PathBuilder {
+  public:
+    explicit PathTracingBuilder(const BuilderContext& c) : c_(c) {}
+    std::string_view name() const override { return "path"; }
+
+    void build(PrimarySources sources, PathSample& sample) const override {
+        struct {
+            const Vec2 image;
+            PathSample& sample;
+            static bool arrival(const EyeWalk&, const Rgb&, int) { return true; }
+            void contribution(const EyeWalk&, const Vertex&, const Rgb& value, LightClass light) {
+                sample.add(image, light, value);
+            }
+        } sink{window_point(sources.eye), sample};
+        trace_path(*c_.scene, sink.image, c_.max_scatterings, sources.eye, sink);
+    }
+
+  private:
+    BuilderContext c_;
+};
+
+/// Adds what one joint carries, divided by the probability of having chosen it.
+void add_joint(Joint& joint, MisHeuristic heuristic, double probability, PathSample& sample) {
+    if (!joint.possible()) return;
+    const Rgb value = joint.value(heuristic);
+    if (luminance(value) > 0 && joint.visible()) sample.add(joint.image(), joint.light_class(), value / probability);
+}
+
+/// Numbers of vertices have geometric distributions.
+class EndpointBuilder final : public PathBuilder {
+  public:
+    explicit EndpointBuilder(const BuilderContext& c) : c_(c) {}
+    std::string_view name() const override { return "endpoints"; }
+
+    void build(PrimarySources sources, PathSample& sample) const override {
+        const int t = 1 + geometric(sources.choice.next()), s = geometric(sources.choice.next());
+        if (s + t < 2 || s + t - 2 > c_.max_scatterings) return;
+        const Vec2 image = window_point(sources.eye);
+        const TracedSubPath eye = trace_eye_subpath(*c_.scene, image, t, sources.eye, nullptr);
+        if (eye.size() < t) return;
+        const TracedSubPath light = trace_light_subpath(*c_.scene, s, sources.light, nullptr);
+        if (light.size() < s) return;
+        Joint joint(*c_.scene, light, s, eye, t, image);
+        add_joint(joint, c_.heuristic, probability(t - 1) * probability(s), sample);
+    }
+
+  private:
+    static constexpr double kContinue = 0.7;
+    static int geometric(double u) { return static_cast<int>(std::log1p(-u) / std::log(kContinue)); }
+    static double probability(int n) { return std::pow(kContinue, n) * (1 - kContinue); }
+
+    BuilderContext c_;
+};
+
+class BidirectionalBuilder final : public PathBuilder {
+  public:
+    explicit BidirectionalBuilder(const BuilderContext& c) : c_(c) {}
+    std::string_view name() const override { return "bidirectional"; }
+
+    void build(PrimarySources sources, PathSample& sample) const override {
+        const Vec2 image = window_point(sources.eye);
+        const TracedSubPath eye =
+            trace_eye_subpath(*c_.scene, image, most_eye_vertices(c_.max_scatterings), sources.eye, &sources.eye);
+        const TracedSubPath light =
+            trace_light_subpath(*c_.scene, most_light_vertices(c_.max_scatterings), sources.light, &sources.light);
+        struct {
+            PathSample& sample;
+            void contribution(const Joint& joint, const Rgb& value, LightClass kind) {
+                sample.add(joint.image(), kind, value);
+            }
+        } sink{sample};
+        connect_subpaths(*c_.scene, light, eye, image, c_.max_scatterings, PathSet::all, c_.heuristic, sink);
+    }
+
+  private:
+    BuilderContext c_;
+};
+
+class MultiplexedBuilder final : public PathBuilder {
+  public:
+    MultiplexedBuilder(const BuilderContext& c, int scatterings) : c_(c), scatterings_(scatterings) {}
+    std::string_view name() const override { return "multiplexed"; }
+
+    void build(PrimarySources sources, PathSample& sample) const override {
+        const auto trace = trace_multiplexed(*c_.scene, scatterings_, sources);
+        if (!trace) return;
+        Joint joint(*c_.scene, trace->light, trace->s, trace->eye, trace->t, trace->image);
+        add_joint(joint, c_.heuristic, 1.0 / technique_count(scatterings_), sample);
+    }
+
+  private:
+    BuilderContext c_;
+    int scatterings_;
+};
+
+} // namespace
+
+std::optional<MultiplexedTrace> trace_multiplexed(const Scene& scene, int scatterings, PrimarySources sources) {
+    MultiplexedTrace m;
+    m.s = chosen_technique(sources.choice.next(), scatterings);
+    m.t = technique_count(scatterings) - m.s; // never 0: nothing meets the lens by chance
+    m.image = window_point(sources.eye);
+    m.eye = trace_eye_subpath(scene, m.image, m.t, sources.eye, nullptr);
+    if (m.eye.size() < m.t) return std::nullopt;
+    m.light = trace_light_subpath(scene, m.s, sources.light, nullptr);
+    if (m.light.size() < m.s) return std::nullopt;
+    return m;
+}
+
+std::unique_ptr<PathBuilder> make_path_builder(const BuilderContext& context) {
+    return std::make_unique<PathTracingBuilder>(context);
+}
+std::unique_ptr<PathBuilder> make_endpoint_builder(const BuilderContext& context) {
+    return std::make_unique<EndpointBuilder>(context);
+}
+std::unique_ptr<PathBuilder> make_bidirectional_builder(const BuilderContext& context) {
+    return std::make_unique<BidirectionalBuilder>(context);
+}
+std::unique_ptr<PathBuilder> make_multiplexed_builder(const BuilderContext& context, int scatterings) {
+    return std::make_unique<MultiplexedBuilder>(context, scatterings);
+}
+
+} // namespace keyhole

@@ -1,0 +1,160 @@
+#include "sampling/primary/primary_chains.h"
+
+#include "core/parallel.h"
+#include "sampling/primary/streams.h"
+
+namespace keyhole {
+namespace {
+
+/// A chain that leaves out this many proposals in a row is told to stay after all: it would never come to an end.
+constexpr int kMostLeftOut = 10'000;
+
+/// How often a change of technique goes before a step.
+constexpr double kChange = 0.25;
+
+/// The number that chooses a technique, where a seed prescribes one.
+class Fixed final : public SampleSource {
+  public:
+    explicit Fixed(double u) : u_(u) {}
+    double next() override { return u_; }
+
+  private:
+    double u_;
+};
+
+} // namespace
+
+/// A chain as the kernel's space. What it stays at a state is deposited at once when it leaves.
+class PrimaryChains::Depositing {
+  public:
+    Depositing(Chain& chain, const Weights& weights, const Deposit& deposit)
+        : chain_(&chain), weights_(weights), deposit_(&deposit) {}
+
+    double propose(Step step) { return chain_->state.propose(step); }
+    double target() const { return chain_->state.target(); }
+    void accept() {
+        leave();
+        chain_->state.accept();
+    }
+    void leave() {
+        if (stay_ > 0) splat(chain_->state.sample(), stay_);
+        stay_ = 0;
+    }
+    /// For the kernel.
+    void operator()(bool candidate, double weight, bool large) {
+        if (!candidate) {
+            stay_ += weight;
+            return;
+        }
+        const PathSample& sample = chain_->state.candidate();
+        if (large) chain_->large.add(sample.target());
+        splat(sample, weight + (large && weights_.large > 0 ? 1 : 0));
+    }
+
+  private:
+    void splat(const PathSample& sample, double weight) const {
+        if (!*deposit_) return;
+        const double factor = weight * weights_.factor(sample.target());
+        for (const Splat& s : sample.splats()) (*deposit_)(s, factor);
+    }
+
+    Chain* chain_;
+    Weights weights_;
+    const Deposit* deposit_;
+    double stay_ = 0;
+};
+
+PrimaryChains::PrimaryChains(const std::vector<PrimaryStratum>& strata, std::uint64_t seed, bool mis_of_large_steps)
+    : strata_(&strata), mis_of_large_steps_(mis_of_large_steps), members_(strata.size()), large_(strata.size()),
+      counts_(strata.size()) {
+    for (std::size_t k = 0; k < strata.size(); ++k)
+        for (const PrimarySeed& s : strata[k].seeds) {
+            const auto index = static_cast<std::uint64_t>(chains_.size());
+            auto chain = std::make_unique<Chain>(*strata[k].builder, k, Rng(seed, kPrimaryChain, index));
+            PrimaryRandom random(seed, s.sample);
+            Fixed prescribed(s.choice);
+            SampleSource& choice = s.choice < 0 ? static_cast<SampleSource&>(random.choice) : prescribed;
+            chain->state.start({random.eye, random.light, choice});
+            if (!(chain->state.target() > 0)) continue; // rounding took what little light there was
+            chains_.push_back(std::move(chain));
+            ++members_[k];
+        }
+}
+
+PrimaryChains::Estimate PrimaryChains::estimate(std::size_t stratum) const {
+    const PrimaryStratum& s = (*strata_)[stratum];
+    const RunningStats& large = large_[stratum];
+    const double first = s.worth * static_cast<double>(s.brightness.count());
+    const double share = first / (first + static_cast<double>(large.count()));
+    return {share * s.brightness.mean() + (1 - share) * large.mean(),
+            std::hypot(share * s.brightness.standard_error(), (1 - share) * large.standard_error())};
+}
+
+PrimaryChains::Weights PrimaryChains::weights(std::size_t stratum, const PrimaryKernel& kernel) const {
+    double counted = 1; // share of proposals
+    if (kernel.failures == Failures::exclude || kernel.failures == Failures::exclude_large)
+        counted -= kernel.p_large * counts_[stratum].large.failure_rate();
+    if (kernel.failures == Failures::exclude) counted -= (1 - kernel.p_large) * counts_[stratum].small.failure_rate();
+    return {estimate(stratum).mean, mis_of_large_steps_ ? kernel.p_large / counted : 0.0,
+            static_cast<double>(size()) / static_cast<double>(members_[stratum])};
+}
+
+void PrimaryChains::advance(const PrimaryKernel& kernel, std::int64_t steps, const RunContext& context,
+                            const Deposit& deposit) {
+    std::vector<Weights> by_stratum;
+    for (std::size_t k = 0; k < strata_->size(); ++k) by_stratum.push_back(weights(k, kernel));
+    parallel_for(size(), [&](std::int64_t c) {
+        Chain& chain = *chains_[static_cast<std::size_t>(c)];
+        chain.counts = {};
+        chain.changes = {};
+        const auto& change = (*strata_)[chain.stratum].change;
+        chain.large = {};
+        Depositing space(chain, by_stratum[chain.stratum], deposit);
+        int left_out = 0;
+        for (std::int64_t done = 0; done < steps;) {
+            if (change && chain.rng.next() < kChange) {
+                space.leave(); // the same path, but another target: deposits divide by it
+                change->move(chain.state, chain.rng, chain.changes);
+            }
+            const bool counts = kernel.step(space, chain.rng, chain.counts, space);
+            left_out = counts ? 0 : left_out + 1;
+            if (left_out == kMostLeftOut) space(false, 1, false), left_out = 0, ++done;
+            done += counts ? 1 : 0;
+        }
+        space.leave();
+        for (std::uint64_t i = 0; i < chain.counts.large.failed; ++i) chain.large.add(0);
+        context.advance(static_cast<std::uint64_t>(steps));
+    });
+    for (const auto& chain : chains_) {
+        counts_[chain->stratum] += chain->counts;
+        large_[chain->stratum].merge(chain->large);
+        changes_ += chain->changes;
+    }
+    steps_ += steps;
+}
+
+PrimaryCounts PrimaryChains::counts() const {
+    PrimaryCounts all;
+    for (const PrimaryCounts& c : counts_) all += c;
+    return all;
+}
+
+double PrimaryChains::brightness() const {
+    double sum = 0;
+    for (std::size_t k = 0; k < strata_->size(); ++k) sum += estimate(k).mean;
+    return sum;
+}
+
+double PrimaryChains::brightness_error() const {
+    double squares = 0;
+    for (std::size_t k = 0; k < strata_->size(); ++k) squares += estimate(k).error * estimate(k).error;
+    return std::sqrt(squares);
+}
+
+std::uint64_t PrimaryChains::broken() const {
+    std::uint64_t n = 0;
+    for (const auto& chain : chains_) n += chain->state.broken();
+    return n;
+}
+
+} // namespace keyhole

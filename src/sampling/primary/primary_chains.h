@@ -1,0 +1,77 @@
+// Many chains in primary sample space, side by side.
+#pragma once
+
+#include "sampling/primary/primary_kernel.h"
+#include "sampling/primary/primary_start.h"
+#include "sampling/primary/primary_state.h"
+
+#include <functional>
+
+namespace keyhole {
+
+/// One chain from each seed of each stratum, all equally long at any time. Their number never follows the threads: the
+/// result is the same on any number of them.
+///
+/// Deposits combine the chain with its large steps, which are samples on their own account, by multiple importance
+/// sampling (Kelemen et al. 2002, section 3.4): F / (I / b + p) for each step's expected value and for each large step.
+class PrimaryChains {
+  public:
+    /// Told about each splat and the factor of its value. Called for different chains at once.
+    using Deposit = std::function<void(const Splat&, double)>;
+
+    /// `strata` must outlive the chains. `mis_of_large_steps` false: large steps deposit as any others, F b / I.
+    PrimaryChains(const std::vector<PrimaryStratum>& strata, std::uint64_t seed, bool mis_of_large_steps = true);
+
+    /// Advances every chain by `steps` steps, some of them after a change of technique where the stratum has that, not
+    /// counting proposals that are left out. Without a first stretch nothing is known of how many are: see
+    /// PrimaryKernel::failures.
+    void advance(const PrimaryKernel& kernel, std::int64_t steps, const RunContext& context, const Deposit& deposit);
+
+    std::int64_t size() const { return static_cast<std::int64_t>(chains_.size()); }
+    /// Counted steps that each chain has made.
+    std::int64_t steps() const { return steps_; }
+    /// Over all of them.
+    PrimaryCounts counts() const;
+    const ChangeCounts& changes() const { return changes_; }
+    /// Mean luminance over the window by independent samples and large steps, and its standard error.
+    double brightness() const;
+    double brightness_error() const;
+    /// Candidates with a value that was not a number.
+    std::uint64_t broken() const;
+
+  private:
+    struct Chain {
+        Rng rng;
+        PrimaryState state;
+        const std::size_t stratum;
+        PrimaryCounts counts;
+        ChangeCounts changes;
+        RunningStats large; ///< targets of large steps
+
+        Chain(const PathBuilder& builder, std::size_t of, Rng random) : rng(random), state(builder, rng), stratum(of) {}
+    };
+    class Depositing;
+    /// What a deposit is divided by.
+    struct Weights {
+        double brightness; ///< b
+        double large;      ///< large steps for each counted step, where they deposit on their own account; else 0
+        double scale;      ///< of chains in all to chains of this stratum
+        double factor(double target) const { return scale / (target / brightness + large); }
+    };
+    struct Estimate {
+        double mean, error; ///< of the brightness of a stratum
+    };
+    Estimate estimate(std::size_t stratum) const;
+    Weights weights(std::size_t stratum, const PrimaryKernel& kernel) const;
+
+    const std::vector<PrimaryStratum>* strata_;
+    bool mis_of_large_steps_;
+    std::vector<std::unique_ptr<Chain>> chains_;
+    std::vector<std::int64_t> members_; ///< chains of each stratum
+    std::vector<RunningStats> large_;   ///< targets of large steps, by stratum
+    std::vector<PrimaryCounts> counts_; ///< by stratum
+    ChangeCounts changes_;
+    std::int64_t steps_ = 0;
+};
+
+} // namespace keyhole

@@ -1,0 +1,70 @@
+#include "sampling/primary/primary_vector.h"
+
+namespace keyhole {
+namespace {
+
+/// Second tries shift the logarithm of a step by at most this share of its range: one octave.
+constexpr double kMostShift = 1 / SmallStep::kOctaves;
+
+} // namespace
+
+void PrimaryStream::bring_up_to_date(Coordinate& c) {
+    if (c.moved < clock_->last_large)
+        c.value = rng_->next(); // whatever small steps followed, it would be uniform, and nothing depends on it yet
+    else
+        for (; c.moved < clock_->now; ++c.moved) c.value = wrap(c.value + SmallStep(rng_->next()).distance());
+    c.moved = clock_->now;
+}
+
+double PrimaryStream::small(Coordinate& c) {
+    c.first = SmallStep(rng_->next());
+    c.attempt = clock_->attempt;
+    return wrap(c.value + c.first.distance());
+}
+
+/// x + d - d', where d is the step of the first try and d' as long within a factor of two. Seen from the result, x + d
+/// is as likely a first try as it was from x, and the shift between the two is symmetric: nothing but the targets
+/// enters the acceptance.
+double PrimaryStream::second(Coordinate& c) {
+    if (clock_->after_large) return small(c);
+    if (c.attempt != clock_->attempt) small(c);
+    const SmallStep back = c.first.shifted(kMostShift * (2 * rng_->next() - 1));
+    return wrap(c.value + c.first.distance() - back.distance());
+}
+
+double PrimaryStream::next() {
+    if (used_ == coordinates_.size()) push(rng_->next());
+    Coordinate& c = coordinates_[used_++];
+    bring_up_to_date(c);
+    switch (clock_->step) {
+    case Step::large:
+        return c.candidate = rng_->next();
+    case Step::small:
+        return c.candidate = small(c);
+    case Step::second:
+        return c.candidate = second(c);
+    case Step::stay:
+        return c.candidate = c.value;
+    }
+    return c.candidate;
+}
+
+double PrimaryStream::value(std::size_t i) {
+    while (coordinates_.size() <= i) push(rng_->next());
+    bring_up_to_date(coordinates_[i]);
+    return coordinates_[i].value;
+}
+
+void PrimaryStream::set(std::size_t i, double value) {
+    this->value(i);
+    coordinates_[i].value = value;
+}
+
+void PrimaryStream::accept() {
+    for (std::size_t i = 0; i < used_; ++i) {
+        coordinates_[i].value = coordinates_[i].candidate;
+        coordinates_[i].moved = clock_->now + 1;
+    }
+}
+
+} // namespace keyhole

@@ -1,0 +1,145 @@
+#include "sampling/primary/technique_change.h"
+
+#include <cmath>
+
+namespace keyhole {
+namespace {
+
+const Vertex& at(const Path& path, int i) { return path.x[static_cast<std::size_t>(i)]; }
+
+/// Density of making the first k vertices from the light and the rest from the eye.
+double technique_density(const Path& path, int k) {
+    if (k > 0 && !joinable(at(path, k - 1), at(path, k))) return 0;
+    double density = 1;
+    for (int i = 0; i < path.vertices(); ++i) density *= i < k ? at(path, i).pdf_from_light : at(path, i).pdf_from_eye;
+    return density;
+}
+
+/// Ratio of the MIS weights of two techniques of the same path.
+double weight_ratio(double density, double other, MisHeuristic heuristic) {
+    const double r = other / density;
+    switch (heuristic) {
+    case MisHeuristic::balance:
+        return r;
+    case MisHeuristic::power:
+        return r * r;
+    case MisHeuristic::maximum:
+        break;
+    }
+    return 0; // one technique has it all
+}
+
+/// Where a stream keeps the numbers of vertex j's continuation: what the tracers of sub-paths ask for before it.
+constexpr std::size_t kEyeBsdf = 4; // after the window point and the point on the lens
+constexpr std::size_t kEmitterRay = 4, kLightBsdf = 6;
+std::size_t eye_bsdf(int j) { return kEyeBsdf + 3 * static_cast<std::size_t>(j - 1); }
+std::size_t light_bsdf(int j) { return kLightBsdf + 3 * static_cast<std::size_t>(j - 1); }
+
+} // namespace
+
+/// One number of a state, and what it was.
+struct TechniqueChange::Edit {
+    PrimaryStream* stream;
+    std::size_t index;
+    double value, old;
+};
+
+class TechniqueChange::Edits {
+  public:
+    explicit Edits(PrimaryState& state) : state_(&state) {}
+
+    PrimaryState& state() const { return *state_; }
+    /// Numbers that are used no more are drawn anew: nothing may remember them.
+    template <std::size_t N>
+    void set(PrimaryStream& stream, std::size_t first, const std::array<double, N>& numbers, bool used, Rng& rng) {
+        for (std::size_t i = 0; i < N; ++i)
+            edits_.push_back({&stream, first + i, used ? numbers[i] : rng.next(), stream.value(first + i)});
+    }
+    void apply() {
+        for (const Edit& e : edits_) e.stream->set(e.index, e.value);
+    }
+    void undo() {
+        for (const Edit& e : edits_) e.stream->set(e.index, e.old);
+    }
+
+  private:
+    PrimaryState* state_;
+    InlineVector<Edit, 4 * (kMaxScatterings + 4)> edits_;
+};
+
+/// The numbers with which eye vertex j finds vertex j + 1.
+bool TechniqueChange::set_eye_number(const Path& path, int j, bool used, Rng& rng, Edits& edits) const {
+    PrimaryStream& stream = edits.state().eye();
+    if (j == 0) {
+        edits.set<2>(stream, 0, {path.image.x, path.image.y}, used, rng);
+        return true;
+    }
+    const int i = path.vertices() - 1 - j;
+    const auto u = invert_bsdf(at(path, i), leaving_direction(path, i, 1), leaving_direction(path, i, -1), rng);
+    if (u) edits.set(stream, eye_bsdf(j), *u, used, rng);
+    return u.has_value();
+}
+
+/// The numbers with which light vertex j finds vertex j + 1; j = -1: those of the emitter's point.
+bool TechniqueChange::set_light_number(const Path& path, int j, bool used, Rng& rng, Edits& edits) const {
+    PrimaryStream& stream = edits.state().light();
+    const SurfacePoint& x0 = at(path, 0).point;
+    if (j == -1) {
+        const auto u = emitters_->point(x0, rng);
+        if (u) edits.set(stream, 0, *u, used, rng);
+        return u.has_value();
+    }
+    if (j == 0) {
+        if (!emitters_->point(x0, rng)) return false;
+        edits.set(stream, kEmitterRay, emitters_->ray(x0, leaving_direction(path, 0, 1)), used, rng);
+        return true;
+    }
+    const auto u = invert_bsdf(at(path, j), leaving_direction(path, j, -1), leaving_direction(path, j, 1), rng);
+    if (u) edits.set(stream, light_bsdf(j), *u, used, rng);
+    return u.has_value();
+}
+
+/// Collects what has to change from technique `from` to `to`, by their s. False where an inverse is missing, on either
+/// side: the way back would need it.
+bool TechniqueChange::edit(const Path& path, int from, int to, Rng& rng, Edits& edits) const {
+    const int n = path.vertices(), low = std::min(from, to), high = std::max(from, to);
+    for (int j = low - 1; j <= high - 2; ++j) // light vertices that one of the two continues from
+        if (!set_light_number(path, j, to > from, rng, edits)) return false;
+    for (int j = n - high - 1; j <= n - low - 2; ++j)
+        if (!set_eye_number(path, j, to < from, rng, edits)) return false;
+    edits.set<1>(edits.state().choice(), 0, {(to + rng.next()) / technique_count(scatterings_)}, true, rng);
+    return true;
+}
+
+bool TechniqueChange::move(PrimaryState& state, Rng& rng, ChangeCounts& counts) const {
+    ++counts.proposed;
+    const auto trace = trace_multiplexed(*c_.scene, scatterings_, state.replay());
+    if (!trace) return false;
+    const Joint joint(*c_.scene, trace->light, trace->s, trace->eye, trace->t, trace->image);
+    if (!joint.possible()) return false;
+    const Path path = joint.path();
+    const int s = trace->s,
+              other = static_cast<int>(rng.below(static_cast<std::uint32_t>(technique_count(scatterings_))));
+    if (other == s) return false;
+    const double density = technique_density(path, s), new_density = technique_density(path, other);
+    const double ratio = weight_ratio(density, new_density, c_.heuristic);
+    if (!(ratio > 0) || rng.next() >= ratio) return false;
+    Edits edits(state);
+    if (!edit(path, s, other, rng, edits)) {
+        ++counts.no_inverse;
+        return false;
+    }
+    edits.apply();
+    const double expected = state.target() * ratio * (density / new_density), made = state.rebuild();
+    const bool same = std::abs(made - expected) <= 0.01 * expected;
+    if (same) {
+        state.adopt();
+        ++counts.accepted;
+    } else {
+        edits.undo();
+        ++counts.drifted;
+    }
+    return same;
+}
+
+} // namespace keyhole

@@ -1,0 +1,82 @@
+// Joints of sub-paths against the paths that they stand for, measured vertex by vertex.
+#include "sampling/bidirectional_tracer.h"
+#include "support/test_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+namespace keyhole {
+namespace {
+
+/// Density of making `path` with k vertices from the light, written down as it is defined.
+double technique_density(const Path& path, int k) {
+    const auto at = [&](int i) -> const Vertex& { return path.x[static_cast<std::size_t>(i)]; };
+    if (k > 0 && !joinable(at(k - 1), at(k))) return 0;
+    double density = 1;
+    for (int i = 0; i < path.vertices(); ++i) density *= i < k ? at(i).pdf_from_light : at(i).pdf_from_eye;
+    return density;
+}
+
+double expected_weight(const Path& path, int s, MisHeuristic heuristic) {
+    const double own = technique_density(path, s);
+    double sum = 0, best = 0;
+    for (int k = 0; k < path.vertices(); ++k) {
+        const double ratio = technique_density(path, k) / own;
+        sum += heuristic == MisHeuristic::power ? ratio * ratio : ratio;
+        if (k != s) best = std::max(best, ratio);
+    }
+    if (heuristic == MisHeuristic::maximum) return best < 1 ? 1 : 0;
+    return 1 / sum;
+}
+
+/// Joints that were compared, and those that differ by more than single precision can explain: directions at joints
+/// follow from positions.
+struct Tally {
+    int joints = 0, wrong = 0, wrong_class = 0, undecided = 0;
+};
+
+void compare(const Joint& as_made, const TracedSubPath& eye, Tally& tally) {
+    const Path path = as_made.path();
+    if (light_class(path) != as_made.light_class()) ++tally.wrong_class;
+    const double own = technique_density(path, as_made.s());
+    if (!(own > 0) || eye.vertices.empty()) return;
+    for (const auto heuristic : {MisHeuristic::balance, MisHeuristic::power, MisHeuristic::maximum}) {
+        Joint joint = as_made;
+        const double value = luminance(joint.value(heuristic)), free = luminance(path.contribution) / own;
+        const double expected = free * expected_weight(path, joint.s(), heuristic);
+        const bool borderline = heuristic == MisHeuristic::maximum && (value > 0) != (expected > 0);
+        ++tally.joints;
+        if (borderline) ++tally.undecided;
+        if (!borderline && std::abs(value - expected) > 1e-3 * std::max(value, expected) + 1e-9) ++tally.wrong;
+    }
+}
+
+using MakeScene = std::function<std::unique_ptr<Scene>()>;
+
+TEST(Joint, CarriesWhatItsPathMeasures) {
+    for (const MakeScene& make : {MakeScene(test::diffuse_box), MakeScene([] { return test::mirror_glass_box(0.05f); }),
+                                  MakeScene(test::point_light_box), MakeScene(test::hazy_box), MakeScene(test::sky_box),
+                                  MakeScene(test::spot_scene)}) {
+        const auto scene = make();
+        Tally tally;
+        for (std::uint64_t i = 0; i < 600; ++i) {
+            Rng rng(1, StreamPurpose::test, i);
+            const Vec2 image(static_cast<float>(rng.next()), static_cast<float>(rng.next()));
+            const auto eye = trace_eye_subpath(*scene, image, 7, rng, nullptr);
+            const auto light = trace_light_subpath(*scene, 6, rng, nullptr);
+            for (int t = 1; t <= eye.size(); ++t)
+                for (int s = t == 1 ? 1 : 0; s <= light.size(); ++s) {
+                    const Joint joint(*scene, light, s, eye, t, image);
+                    if (joint.possible() && joint.visible()) compare(joint, eye, tally);
+                }
+        }
+        EXPECT_GT(tally.joints, 1000);
+        EXPECT_EQ(tally.wrong_class, 0);
+        EXPECT_LE(tally.wrong, tally.joints / 500);
+        EXPECT_LE(tally.undecided, tally.joints / 500);
+    }
+}
+
+} // namespace
+} // namespace keyhole
