@@ -18,6 +18,7 @@ using Action = std::function<int()>;
 /// @param command_line for the picture's metadata.
 void add_render_command(CLI::App& app, Action& action, const std::string& command_line);
 void add_diff_command(CLI::App& app, Action& action);
+void add_paths_command(CLI::App& app, Action& action);
 void add_experiment_command(CLI::App& app, Action& action);
 
 } // namespace keyhole

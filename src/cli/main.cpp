@@ -43,6 +43,7 @@ int run(int argc, char** argv) {
     Action action;
     add_render_command(app, action, joined(argc, argv));
     add_diff_command(app, action);
+    add_paths_command(app, action);
     add_experiment_command(app, action);
     try {
         app.parse(argc, argv);

@@ -25,7 +25,7 @@ namespace keyhole {
 namespace {
 
 struct RenderOptions {
-    std::string command_line, scene, resolution;
+    std::string command_line, scene, resolution, user_paths;
     Outputs outputs;
     bool no_png = false, quiet = false, verbose = false;
     std::vector<std::string> overrides; ///< key=value, in the order of the command line
@@ -56,7 +56,7 @@ RenderResult render_scene(LoadedScene& loaded, const RenderOptions& options, Sto
     with_threads(options.threads, [&] {
         Scene scene(std::move(loaded.description));
         const auto progress = make_progress(options.quiet);
-        result = render(scene, loaded.settings, RunContext{&stop, progress.get()});
+        result = render(scene, loaded.settings, RunContext{&stop, progress.get()}, loaded.user_paths);
     });
     return result;
 }
@@ -76,6 +76,7 @@ int run(RenderOptions options) {
     const InterruptHandler interrupts(stop);
     std::vector<std::string> load_warnings;
     LoadedScene loaded = load(options.scene, options.overrides, &load_warnings);
+    if (!options.user_paths.empty()) loaded.user_paths = load_user_paths(options.user_paths);
     if (!options.resolution.empty()) set_resolution(loaded.description.window, options.resolution);
     RenderResult result = render_scene(loaded, options, stop);
     result.stats.warnings.insert(result.stats.warnings.begin(), load_warnings.begin(), load_warnings.end());
@@ -118,6 +119,7 @@ void add_render_command(CLI::App& app, Action& action, const std::string& comman
     command->add_flag("--no-png", o->no_png, "write no tone-mapped picture")->excludes(png);
     command->add_option("--stats", o->outputs.stats, "write statistics to this file (JSON)");
     command->add_option("--resolution", o->resolution, "WIDTHxHEIGHT in pixels");
+    command->add_option("--user-paths", o->user_paths, "user paths for the chains, instead of the scene's");
     for (const char* key : {"method", "spp", "mutations", "photons", "seed"})
         command->add_option_function<std::string>(
             std::string("--") + key,

@@ -10,8 +10,8 @@ namespace keyhole {
 namespace {
 
 void print_proposals(const std::vector<ProposalStats>& proposals) {
-    fmt::print(stderr, "{:<28}{:>12}{:>9}{:>9}{:>9}{:>9}{:>6}{:>10}\n", "proposal", "proposed", "failed", "zero",
-               "rejected", "accepted", "NaN", "seconds");
+    fmt::print(stderr, "{:<28}{:>12}{:>9}{:>9}{:>9}{:>9}{:>6}{:>10}{:>9}\n", "proposal", "proposed", "failed", "zero",
+               "rejected", "accepted", "NaN", "seconds", "deposits");
     for (const ProposalStats& p : proposals) {
         std::uint64_t failed = 0;
         for (const auto& [reason, n] : p.failed) failed += n;
@@ -20,8 +20,9 @@ void print_proposals(const std::vector<ProposalStats>& proposals) {
                        ? std::string("-")
                        : fmt::format("{:.1f} %", 100.0 * static_cast<double>(n) / static_cast<double>(p.proposed));
         };
-        fmt::print(stderr, "{:<28}{:>12}{:>9}{:>9}{:>9}{:>9}{:>6}{:>10.2f}\n", p.name, p.proposed, percent(failed),
-                   percent(p.zero), percent(p.rejected), percent(p.accepted), p.nan, p.seconds);
+        fmt::print(stderr, "{:<28}{:>12}{:>9}{:>9}{:>9}{:>9}{:>6}{:>10.2f}{:>9}\n", p.name, p.proposed, percent(failed),
+                   percent(p.zero), percent(p.rejected), percent(p.accepted), p.nan, p.seconds,
+                   fmt::format("{:.2f} %", 100 * p.deposited));
     }
 }
 

@@ -19,7 +19,8 @@ Json stats_json(const RenderStats& s) {
                              {"nan", p.nan},
                              {"rejected", p.rejected},
                              {"accepted", p.accepted},
-                             {"seconds", p.seconds}});
+                             {"seconds", p.seconds},
+                             {"deposited", p.deposited}});
     return {{"complete", s.complete},
             {"brightness", s.brightness},
             {"brightness_error", s.brightness_error},

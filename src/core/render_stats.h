@@ -20,6 +20,7 @@ struct ProposalStats {
     std::uint64_t proposed = 0, zero = 0, nan = 0, rejected = 0, accepted = 0;
     std::map<std::string, std::uint64_t> failed; ///< by reason
     double seconds = 0;
+    double deposited = 0; ///< share of all deposits that were left by states of its making
 };
 
 struct RenderStats {

@@ -48,6 +48,7 @@ struct Settings {
     double p_multi_chain_perturbation = 0.2;
     double p_caustic_perturbation = 0.2;
     double p_photon_map = 0.2;
+    double p_user_path = 0.2;
 };
 
 /// One line of the table. `Visitor` is called as visitor(key, member, minimum, maximum, help) for numbers and
@@ -83,6 +84,8 @@ template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
           "relative frequency of multi-chain perturbations");
     visit("p_caustic_perturbation", s.p_caustic_perturbation, 0.0, 1.0, "relative frequency of caustic perturbations");
     visit("p_photon_map", s.p_photon_map, 0.0, 1.0, "relative frequency of photon map perturbations");
+    visit("p_user_path", s.p_user_path, 0.0, 1.0,
+          "relative frequency of proposals along user paths, where there are any");
 }
 
 } // namespace keyhole

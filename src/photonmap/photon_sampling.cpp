@@ -20,7 +20,7 @@ SampledPhotons sample_photons(const std::vector<Path>& seeds, const Mixture<Path
     const auto chains = static_cast<std::int64_t>(seeds.size());
     SampledPhotons out;
     if (chains == 0) return out;
-    auto set = std::make_unique<ChainSet>(seeds, mixture, options.seed);
+    auto set = std::make_unique<ChainSet>(seeds, mixture, options.seed, options.control);
     std::vector<PathDepositor> depositors;
     depositors.reserve(seeds.size());
     for (std::uint64_t c = 0; c < seeds.size(); ++c)

@@ -16,6 +16,7 @@ struct PhotonSamplingOptions {
     std::size_t caustic_photons; ///< ceiling for the caustic map; 0: none are kept
     double brightness;           ///< B_eye [W/(m^2 sr)]
     std::uint64_t seed;
+    const Mixture<Path>* control = nullptr; ///< of the control chains, as in ChainSet
 };
 
 struct SampledPhotons {

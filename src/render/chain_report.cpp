@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace keyhole {
 namespace {
 
@@ -65,8 +67,15 @@ void report_chains(RenderStats& stats, const Mixture<Path>& mixture, const Chain
     for (std::size_t k = 0; k < chains.ledger.size(); ++k) {
         const LedgerEntry& e = chains.ledger[k];
         all += e;
-        ProposalStats line{
-            std::string(mixture.kind(k).name()), e.proposed, e.zero, e.nan, e.rejected, e.accepted, {}, e.seconds};
+        ProposalStats line{std::string(mixture.kind(k).name()),
+                           e.proposed,
+                           e.zero,
+                           e.nan,
+                           e.rejected,
+                           e.accepted,
+                           {},
+                           e.seconds,
+                           e.deposited / static_cast<double>(std::max<std::uint64_t>(1, chains.steps))};
         for (std::size_t f = 0; f < kFailures; ++f) line.failed[std::string(kFailureNames[f])] = e.failed[f];
         stats.proposals.push_back(line);
     }
@@ -79,6 +88,11 @@ void report_chains(RenderStats& stats, const Mixture<Path>& mixture, const Chain
     if (chains.agreement) {
         stats.values["chains, agreement (split R-hat)"] = chains.agreement->r_hat;
         stats.values["chains, error of block brightness"] = chains.agreement->error;
+    }
+    if (chains.guidance) {
+        stats.values["user paths, variance of block brightness with"] = chains.guidance->with;
+        stats.values["user paths, variance of block brightness without"] = chains.guidance->without;
+        stats.values["user paths, chains without"] = static_cast<double>(chains.guidance->chains_without);
     }
     warn_of_chains(stats, chains);
 }

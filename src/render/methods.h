@@ -2,14 +2,17 @@
 #pragma once
 
 #include "render/render.h"
+#include "sampling/user_paths.h"
 
 namespace keyhole {
 
 /// Metropolis photon sampling: Fan, Chenney, Lai 2005.
-RenderResult render_mps(const Scene& scene, const Settings& settings, const RunContext& context);
+RenderResult render_mps(const Scene& scene, const Settings& settings, const UserPaths& paths,
+                        const RunContext& context);
 
 /// Metropolis light transport (Veach and Guibas 1997): the chains of Metropolis photon sampling, drawn directly.
-RenderResult render_mlt(const Scene& scene, const Settings& settings, const RunContext& context);
+RenderResult render_mlt(const Scene& scene, const Settings& settings, const UserPaths& paths,
+                        const RunContext& context);
 
 /// Path tracing with next-event estimation, the reference.
 RenderResult render_path(const Scene& scene, const Settings& settings, const RunContext& context);

@@ -38,12 +38,12 @@ void splat(SplatFilm& splats, const ImageWindow& window, const Path& path, doubl
 }
 
 /// Runs the chains and adds what they draw to `picture`.
-void draw_chains(const Scene& scene, const Settings& settings, const StageOneSettings& first, const StageOne& one,
-                 Picture& picture, RenderStats& stats, const RunContext& context) {
+void draw_chains(const Scene& scene, const Settings& settings, const UserPaths& paths, const StageOneSettings& first,
+                 const StageOne& one, Picture& picture, RenderStats& stats, const RunContext& context) {
     const StageClock clock(stats, "chains");
-    const Mixture<Path> mixture =
-        make_mixture({&scene, PathSet::stored, static_cast<int>(settings.max_depth)}, settings);
-    ChainSet chains(choose_seeds(scene, first, one, settings.chains), mixture, first.seed);
+    const ChainMixtures mixtures({&scene, PathSet::stored, static_cast<int>(settings.max_depth)}, settings, paths);
+    ChainSet chains(choose_seeds(scene, first, one, settings.chains), mixtures.mixture, first.seed,
+                    mixtures.control_or_null());
     const ImageWindow& window = scene.camera().window();
     SplatFilm splats(picture.width, picture.height);
 
@@ -58,21 +58,23 @@ void draw_chains(const Scene& scene, const Settings& settings, const StageOneSet
     context.end();
 
     const ChainSummary summary = chains.summary();
-    report_chains(stats, mixture, summary);
+    report_chains(stats, mixtures.mixture, summary);
     stats.complete = stats.complete && chains.steps() == per_chain;
     splats.add_to(picture, one.brightness.mean() * window.pixels() / static_cast<double>(summary.steps));
 }
 
 } // namespace
 
-RenderResult render_mlt(const Scene& scene, const Settings& settings, const RunContext& context) {
+RenderResult render_mlt(const Scene& scene, const Settings& settings, const UserPaths& paths,
+                        const RunContext& context) {
     RenderResult result;
     const StageOneSettings first{.max_scatterings = static_cast<int>(settings.max_depth),
                                  .samples = settings.brightness_samples,
                                  .seed = static_cast<std::uint64_t>(settings.seed)};
     result.picture = sample_direct(scene, settings, result.stats, context);
     const StageOne one = measure_brightness(scene, first, result.stats, context);
-    if (one.brightness.mean() > 0) draw_chains(scene, settings, first, one, result.picture, result.stats, context);
+    if (one.brightness.mean() > 0)
+        draw_chains(scene, settings, paths, first, one, result.picture, result.stats, context);
     return result;
 }
 

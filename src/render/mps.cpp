@@ -42,8 +42,8 @@ std::size_t caustic_share(const StageOne& one, const Scene& scene, std::int64_t 
 
 /// Stage two: chains from the seeds of stage one, photons with the power that the importance map gives them.
 SampledPhotons run_stage_two(const Scene& scene, const Settings& settings, const StageOneSettings& first,
-                             const StageOne& one, const SurfacePatches& patches, RenderStats& stats,
-                             const RunContext& context) {
+                             const UserPaths& paths, const StageOne& one, const SurfacePatches& patches,
+                             RenderStats& stats, const RunContext& context) {
     const StageClock clock(stats, "photons");
     const Radii radii(scene);
     const std::vector<Path> seeds = choose_seeds(scene, first, one, settings.chains);
@@ -55,15 +55,16 @@ SampledPhotons run_stage_two(const Scene& scene, const Settings& settings, const
     stats.importon_bytes = at_d1.bytes() + at_d2.bytes();
 
     const ProposalContext proposals{&scene, PathSet::stored, static_cast<int>(settings.max_depth)};
-    const Mixture<Path> mixture = make_mixture(proposals, settings);
+    const ChainMixtures mixtures(proposals, settings, paths);
     const std::size_t caustic = caustic_share(one, scene, settings.photons);
     const PhotonSamplingOptions sampling{.mutations = settings.mutations,
                                          .global_photons = static_cast<std::size_t>(settings.photons) - caustic,
                                          .caustic_photons = caustic,
                                          .brightness = one.brightness.mean(),
-                                         .seed = static_cast<std::uint64_t>(settings.seed)};
-    SampledPhotons photons = sample_photons(seeds, mixture, {&at_d2, &at_d1}, sampling, context);
-    report_chains(stats, mixture, photons.chains);
+                                         .seed = static_cast<std::uint64_t>(settings.seed),
+                                         .control = mixtures.control_or_null()};
+    SampledPhotons photons = sample_photons(seeds, mixtures.mixture, {&at_d2, &at_d1}, sampling, context);
+    report_chains(stats, mixtures.mixture, photons.chains);
     stats.photons_global = photons.global.size();
     stats.photons_caustic = photons.caustic.size();
     stats.values["share of power without importance"] = photons.lost_share;
@@ -72,7 +73,8 @@ SampledPhotons run_stage_two(const Scene& scene, const Settings& settings, const
 
 } // namespace
 
-RenderResult render_mps(const Scene& scene, const Settings& settings, const RunContext& context) {
+RenderResult render_mps(const Scene& scene, const Settings& settings, const UserPaths& paths,
+                        const RunContext& context) {
     RenderResult result;
     RenderStats& stats = result.stats;
     const SurfacePatches patches(scene.shapes());
@@ -84,7 +86,7 @@ RenderResult render_mps(const Scene& scene, const Settings& settings, const RunC
     const StageOne one = measure_brightness(scene, first, stats, context);
 
     SampledPhotons photons;
-    if (one.brightness.mean() > 0) photons = run_stage_two(scene, settings, first, one, patches, stats, context);
+    if (one.brightness.mean() > 0) photons = run_stage_two(scene, settings, first, paths, one, patches, stats, context);
 
     Film film(scene.camera().window().width, scene.camera().window().height);
     {

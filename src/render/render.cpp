@@ -7,14 +7,15 @@
 
 namespace keyhole {
 
-RenderResult render(Scene& scene, const Settings& settings, const RunContext& context) {
+RenderResult render(Scene& scene, const Settings& settings, const RunContext& context, const UserPathFile& user_paths) {
     ImageWindow window = scene.camera().window();
     // Room for the filter, and for photon lookups at the border of the picture.
     window.margin = std::max(2.0f, 0.03f * static_cast<float>(std::max(window.width, window.height)));
     scene.set_window(window);
+    const UserPaths paths = bind_user_paths(scene, user_paths);
     if (settings.method == "path") return render_path(scene, settings, context);
-    if (settings.method == "mlt") return render_mlt(scene, settings, context);
-    if (settings.method == "mps") return render_mps(scene, settings, context);
+    if (settings.method == "mlt") return render_mlt(scene, settings, paths, context);
+    if (settings.method == "mps") return render_mps(scene, settings, paths, context);
     if (settings.method == "bdpt") return render_bdpt(scene, settings, context);
     if (settings.method == "pssmlt" || settings.method == "mmlt" || settings.method == "rjmlt")
         return render_primary(scene, settings, context);

@@ -28,11 +28,12 @@ template <class State> class Chain {
         const auto start = std::chrono::steady_clock::now();
         const auto k = mixture_->choose(state_, rng_);
         if (!k) {
-            deposit(state_, 1.0);
+            deposit_state(1, deposit);
             return moved(false);
         }
         LedgerEntry& entry = ledger_[*k];
         const bool accepted = try_kind(*k, entry, deposit);
+        if (accepted) maker_ = k;
         entry.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         return moved(accepted);
     }
@@ -44,8 +45,11 @@ template <class State> class Chain {
         auto candidate = mixture_->kind(k).propose(state_, rng_, why);
         const double a = candidate ? acceptance(*candidate, k, entry) : 0.0;
         if (!candidate) ++entry.failed[static_cast<std::size_t>(why)];
-        if (a < 1) deposit(std::as_const(state_), 1 - a);
-        if (a > 0) deposit(std::as_const(*candidate), a);
+        if (a < 1) deposit_state(1 - a, deposit);
+        if (a > 0) {
+            deposit(std::as_const(*candidate), a);
+            entry.deposited += a;
+        }
         if (!(a > 0)) return false;
         const bool accepted = rng_.next() < a;
         ++(accepted ? entry.accepted : entry.rejected);
@@ -59,13 +63,17 @@ template <class State> class Chain {
             ++entry.zero;
             return 0;
         }
-        const double forward = mixture_->probability(state_, k) * mixture_->kind(k).transition_density(state_, y);
-        const double backward = mixture_->probability(y, k) * mixture_->kind(k).transition_density(y, state_);
+        const double forward = mixture_->density(state_, y, k), backward = mixture_->density(y, state_, k);
         const double ratio = (y.target / forward) / (state_.target / backward);
         if (ratio >= 1) return 1;
         if (ratio > 0) return ratio;
         ++(ratio == 0 ? entry.rejected : entry.nan);
         return 0;
+    }
+
+    template <class Deposit> void deposit_state(double weight, Deposit&& deposit) {
+        deposit(std::as_const(state_), weight);
+        if (maker_) ledger_[*maker_].deposited += weight;
     }
 
     bool moved(bool accepted) {
@@ -78,6 +86,7 @@ template <class State> class Chain {
     const Mixture<State>* mixture_;
     Rng rng_;
     Ledger ledger_;
+    std::optional<std::size_t> maker_; ///< the kind that made the state; none for the initial one
     std::uint64_t stay_ = 0, longest_stay_ = 0;
 };
 

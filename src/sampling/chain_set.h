@@ -5,6 +5,7 @@
 #include "core/progress.h"
 #include "sampling/agreement.h"
 #include "sampling/chain.h"
+#include "sampling/guidance.h"
 #include "sampling/path.h"
 
 #include <algorithm>
@@ -20,6 +21,7 @@ struct ChainSummary {
     std::uint64_t longest_stay = 0; ///< of any chain at one state
     std::size_t stuck = 0;          ///< chains that spent more than half of their steps at one state
     std::optional<Agreement> agreement;
+    std::optional<GuidanceEffect> guidance; ///< where there are controls
 
     std::uint64_t steps_per_chain() const { return chains == 0 ? 0 : steps / chains; }
 };
@@ -28,12 +30,17 @@ struct ChainSummary {
 /// threads: the result is the same on any number of them.
 class ChainSet {
   public:
-    /// `mixture` must outlive the set.
-    ChainSet(const std::vector<Path>& seeds, const Mixture<Path>& mixture, std::uint64_t seed) : chains_(seeds.size()) {
+    /// The mixtures must outlive the set. `control`: what the control chains use; the first kinds of `mixture`. Null:
+    /// there are no controls.
+    ChainSet(const std::vector<Path>& seeds, const Mixture<Path>& mixture, std::uint64_t seed,
+             const Mixture<Path>* control = nullptr)
+        : chains_(seeds.size()) {
+        if (control != nullptr) tally_.emplace(size());
         parallel_for(size(), [&](std::int64_t c) {
             const auto i = static_cast<std::size_t>(c);
-            chains_[i] = std::make_unique<Chain<Path>>(
-                seeds[i], mixture, Rng(seed, StreamPurpose::chain, 2 * static_cast<std::uint64_t>(c)));
+            chains_[i] =
+                std::make_unique<Chain<Path>>(seeds[i], control != nullptr && is_control(c) ? *control : mixture,
+                                              Rng(seed, StreamPurpose::chain, 2 * static_cast<std::uint64_t>(c)));
         });
     }
 
@@ -48,6 +55,7 @@ class ChainSet {
             for (std::int64_t i = 0; i < steps; ++i)
                 chain.step([&](const Path& path, double weight) {
                     monitor_.add(c, path.image, weight);
+                    if (tally_) tally_->add(c, path.image, weight);
                     deposit(c, path, weight);
                 });
             context.advance(static_cast<std::uint64_t>(steps));
@@ -66,12 +74,14 @@ class ChainSet {
             s.stuck += 2 * chain->longest_stay() > static_cast<std::uint64_t>(steps_) ? 1 : 0;
         }
         s.agreement = monitor_.agreement();
+        if (tally_) s.guidance = tally_->effect();
         return s;
     }
 
   private:
     std::vector<std::unique_ptr<Chain<Path>>> chains_;
     AgreementMonitor monitor_;
+    std::optional<GuidanceTally> tally_;
     std::int64_t steps_ = 0;
 };
 

@@ -15,7 +15,8 @@ struct LedgerEntry {
     std::uint64_t zero = 0;                        ///< evaluated, and the target was 0
     std::uint64_t nan = 0;                         ///< acceptance was not a number: rejected
     std::uint64_t rejected = 0, accepted = 0;
-    double seconds = 0; ///< wall time of the thread that ran the steps
+    double deposited = 0; ///< weight that states of this kind's making left, until another candidate was accepted
+    double seconds = 0;   ///< wall time of the thread that ran the steps
 
     LedgerEntry& operator+=(const LedgerEntry& o) {
         proposed += o.proposed;
@@ -24,6 +25,7 @@ struct LedgerEntry {
         nan += o.nan;
         rejected += o.rejected;
         accepted += o.accepted;
+        deposited += o.deposited;
         seconds += o.seconds;
         return *this;
     }

@@ -1,4 +1,8 @@
 // A state-dependent choice between kinds of proposal.
+//
+// Kinds of one family are judged together: a candidate counts as made by all of them, weighted with how often each is
+// chosen. A kind that rarely finds its own way back, such as a user path, can so return by the other's (Fan, Chenney,
+// Lai 2005, section 5.1).
 #pragma once
 
 #include "sampling/proposal.h"
@@ -12,10 +16,12 @@ namespace keyhole {
 /// the transition density in both directions. Immutable and thread-safe.
 template <class State> class Mixture {
   public:
-    /// Kinds of weight 0 are left out.
-    void add(std::unique_ptr<const Proposal<State>> kind, double weight) {
-        if (weight > 0) kinds_.push_back({std::move(kind), weight});
+    /// Kinds of weight 0 are left out. Those of one family make the same moves: their densities are of the same new
+    /// coordinates, or zero. kAlone: a family of its own.
+    void add(std::unique_ptr<const Proposal<State>> kind, double weight, int family = kAlone) {
+        if (weight > 0) kinds_.push_back({std::move(kind), weight, family});
     }
+    static constexpr int kAlone = -1;
 
     std::size_t size() const { return kinds_.size(); }
     const Proposal<State>& kind(std::size_t k) const { return *kinds_[k].proposal; }
@@ -33,16 +39,22 @@ template <class State> class Mixture {
         return last;
     }
 
-    /// Probability that choose(x) gives k.
-    double probability(const State& x, std::size_t k) const {
-        const double w = kinds_[k].weight * kinds_[k].proposal->suitability(x);
-        return w > 0 ? w / total(x) : 0.0;
+    /// Density of the move x -> y of kind k: its probability times its transition density, summed over its family.
+    double density(const State& x, const State& y, std::size_t k) const {
+        double sum = 0;
+        for (std::size_t i = 0; i < kinds_.size(); ++i) {
+            if (i != k && (kinds_[k].family == kAlone || kinds_[i].family != kinds_[k].family)) continue;
+            const double w = kinds_[i].weight * kinds_[i].proposal->suitability(x);
+            if (w > 0) sum += w * kinds_[i].proposal->transition_density(x, y);
+        }
+        return sum > 0 ? sum / total(x) : sum;
     }
 
   private:
     struct Kind {
         std::unique_ptr<const Proposal<State>> proposal;
         double weight;
+        int family;
     };
 
     double total(const State& x) const {

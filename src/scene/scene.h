@@ -50,6 +50,8 @@ class Scene {
 
     const std::vector<std::unique_ptr<Emitter>>& emitters() const { return emitters_; }
     const Emitter& emitter(std::uint32_t i) const { return *emitters_[i]; }
+    /// Index of the emitter that a shape is, or SurfacePoint::kNone.
+    std::uint32_t emitter_of_shape(std::size_t shape) const { return emitter_of_shape_[shape]; }
     /// By power; empty if nothing emits.
     const EmitterDistribution& emitter_distribution() const { return emitter_distribution_; }
     /// By what they may do at a point. Nothing to be asked where the distribution is empty.

@@ -1,9 +1,6 @@
 // BD, bidirectional: delete a sub-path, insert one of possibly other length, sampled from either end and joined (Veach
 // 1997, section 11.2.1). It reaches every path that carries light: it alone makes a chain ergodic.
-//
-// Kept ends are non-specular: beyond a specular vertex nothing is free to choose, and the same path would be made with
-// several deletions. Likewise the eye is always replaced together with the edge that leaves it, and a point light
-// together with the edge that leaves it: a second way to the same path would have to be summed.
+#include "sampling/proposals/cut.h"
 #include "sampling/proposals/edit.h"
 #include "sampling/proposals/registry.h"
 
@@ -12,12 +9,6 @@
 
 namespace keyhole {
 namespace {
-
-/// What stays of a path: x[0..light] and x[eye..n-1]. light = -1 and eye = n: nothing on that side.
-struct Cut {
-    int light, eye;
-    int removed() const { return eye - light - 1; }
-};
 
 class Bidirectional final : public Proposal<Path> {
   public:
@@ -30,12 +21,6 @@ class Bidirectional final : public Proposal<Path> {
     double transition_density(const Path& x, const Path& y) const override;
 
   private:
-    bool keeps_light(const Path& x, int i) const {
-        if (i == 0) return !scene_.emitter(x.x[0].point.emitter).is_delta();
-        return !x.x[static_cast<std::size_t>(i)].specular();
-    }
-    static bool keeps_eye(const Path& x, int i) { return !x.x[static_cast<std::size_t>(i)].specular(); }
-
     /// Calls visit(cut, weight) for every cut of x, shortest first for each light end.
     template <class Visit> void for_each_cut(const Path& x, Visit&& visit) const;
     static double cut_weight(int removed, bool everything);
@@ -67,10 +52,10 @@ double Bidirectional::cut_weight(int removed, bool everything) {
 template <class Visit> void Bidirectional::for_each_cut(const Path& x, Visit&& visit) const {
     const int n = x.vertices();
     for (int l = -1; l <= n - 2; ++l) {
-        if (l >= 0 && !keeps_light(x, l)) continue;
+        if (l >= 0 && !can_keep_light(scene_, x, l)) continue;
         for (int m = l + 1; m <= n; ++m) {
             if (m == 0 || m == n - 1) continue; // x0 is no eye side, and the eye never stays alone
-            if (m < n && !keeps_eye(x, m)) continue;
+            if (m < n && !can_keep_eye(x, m)) continue;
             visit(Cut{l, m}, cut_weight(m - l - 1, l < 0 && m == n));
         }
     }
@@ -171,12 +156,8 @@ std::optional<Path> Bidirectional::propose(const Path& x, Rng& rng, Failure& why
 }
 
 double Bidirectional::transition_density(const Path& x, const Path& y) const {
-    // What the two have in common is what was kept, but for ends that are never kept.
     const int n = x.vertices();
-    const int prefix = common_prefix(x, y), suffix = common_suffix(x, y, prefix);
-    Cut cut{prefix - 1, suffix <= 1 ? n : n - suffix};
-    while (cut.light >= 0 && !keeps_light(x, cut.light)) --cut.light;
-    while (cut.eye < n && !keeps_eye(x, cut.eye)) ++cut.eye;
+    const Cut cut = cut_between(scene_, x, y);
 
     double total = 0, chosen = 0;
     for_each_cut(x, [&](const Cut& c, double w) {

@@ -16,9 +16,16 @@ constexpr ProposalKind kKinds[] = {
 
 std::span<const ProposalKind> proposal_kinds() { return kKinds; }
 
-Mixture<Path> make_mixture(const ProposalContext& context, const Settings& settings) {
+Mixture<Path> make_mixture(const ProposalContext& context, const Settings& settings, const UserPaths& paths) {
+    constexpr int kFamily = 0; // of BD and UP, which replace the same vertices
     Mixture<Path> mixture;
-    for (const ProposalKind& kind : kKinds) mixture.add(kind.make(context), settings.*kind.weight);
+    for (const ProposalKind& kind : kKinds)
+        mixture.add(kind.make(context), settings.*kind.weight,
+                    kind.make == make_bidirectional ? kFamily : mixture.kAlone);
+    double total = 0;
+    for (const UserPath& path : paths) total += path.weight;
+    for (const UserPath& path : paths)
+        mixture.add(make_user_path(context, path), settings.p_user_path * path.weight / total, kFamily);
     return mixture;
 }
 

@@ -4,6 +4,7 @@
 #include "core/settings.h"
 #include "sampling/mixture.h"
 #include "sampling/path.h"
+#include "sampling/user_paths.h"
 #include "scene/scene.h"
 
 #include <span>
@@ -25,6 +26,7 @@ PathProposal make_lens_perturbation(const ProposalContext& context);
 PathProposal make_multi_chain_perturbation(const ProposalContext& context);
 PathProposal make_caustic_perturbation(const ProposalContext& context);
 PathProposal make_photon_map_perturbation(const ProposalContext& context);
+PathProposal make_user_path(const ProposalContext& context, const UserPath& path);
 
 /// One line of the table.
 struct ProposalKind {
@@ -32,10 +34,23 @@ struct ProposalKind {
     double Settings::*weight;
 };
 
-/// All kinds. Statistics, settings and tests read this table.
+/// All kinds but user paths, which a scene has its own of. Statistics, settings and tests read this table.
 std::span<const ProposalKind> proposal_kinds();
 
-/// The mixture that `settings` ask for.
-Mixture<Path> make_mixture(const ProposalContext& context, const Settings& settings);
+/// The mixture that `settings` ask for. Each of `paths` is a kind of its own, and they share p_user_path by their
+/// weights; together with BD they are one family.
+Mixture<Path> make_mixture(const ProposalContext& context, const Settings& settings, const UserPaths& paths = {});
+
+/// Mixtures for a set of chains.
+struct ChainMixtures {
+    Mixture<Path> mixture;
+    std::optional<Mixture<Path>> control; ///< the same without user paths, where there are any
+
+    ChainMixtures(const ProposalContext& context, const Settings& settings, const UserPaths& paths)
+        : mixture(make_mixture(context, settings, paths)) {
+        if (!paths.empty() && settings.p_user_path > 0) control = make_mixture(context, settings);
+    }
+    const Mixture<Path>* control_or_null() const { return control ? &*control : nullptr; }
+};
 
 } // namespace keyhole

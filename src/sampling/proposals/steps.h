@@ -3,6 +3,7 @@
 
 #include "core/rng.h"
 #include "core/vec.h"
+#include "scene/warp.h"
 
 #include <algorithm>
 
@@ -66,6 +67,28 @@ class DirectionStep {
 
   private:
     LogUniformRadius angle_;
+};
+
+/// Directions within a fixed angle of an axis, uniform in the cone.
+class Cone {
+  public:
+    /// @param half_angle in (0, pi] [rad]
+    explicit Cone(double half_angle) : half_angle_(half_angle), cosine_(std::cos(half_angle)) {}
+
+    Vec3 sample(const Vec3& axis, SampleSource& source) const {
+        const double u0 = source.next(), u1 = source.next();
+        return Frame(axis).to_world(uniform_cone(u0, u1, cosine_)).normalized();
+    }
+    /// Per solid angle: 1 / (2 pi (1 - cos)), and 0 outside.
+    double density(const Vec3& axis, const Vec3& w) const {
+        const double chord = Imath::V3d(w - axis).length();
+        if (!(2 * std::asin(std::min(1.0, chord / 2)) <= half_angle_)) return 0;
+        const double s = std::sin(half_angle_ / 2); // 1 - cos of a small angle would cancel
+        return 1 / (4 * kPi * s * s);
+    }
+
+  private:
+    double half_angle_, cosine_;
 };
 
 /// A step across a beam of parallel light, as a share of the radius of the scene.

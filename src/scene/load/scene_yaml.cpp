@@ -49,6 +49,7 @@ class SceneReader {
         scene.description.shapes = shapes_.take_shapes();
         scene.description.emitters = std::move(emitters_);
         scene.settings = settings_;
+        scene.user_paths = std::move(user_paths_);
         for (const auto& o : overrides) apply_override(scene.settings, o);
         return scene;
     }
@@ -77,8 +78,9 @@ class SceneReader {
     }
 
     void read_sections(const YamlNode& root) {
-        const MapReader map(root, "a scene",
-                            {"include", "film", "camera", "materials", "groups", "shapes", "emitters", "render"});
+        const MapReader map(
+            root, "a scene",
+            {"include", "film", "camera", "materials", "groups", "shapes", "emitters", "render", "user_paths"});
         if (const YamlNode* include = map.find("include")) read_includes(*include);
         if (const YamlNode* film = map.find("film")) camera_.read_film(*film);
         if (const YamlNode* camera = map.find("camera")) camera_.read_camera(*camera);
@@ -87,6 +89,8 @@ class SceneReader {
         if (const YamlNode* shapes = map.find("shapes")) shapes_.read_shapes(*shapes);
         if (const YamlNode* emitters = map.find("emitters")) read_emitters(*emitters);
         if (const YamlNode* render = map.find("render")) read_settings(*render);
+        if (const YamlNode* paths = map.find("user_paths"))
+            user_paths_ = load_user_paths(resolve_path(*paths, "the path of a file of user paths"));
     }
 
     void read_includes(const YamlNode& node) {
@@ -120,6 +124,7 @@ class SceneReader {
     ShapeReader shapes_{materials_};
     std::vector<std::unique_ptr<Emitter>> emitters_;
     Settings settings_;
+    UserPathFile user_paths_;
 };
 
 } // namespace

@@ -3,6 +3,7 @@
 
 #include "core/settings.h"
 #include "scene/load/settings_text.h"
+#include "scene/load/user_path_file.h"
 #include "scene/scene.h"
 
 #include <string>
@@ -14,6 +15,7 @@ namespace keyhole {
 struct LoadedScene {
     SceneDescription description;
     Settings settings;
+    UserPathFile user_paths; ///< of the file that the scene names; none otherwise
 };
 
 /// Reads a scene file, the files it includes and its meshes.

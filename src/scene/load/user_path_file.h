@@ -1,0 +1,46 @@
+// Files of user paths. Their format is described in docs/user-paths.md.
+#pragma once
+
+#include "core/error.h"
+#include "core/vec.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace keyhole {
+
+/// A point of a user path as it is given.
+struct UserPathPoint {
+    Imath::V3d p; ///< world space [m]
+    FilePosition where{};
+};
+
+/// A user path as it is given.
+struct UserPathSpec {
+    std::string name;
+    double weight = 1;
+    std::vector<UserPathPoint> points; ///< from the light on; at least two
+    std::vector<double> beta;          ///< half-angle of the cone of each segment [rad]; one fewer than points
+    std::optional<double> patch;       ///< radius of the part of the emitter that candidates begin on [m]
+    std::optional<double> tolerance;   ///< how far a point may be from its surface [m]
+    FilePosition where{};
+};
+
+struct UserPathFile {
+    std::vector<UserPathSpec> paths;
+};
+
+/// Half-angle where a file gives none [rad].
+constexpr double kDefaultBeta = 5 * kPi / 180;
+/// Most points of a path: as many as a path of the renderer can have, without its eye.
+constexpr std::size_t kMostUserPoints = 31;
+
+/// Reads a file of user paths; there is at least one.
+/// @throws InputError "file:line:column: what was found, what was expected" for every mistake in the file.
+UserPathFile load_user_paths(const std::string& path);
+
+/// The text of a file that load_user_paths() reads as `file`, after `comment` (lines without their '#').
+std::string user_paths_text(const UserPathFile& file, const std::string& comment);
+
+} // namespace keyhole

@@ -1,0 +1,219 @@
+// Files of user paths: what is read, and that every mistake in one is a single clear error.
+#include "core/error.h"
+#include "sampling/user_paths.h"
+#include "support/scratch_directory.h"
+#include "support/test_scenes.h"
+#include "support/user_paths.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace keyhole {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+const std::string kGood = "points: [[0, 1.95, 0], [0.6, 0, -0.7], [-1, 1, 0.5]]";
+
+/// A mistake in a file, and part of the message that it must give.
+struct Mistake {
+    std::string text, message;
+};
+
+Mistake in_path(const std::string& path, const std::string& message) {
+    return {"paths:\n  - {" + path + "}\n", message};
+}
+Mistake in_point(const std::string& point, const std::string& message) {
+    return in_path("points: [[0, 1.95, 0], " + point + ", [-1, 1, 0.5]]", message);
+}
+/// A file that can be read, but not used in mirror_glass_box().
+Mistake in_scene(const std::string& path, const std::string& message) { return in_path("name: a, " + path, message); }
+
+std::vector<Mistake> unreadable() {
+    std::string many = "points: [";
+    for (int i = 0; i < 40; ++i) many += "[0, " + std::to_string(i) + ", 0], ";
+    return {
+        {"", "empty file"},
+        {"paths\n", "expected a map that describes user paths"},
+        {"[1, 2]\n", "expected a map that describes user paths"},
+        {"paths: [1, 2\n", "broken YAML"},
+        {"beta: 5\n", "found user paths without 'paths'"},
+        {"paths: []\n", "expected at least one user path"},
+        {"paths: {}\n", "expected a list of user paths"},
+        {"paths: 3\n", "expected a list of user paths"},
+        {"path: []\npaths: []\n", "unknown key 'path'"},
+        {"paths: [[0, 1, 2]]\n", "expected a map that describes a user path"},
+        {"paths: [5]\n", "expected a map that describes a user path"},
+        {"beta: 0\npaths: [{" + kGood + "}]\n", "an angle in degrees above 0"},
+        {"beta: 91\npaths: [{" + kGood + "}]\n", "at most 90"},
+        {"beta: [5, 5]\npaths: [{" + kGood + "}]\n", "expected an angle in degrees"},
+        {"patch: 0\npaths: [{" + kGood + "}]\n", "expected a length"},
+        {"tolerance: -1\npaths: [{" + kGood + "}]\n", "expected a length"},
+        {"paths:\n  - {name: a, " + kGood + "}\n  - {name: a, " + kGood + "}\n", "the name 'a' again"},
+        {"paths:\n  - {" + kGood + "}\npaths: []\n", "the key 'paths' again"},
+        in_path("name: a", "found a user path without 'points'"),
+        in_path("point: [], " + kGood, "unknown key 'point' in a user path"),
+        in_path("beta: -3, " + kGood, "an angle in degrees above 0"),
+        in_path("beta: .nan, " + kGood, "expected an angle in degrees"),
+        in_path("beta: five, " + kGood, "found the value 'five', expected an angle in degrees"),
+        in_path("beta: [5], " + kGood, "a list of 2: one for each segment"),
+        in_path("beta: [5, 5, 5], " + kGood, "a list of 2: one for each segment"),
+        in_path("beta: [5, x], " + kGood, "found the value 'x', expected an angle in degrees"),
+        in_path("beta: {a: 5}, " + kGood, "expected an angle in degrees"),
+        in_path("weight: 0, " + kGood, "a weight of at least 1e-06"),
+        in_path("weight: -1, " + kGood, "a weight of at least 1e-06"),
+        in_path("weight: [1], " + kGood, "expected a weight"),
+        in_path("weight: 1e300, " + kGood, "at most 1e+06"),
+        in_path("name: [a], " + kGood, "expected the name of a path"),
+        in_path("name: '', " + kGood, "expected the name of a path"),
+        in_path("patch: wide, " + kGood, "expected a length"),
+        in_path("patch: 1e99, " + kGood, "a length"),
+        in_path("tolerance: 0, " + kGood, "expected a length"),
+        in_path("points: 3", "expected a list of points"),
+        in_path("points: []", "expected 2 to 31 points"),
+        in_path("points: [[0, 1.95, 0]]", "expected 2 to 31 points"),
+        in_path(many + "]", "expected 2 to 31 points"),
+        in_point("[0, 0]", "expected a list of 3 numbers"),
+        in_point("[0, 0, 0, 0]", "expected a list of 3 numbers"),
+        in_point("5", "expected a list of 3 numbers"),
+        in_point("[0, a, 0]", "found the value 'a', expected a coordinate"),
+        in_point("[0, '1', 0]", "found the string '1', expected a coordinate"),
+        in_point("[0, .inf, 0]", "expected a coordinate"),
+        in_point("[0, 1e30, 0]", "a coordinate"),
+        in_point("{x: 0}", "expected a list of 3 numbers"),
+    };
+}
+
+std::vector<Mistake> unusable() {
+    const std::string light = "points: [[0, 1.95, 0], ";
+    return {
+        in_scene("points: [[0.5, 1, 0], [0.6, 0, -0.7]]", "point 1: found the nearest emitter"),
+        in_scene(light + "[0.6, 0.5, -0.7]]", "point 2: found it in the air: the surface on the way from point 1"),
+        in_scene(light + "[0.5, -0.5, 0.5]]", "point 2: found the segment from point 1 blocked at"),
+        in_scene(light + "[-0.7, 0, -0.7]]", "point 2: found the segment from point 1 blocked at"),
+        in_scene(light + "[0.6, 0, -0.7], [0.6, 0, -0.7]]", "point 3: found the same place as point 2"),
+        in_scene(light + "[0.5, 2, 0.5]]", "point 1: found an emitter that sends no light towards point 2"),
+        in_scene(light + "[1, 0.5, 0.2]]", "point 2: found a specular vertex at its end"),
+        in_scene(light + "[1, 0.5, 0.2], [0.6, 0, -0.7]]", "point 3: found that the specular vertex at point 2 sends"),
+        in_scene("beta: [5, 0], " + light + "[0.6, 0, -0.7], [-1, 1, 0.5]]", "point 3: found a cone of no width"),
+        in_scene("tolerance: 1e-4, points: [[0, 1.951, 0], [0.6, 0, -0.7]]", "expected one within 0.0001 m"),
+        in_scene(light + "[0.6, 0, -0.5], [0, 1.95, 0], [0.6, 0, 0]]", "point 3: found a surface that scatters no"),
+    };
+}
+
+std::string error_of(const std::string& file, const Scene* scene) {
+    try {
+        const UserPathFile paths = load_user_paths(file);
+        if (scene != nullptr) bind_user_paths(*scene, paths);
+    } catch (const InputError& e) {
+        return e.what();
+    }
+    return "";
+}
+
+} // namespace
+
+TEST(UserPathFile, EveryMistakeGivesOneClearError) {
+    const ScratchDirectory scratch;
+    for (const Mistake& mistake : unreadable()) {
+        const std::string file = scratch.write("p.yaml", mistake.text), error = error_of(file, nullptr);
+        EXPECT_THAT(error, HasSubstr(mistake.message)) << mistake.text;
+        EXPECT_THAT(error, StartsWith(file)) << mistake.text;
+        EXPECT_EQ(error.find('\n'), std::string::npos) << mistake.text;
+    }
+    EXPECT_THAT(error_of(scratch.path("none.yaml"), nullptr), HasSubstr("none.yaml"));
+}
+
+TEST(UserPathFile, WhatCannotWorkInASceneIsRefusedByPathAndPoint) {
+    const ScratchDirectory scratch;
+    const auto scene = test::mirror_glass_box();
+    for (const Mistake& mistake : unusable()) {
+        const std::string file = scratch.write("p.yaml", mistake.text), error = error_of(file, scene.get());
+        EXPECT_THAT(error, HasSubstr(mistake.message)) << mistake.text;
+        EXPECT_THAT(error, StartsWith(file + ":2:")) << mistake.text;
+        EXPECT_THAT(error, HasSubstr("path 'a', point ")) << mistake.text;
+    }
+}
+
+TEST(UserPathFile, DefaultsReachEveryPathAndItsOwnWordsWin) {
+    const ScratchDirectory scratch;
+    const UserPathFile file = load_user_paths(
+        scratch.write("p.yaml", "beta: 10\npatch: 0.2\npaths:\n  - {" + kGood +
+                                    "}\n  - {name: b, weight: 3, patch: 0.1, beta: [2, 4], " + kGood + "}\n"));
+    ASSERT_EQ(file.paths.size(), 2u);
+    EXPECT_EQ(file.paths[0].name, "path 1");
+    EXPECT_NEAR(file.paths[0].beta.at(1), 10 * kPi / 180, 1e-12);
+    EXPECT_EQ(file.paths[0].patch, 0.2);
+    EXPECT_EQ(file.paths[1].weight, 3);
+    EXPECT_NEAR(file.paths[1].beta.at(0), 2 * kPi / 180, 1e-12);
+    EXPECT_NEAR(file.paths[1].beta.at(1), 4 * kPi / 180, 1e-12);
+    EXPECT_EQ(file.paths[1].patch, 0.1);
+    EXPECT_EQ(file.paths[1].points.at(2).p, Imath::V3d(-1, 1, 0.5));
+}
+
+TEST(UserPathFile, WhatIsWrittenIsReadAgain) {
+    const ScratchDirectory scratch;
+    UserPathFile out{{test::user_path("a: \"b\"", {{0, 1.95f, 0}, {0.5f, 0, 0.5f}}, 0.1),
+                      test::user_path("0.5", {{0, 1.95f, 0}, {0.5f, 0, 0.5f}, {-1, 1, 0.5f}}, 0.3)}};
+    out.paths[1].weight = 2.5;
+    out.paths[1].patch = 0.25;
+    const UserPathFile in = load_user_paths(scratch.write("p.yaml", user_paths_text(out, "two\nlines")));
+    ASSERT_EQ(in.paths.size(), 2u);
+    for (std::size_t i = 0; i < 2; ++i) {
+        EXPECT_EQ(in.paths[i].name, out.paths[i].name);
+        EXPECT_EQ(in.paths[i].weight, out.paths[i].weight);
+        EXPECT_EQ(in.paths[i].patch, out.paths[i].patch);
+        ASSERT_EQ(in.paths[i].points.size(), out.paths[i].points.size());
+        for (std::size_t k = 0; k < in.paths[i].points.size(); ++k)
+            EXPECT_LT((in.paths[i].points[k].p - out.paths[i].points[k].p).length(), 1e-6);
+        EXPECT_NEAR(in.paths[i].beta[0], out.paths[i].beta[0], 1e-3);
+    }
+}
+
+TEST(UserPaths, PointsSnapToTheSurfacesThatLightMeets) {
+    const auto scene = test::mirror_glass_box();
+    UserPathSpec spec = test::user_path("a", {{0, 1.97f, 0.01f}, {0.51f, 0.01f, -0.5f}, {-0.98f, 1, 0.5f}}, 0.1);
+    const UserPath path = bind_user_path(*scene, spec);
+    EXPECT_NEAR(path.patch.center().p.y, 1.95f, 1e-6);
+    EXPECT_NEAR(path.vertices.at(0).p.y, 0, 1e-6);
+    EXPECT_NEAR(path.vertices.at(1).p.x, -1, 1e-6);
+    EXPECT_EQ(path.signature(), "L D D");
+    EXPECT_TRUE(path.seen);
+}
+
+TEST(UserPaths, EventsAtSpecularVerticesFollowFromThePointAfter) {
+    const auto scene = test::mirror_glass_box();
+    const UserPaths paths = test::mirror_glass_box_paths(*scene);
+    EXPECT_EQ(paths.at(0).signature(), "L S S D");
+    EXPECT_EQ(paths[0].vertices[0].event, Event::transmit);
+    EXPECT_EQ(paths[0].vertices[1].event, Event::transmit);
+    EXPECT_EQ(paths.at(3).vertices[0].event, Event::reflect);
+}
+
+TEST(EmitterPatch, SamplesLieInsideWithTheDensityThatIsTold) {
+    const auto scene = test::diffuse_box();
+    const UserPath path = test::diffuse_box_paths(*scene).at(0);
+    const EmitterPatch patch(*scene, path.patch.center(), 0.03);
+    Rng rng(1, StreamPurpose::test, 0);
+    for (int i = 0; i < 1000; ++i) {
+        const SurfacePoint p = patch.sample(rng);
+        EXPECT_LE((p.p - path.patch.center().p).length(), 0.03 * (1 + 1e-5));
+        EXPECT_GT(patch.pdf(p), 0) << i;
+    }
+    // The share of the whole lamp's points that lie inside is its area's share: density times area of the lamp.
+    const Emitter& lamp = scene->emitter(path.patch.center().emitter);
+    int inside = 0;
+    double density = 0;
+    constexpr int n = 200'000;
+    for (int i = 0; i < n; ++i) {
+        SurfacePoint p = lamp.sample_point(rng).point;
+        p.emitter = path.patch.center().emitter;
+        if (const double d = patch.pdf(p); d > 0) ++inside, density = d;
+    }
+    ASSERT_GT(inside, 0);
+    const double expected = lamp.point_pdf(path.patch.center()) / density;
+    EXPECT_NEAR(static_cast<double>(inside) / n, expected, 5 * std::sqrt(expected / n));
+}
+
+} // namespace keyhole
