@@ -15,6 +15,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <optional>
 #include <string_view>
@@ -29,6 +30,7 @@ struct RenderOptions {
     Outputs outputs;
     bool no_png = false, quiet = false, verbose = false;
     std::vector<std::string> overrides; ///< key=value, in the order of the command line
+    std::string save_map, load_map;
     int threads = 0;
     std::optional<double> timeout; ///< [s]
 };
@@ -49,6 +51,10 @@ bool has_picture(const RenderResult& result) {
     const auto empty = result.stats.values.find("empty pixels");
     return empty == result.stats.values.end() ||
            empty->second < static_cast<double>(result.picture.width) * static_cast<double>(result.picture.height);
+}
+
+bool names_setting(const std::vector<std::string>& overrides, const std::string& key) {
+    return std::ranges::any_of(overrides, [&](const std::string& o) { return o.starts_with(key + "="); });
 }
 
 RenderResult render_scene(LoadedScene& loaded, const RenderOptions& options, StopToken& stop) {
@@ -75,7 +81,12 @@ int run(RenderOptions options) {
 
     const InterruptHandler interrupts(stop);
     std::vector<std::string> load_warnings;
+    // A time or an error to reach asks for as many passes as that takes, unless somebody says how many.
+    if (options.timeout || names_setting(options.overrides, "target_error"))
+        options.overrides.insert(options.overrides.begin(), "passes=0");
     LoadedScene loaded = load(options.scene, options.overrides, &load_warnings);
+    loaded.settings.save_map = options.save_map;
+    loaded.settings.load_map = options.load_map;
     if (!options.user_paths.empty()) loaded.user_paths = load_user_paths(options.user_paths);
     if (!options.resolution.empty()) set_resolution(loaded.description.window, options.resolution);
     RenderResult result = render_scene(loaded, options, stop);
@@ -120,10 +131,15 @@ void add_render_command(CLI::App& app, Action& action, const std::string& comman
     command->add_option("--stats", o->outputs.stats, "write statistics to this file (JSON)");
     command->add_option("--resolution", o->resolution, "WIDTHxHEIGHT in pixels");
     command->add_option("--user-paths", o->user_paths, "user paths for the chains, instead of the scene's");
-    for (const char* key : {"method", "spp", "mutations", "photons", "seed"})
+    for (const char* key : {"method", "spp", "mutations", "photons", "passes", "seed"})
         command->add_option_function<std::string>(
             std::string("--") + key,
             [o, key](const std::string& value) { o->overrides.push_back(std::string(key) + "=" + value); },
+            std::string("the setting ") + key);
+    for (const auto& [option, key] :
+         {std::pair("--photon-memory", "photon_memory"), {"--target-error", "target_error"}})
+        command->add_option_function<std::string>(
+            option, [o, key](const std::string& value) { o->overrides.push_back(std::string(key) + "=" + value); },
             std::string("the setting ") + key);
     command
         ->add_option_function<std::vector<std::string>>(
@@ -133,8 +149,10 @@ void add_render_command(CLI::App& app, Action& action, const std::string& comman
             },
             "any setting, KEY=VALUE; may be repeated, and overrules the options above")
         ->allow_extra_args(false);
+    command->add_option("--save-map", o->save_map, "write the photons of the first pass to this file");
+    command->add_option("--load-map", o->load_map, "take photons from this file instead of sampling any");
     command->add_option("-t,--threads", o->threads, "threads; 0: one for each core")->check(CLI::Range(0, 4096));
-    command->add_option("--timeout", o->timeout, "stop after SECONDS and write what there is")
+    command->add_option("--timeout", o->timeout, "as many passes as fit in SECONDS; write what there is then")
         ->check(CLI::Range(0.0, 1e9));
     auto* quiet = command->add_flag("-q,--quiet", o->quiet, "say nothing but errors");
     command->add_flag("-v,--verbose", o->verbose, "print statistics")->excludes(quiet);

@@ -29,6 +29,7 @@ void print_proposals(const std::vector<ProposalStats>& proposals) {
 } // namespace
 
 void print_warnings(const RenderStats& stats) {
+    for (const std::string& remark : stats.remarks) fmt::print(stderr, "keyhole: {}\n", remark);
     for (const std::string& warning : stats.warnings) fmt::print(stderr, "keyhole: warning: {}\n", warning);
 }
 

@@ -32,6 +32,7 @@ Json stats_json(const RenderStats& s) {
             {"importons", s.importons},
             {"importon_bytes", s.importon_bytes},
             {"values", s.values},
+            {"remarks", s.remarks},
             {"warnings", s.warnings}};
 }
 

@@ -29,6 +29,7 @@ struct RenderStats {
     std::vector<ProposalStats> proposals;
     std::uint64_t photons_global = 0, photons_caustic = 0, photon_bytes = 0, importons = 0, importon_bytes = 0;
     std::map<std::string, double> values; ///< further figures, by name
+    std::vector<std::string> remarks;     ///< choices that were made, in words
     std::vector<std::string> warnings;    ///< in words
     bool complete = true;                 ///< false after a stop
 };

@@ -26,7 +26,7 @@ inline std::string printable(const AutoNumber& setting) {
 
 /// Settings of a render. Ranges and meanings stand in visit_settings(), the only other place that lists them.
 struct Settings {
-    std::string method = "mps";
+    std::string method = "auto";
     std::int64_t spp = 16;
     std::int64_t seed = 1;
     std::int64_t max_depth = 24;
@@ -34,7 +34,14 @@ struct Settings {
     std::int64_t importons = 600'000;
     std::int64_t chains = 1000;
     std::int64_t mutations = 1'000'000;
-    std::int64_t photons = 200'000;
+    std::int64_t light_paths = 1'000'000;
+    std::int64_t photons = 0;
+    std::int64_t photon_memory = 32 << 20;
+    std::string power = "marginal";
+    std::string paths = "stored";
+    std::int64_t passes = 1;
+    double target_error = 0;
+    std::string save_map, load_map; ///< files of photons; empty: none. Not in the table: they belong to a run
     std::int64_t nearest = 60;
     std::int64_t gather_rays = 4;
     std::string mis = "power";
@@ -56,7 +63,8 @@ struct Settings {
 /// AutoNumber is a number or `auto`; members are references into `settings`.
 template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
     using I = std::int64_t;
-    visit("method", s.method, std::vector<std::string_view>{"mps", "mlt", "path", "bdpt", "pssmlt", "mmlt", "rjmlt"},
+    visit("method", s.method,
+          std::vector<std::string_view>{"auto", "mps", "ipm", "pm", "mlt", "path", "bdpt", "pssmlt", "mmlt", "rjmlt"},
           "rendering method");
     visit("spp", s.spp, I{1}, I{1} << 24, "samples per pixel");
     visit("seed", s.seed, I{0}, I{1} << 53, "seed of all random streams");
@@ -65,7 +73,16 @@ template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
     visit("importons", s.importons, I{1000}, I{1} << 30, "eye paths traced for the importance map");
     visit("chains", s.chains, I{1}, I{1} << 20, "Markov chains; their number never follows the threads");
     visit("mutations", s.mutations, I{1}, I{1} << 50, "Metropolis steps over all chains");
-    visit("photons", s.photons, I{1}, I{1} << 30, "most photons kept in a pass");
+    visit("light_paths", s.light_paths, I{1}, I{1} << 50, "light paths that ipm and pm trace");
+    visit("photons", s.photons, I{0}, I{1} << 30, "most photons kept in a pass; 0: what the memory holds");
+    visit("photon_memory", s.photon_memory, I{1} << 18, I{1} << 44,
+          "bytes for photons, their index and importance maps");
+    visit("power", s.power, std::vector<std::string_view>{"marginal", "reciprocal", "literal"},
+          "how mps takes the eye's side out of a photon's power");
+    visit("paths", s.paths, std::vector<std::string_view>{"stored", "all"},
+          "paths that mps samples: those that store a photon, or all");
+    visit("passes", s.passes, I{0}, I{1} << 40, "passes of photons and gather; 0: until time or target_error is up");
+    visit("target_error", s.target_error, 0.0, 1.0, "relative error at which passes end; 0: none");
     visit("nearest", s.nearest, I{1}, I{10'000}, "photons in a radiance estimate");
     visit("gather_rays", s.gather_rays, I{1}, I{1} << 16, "gather rays per sample of a pixel");
     visit("mis", s.mis, std::vector<std::string_view>{"balance", "power", "maximum"},

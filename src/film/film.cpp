@@ -66,6 +66,12 @@ Picture Film::to_picture() const {
     return picture;
 }
 
+Film::LuminanceSum Film::luminance_sum(std::size_t pixel) const {
+    const Channels& s = pixels_[pixel].sums;
+    const Rgb beauty(s[0] + s[3] + s[6], s[1] + s[4] + s[7], s[2] + s[5] + s[8]);
+    return {luminance(beauty), static_cast<double>(pixels_[pixel].samples)};
+}
+
 std::uint64_t Film::empty_pixels() const {
     return static_cast<std::uint64_t>(std::ranges::count(pixels_, std::uint64_t{0}, &Pixel::samples));
 }

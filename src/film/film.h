@@ -49,6 +49,12 @@ class Film {
     /// Pixels without a sample.
     std::uint64_t empty_pixels() const;
 
+    /// Sum of the luminance of a pixel's samples, row by row, and their number.
+    struct LuminanceSum {
+        double sum, samples;
+    };
+    LuminanceSum luminance_sum(std::size_t pixel) const;
+
     /// Puts "empty pixels" among the values, and dropped samples among the warnings.
     void report(RenderStats& stats) const;
 

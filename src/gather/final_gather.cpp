@@ -109,7 +109,7 @@ Rgb FinalGather::ask_global_map(const Vertex& v, const Vec3& back, PixelSample& 
         const auto answer = maps_.irradiance->irradiance(v.point.p, normal);
         return v.bsdf.eval(back, back) * answer.irradiance;
     }
-    const PhotonQuery query{{v.point.p, normal}, options_.max_radius, options_.nearest};
+    const PhotonQuery query{{v.point.p, normal}, options_.max_radius, options_.nearest, options_.shrink};
     return estimate_density(*maps_.global, query, Unbiased::density, maps_.patches,
                             [&](const Photon& photon) {
                                 return scatter(v.point, v.bsdf, Event::finite, photon.direction(), back).value;
@@ -118,7 +118,8 @@ Rgb FinalGather::ask_global_map(const Vertex& v, const Vec3& back, PixelSample& 
 }
 
 Rgb FinalGather::ask_caustic_map(const Vertex& v, const Vec3& back) const {
-    const PhotonQuery query{{v.point.p, side(v.point, back)}, options_.caustic_radius, options_.nearest};
+    const PhotonQuery query{
+        {v.point.p, side(v.point, back)}, options_.caustic_radius, options_.nearest, options_.shrink};
     return estimate_density(*maps_.caustic, query, Unbiased::density, maps_.patches,
                             [&](const Photon& photon) {
                                 return scatter(v.point, v.bsdf, Event::finite, photon.direction(), back).value;

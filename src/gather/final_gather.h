@@ -21,6 +21,7 @@ struct GatherOptions {
     int nearest = 60;     ///< photons in a radiance estimate
     float max_radius;     ///< of a lookup in the global map [m]
     float caustic_radius; ///< of a lookup in the caustic map [m]
+    float shrink = 1;     ///< of lookup regions, as in PhotonQuery
     int max_scatterings = 24;
 };
 

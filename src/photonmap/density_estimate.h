@@ -18,9 +18,10 @@ enum class Unbiased {
 };
 
 struct DensityEstimate {
-    Rgb value{0.0};  ///< [1/m^2] times the unit of power times that of the weight
-    int photons = 0; ///< that went into it
-    double area = 0; ///< of the region [m^2]
+    Rgb value{0.0};   ///< [1/m^2] times the unit of power times that of the weight
+    int photons = 0;  ///< that went into it
+    double area = 0;  ///< of the region [m^2]
+    float radius = 0; ///< of the region [m]
 };
 
 /// Sum over the region's photons of weight(photon) * power / area, constant kernel.
@@ -29,22 +30,26 @@ struct DensityEstimate {
 /// geometric surface: where the shading normal differs, a weight that agrees with path tracing has the factor |wi.ns| /
 /// |wi.ng| (measure.h). The area is that of the surface inside the region if `patches` are given, otherwise that of the
 /// disc, which is too large at edges and on curved surfaces. k = 1 under Unbiased::density is always 0. A region
-/// without area (all photons on one spot) yields 0. `weight` must not query a photon map.
+/// without area (all photons on one spot) yields 0. In a region that
+/// the query shrinks the photons inside are as many as chance has it, so Unbiased::density holds there as well.
+/// `weight` must not query a photon map.
 template <class Weight>
 DensityEstimate estimate_density(const PhotonMap& map, const PhotonQuery& query, Unbiased unbiased,
                                  const SurfacePatches* patches, Weight&& weight) {
     const Neighbourhood near = map.nearest(query);
-    const double radius2 = near.radius2;
+    const double radius2 = near.radius2 * static_cast<double>(query.shrink) * query.shrink;
     DensityEstimate e;
+    e.radius = static_cast<float>(std::sqrt(radius2));
     e.area = patches != nullptr ? patches->area(query.region, std::sqrt(radius2)) : kPi * radius2;
     if (!(e.area > 0)) return e;
     const std::size_t first = near.full && unbiased == Unbiased::density ? 1 : 0;
     for (const Neighbour& n : near.found.subspan(first)) {
+        if (n.distance2 > radius2) continue;
         const Photon& photon = map[n.index];
         e.value += weight(photon) * photon.power();
+        ++e.photons;
     }
     e.value /= e.area;
-    e.photons = static_cast<int>(near.found.size() - first);
     return e;
 }
 

@@ -1,8 +1,21 @@
 #include "photonmap/deposit.h"
 
+#include "photonmap/eye_sides.h"
+
 #include <utility>
 
 namespace keyhole {
+
+void PathDepositor::Tally::merge(const Tally& o) {
+    total += o.total;
+    lost += o.lost;
+    visible += o.visible;
+    visible_weight += o.visible_weight;
+    power.merge(o.power);
+    literal_power.merge(o.literal_power);
+    draws += o.draws;
+    untrusted += o.untrusted;
+}
 
 bool PathDepositor::Pending::holds(const Path& path, const StoragePoint& at) const {
     const auto i = static_cast<std::size_t>(at.vertex);
@@ -13,7 +26,7 @@ bool PathDepositor::Pending::holds(const Path& path, const StoragePoint& at) con
 void PathDepositor::deposit(const Path& path, double weight) {
     const StoragePoint at = storage_point(path);
     if (at.kind == PhotonKind::none || !(weight > 0)) return;
-    total_ += weight;
+    tally_.total += weight;
     if (!recent_.holds(path, at)) {
         std::swap(recent_, older_);
         if (!recent_.holds(path, at)) {
@@ -21,10 +34,14 @@ void PathDepositor::deposit(const Path& path, double weight) {
             const auto i = static_cast<std::size_t>(at.vertex);
             Rgb flux(1.0);
             for (std::size_t k = 0; k < i; ++k) flux *= path.x[k].value / luminance(path.x[k].value);
-            recent_ = {at.kind, path.x[i], direction(path.x[i].point, path.x[i - 1].point), flux, 0};
+            recent_ = {at.kind, path.x[i], direction(path.x[i].point, path.x[i - 1].point), flux, at.vertex};
         }
     }
     recent_.weight += weight;
+    if (at.kind == PhotonKind::caustic) return;
+    const double literal = weight * literal_factor(path, at.vertex, recent_.flux);
+    recent_.literal += literal;
+    recent_.density += literal * eye_side_density(path, at.vertex);
 }
 
 void PathDepositor::flush() {
@@ -40,17 +57,54 @@ void PathDepositor::store(Pending& pending) {
     const double weight = roulette(given, global ? global_threshold_ : caustic_threshold_, rng_);
     if (weight == 0) return;
 
-    const ImportanceMap& map = global ? *importance_.global : *importance_.caustic;
-    const auto e = map.importance(pending.vertex.point, pending.vertex.bsdf, pending.to_light);
-    const double visible = luminance(pending.flux * e.value);
-    if (!(visible > 0)) {
-        lost_ += weight;
+    const Rgb power = global ? global_power(pending, given, weight) : marginal_power(pending, *options_.caustic).power;
+    if (is_black(power)) {
+        tally_.lost += weight;
         return;
     }
+    if (global) {
+        tally_.power.add(luminance(power));
+        tally_.literal_power.add(luminance(pending.flux) * (pending.literal / given));
+    }
     PhotonBuffer& buffer = global ? global_ : caustic_;
-    buffer.photons.emplace_back(pending.vertex.point.p, pending.vertex.point.ng, pending.to_light,
-                                pending.flux / visible);
+    buffer.photons.emplace_back(pending.vertex.point.p, pending.vertex.point.ng, pending.to_light, power);
     buffer.weights.push_back(static_cast<float>(weight));
+}
+
+PathDepositor::Marginal PathDepositor::marginal_power(const Pending& pending, const ImportanceMap& map) {
+    const auto e = map.importance(pending.vertex.point, pending.vertex.bsdf, pending.to_light);
+    const double visible = luminance(pending.flux * e.value);
+    constexpr int enough = 16;
+    return {visible > 0 ? pending.flux / visible : Rgb(0.0), e.importons >= enough && !e.obstructed};
+}
+
+Rgb PathDepositor::global_power(const Pending& pending, double given, double weight) {
+    if (options_.rule == PowerRule::literal) return literal_power(pending, given, weight);
+    if (options_.rule == PowerRule::marginal) {
+        // The choice follows from the place alone, so each rule is as right as it is by itself.
+        const Marginal marginal = marginal_power(pending, *options_.global);
+        if (marginal.trusted) return marginal.power;
+        ++tally_.untrusted;
+    }
+    return reciprocal_power(pending, given);
+}
+
+Rgb PathDepositor::reciprocal_power(const Pending& pending, double given) {
+    if (!(pending.density > 0)) return Rgb(0.0);
+    // Without a bound a place that no eye side leaves would hold up the render for ever; what it costs is counted.
+    constexpr std::int64_t most = 100'000;
+    const auto draws = draws_until_valid(*options_.scene, pending.vertex, pending.to_light,
+                                         options_.max_scatterings - pending.scatterings, most, rng_);
+    tally_.draws += static_cast<std::uint64_t>(draws.value_or(most));
+    return draws ? pending.flux * (pending.density / given * static_cast<double>(*draws)) : Rgb(0.0);
+}
+
+Rgb PathDepositor::literal_power(const Pending& pending, double given, double weight) {
+    const Rgb power = pending.flux * (pending.literal / given);
+    const auto e = options_.global->importance(pending.vertex.point, pending.vertex.bsdf, pending.to_light);
+    tally_.visible += weight * luminance(power * e.value);
+    tally_.visible_weight += weight;
+    return power;
 }
 
 } // namespace keyhole

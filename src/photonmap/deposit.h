@@ -1,24 +1,38 @@
 // From sampled paths to photons.
 #pragma once
 
+#include "core/statistics.h"
 #include "photonmap/importance_map.h"
 #include "photonmap/photon_store.h"
 #include "sampling/path.h"
+#include "scene/scene.h"
 
 namespace keyhole {
 
-/// The importance of each map's storage points.
-struct DepositImportance {
-    const ImportanceMap* global;  ///< at d2
-    const ImportanceMap* caustic; ///< at d1
+/// How the eye's side is taken out of a photon's power (MATHEMATICS, section 5).
+enum class PowerRule {
+    marginal,   ///< divided by the importance map's E: consistent, and every photon weighs the same where it is asked;
+                ///< `reciprocal` where importons are too few to say, or where some may lie behind a wall:
+                ///< 1 / E would have a heavy tail
+    reciprocal, ///< weighed by a density of eye sides, normalised by drawing them until one is valid: unbiased
+    literal,    ///< MPS 3.2 to the letter, brought to the right total: for comparison only
 };
 
-/// Collects the photons of one chain: power f_map / Y(f_map E) for each path, times its weight (MATHEMATICS:
-/// "marginal"). Times B/N this makes the sum of power over a region the flux that arrives there, and gives every photon
-/// the same weight where it is asked. Not thread-safe: one for each chain.
+/// What the power of photons is computed from. The caustic map's photons are `marginal` under every rule: from d1 there
+/// is one edge to the eye and nothing to draw.
+struct DepositOptions {
+    const ImportanceMap* global = nullptr;  ///< at d2; null under `reciprocal`
+    const ImportanceMap* caustic = nullptr; ///< at d1
+    PowerRule rule = PowerRule::marginal;
+    const Scene* scene = nullptr; ///< for drawing eye sides
+    int max_scatterings = 24;     ///< of a whole path
+};
+
+/// Collects the photons of one chain: under `marginal` power f_map / Y(f_map E) for each path, times its weight. Times
+/// B/N this makes the sum of power over a region the flux that arrives there. Not thread-safe: one for each chain.
 class PathDepositor {
   public:
-    PathDepositor(const DepositImportance& importance, const Rng& rng) : importance_(importance), rng_(rng) {}
+    PathDepositor(const DepositOptions& options, const Rng& rng) : options_(options), rng_(rng) {}
 
     /// Weights below these, those of the stores that the buffers go to, are sent through the roulette at once: what
     /// doesn't survive costs nothing more.
@@ -37,9 +51,20 @@ class PathDepositor {
     PhotonBuffer& global() { return global_; }
     PhotonBuffer& caustic() { return caustic_; }
 
-    /// Weight of deposits whose importance was estimated as zero, as a share of all: power that the maps lack.
-    double lost_weight() const { return lost_; }
-    double total_weight() const { return total_; }
+    /// What came of the deposits, for statistics and for scales.
+    struct Tally {
+        double total = 0;            ///< weight of all
+        double lost = 0;             ///< weight of those whose importance came out as zero: power that the maps lack
+        double visible = 0;          ///< under `literal`: sum of Y(Phi E) over the global photons, whose weight is...
+        double visible_weight = 0;   ///< ... this: their ratio is the scale that the rule leaves open
+        RunningStats power;          ///< luminance of the global photons' power for weight 1
+        RunningStats literal_power;  ///< what MPS 3.2 would have given the same photons
+        std::uint64_t draws = 0;     ///< eye sides drawn
+        std::uint64_t untrusted = 0; ///< photons for which `marginal` turned to `reciprocal`
+
+        void merge(const Tally& o);
+    };
+    const Tally& tally() const { return tally_; }
 
   private:
     /// A stored sub-path that may still gain weight.
@@ -47,20 +72,32 @@ class PathDepositor {
         PhotonKind kind = PhotonKind::none;
         Vertex vertex;
         Vec3 to_light;
-        Rgb flux; ///< f_map up to its scale, which cancels
+        Rgb flux;            ///< f_map up to its scale, which cancels
+        int scatterings = 0; ///< of the stored sub-path, its end included
         double weight = 0;
+        double literal = 0; ///< sum of weight times literal_factor()
+        double density = 0; ///< sum of weight times literal_factor() times eye_side_density()
 
         bool holds(const Path& path, const StoragePoint& at) const;
     };
 
     void store(Pending& pending);
+    struct Marginal {
+        Rgb power;
+        bool trusted; ///< enough importons say so, and none that a wall may hide
+    };
+    // Power for weight 1; black where it is lost. `given` is the weight that the sums of `pending` are over.
+    Rgb global_power(const Pending& pending, double given, double weight);
+    static Marginal marginal_power(const Pending& pending, const ImportanceMap& map);
+    Rgb reciprocal_power(const Pending& pending, double given);
+    Rgb literal_power(const Pending& pending, double given, double weight);
 
-    DepositImportance importance_;
+    DepositOptions options_;
     Rng rng_;
     double global_threshold_ = 0, caustic_threshold_ = 0;
     PhotonBuffer global_, caustic_;
     Pending recent_, older_;
-    double lost_ = 0, total_ = 0;
+    Tally tally_;
 };
 
 } // namespace keyhole

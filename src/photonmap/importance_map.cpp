@@ -15,7 +15,8 @@ ImportanceMap::Importance ImportanceMap::importance(const SurfacePoint& d2, cons
     // With few importons the reciprocal of n has a heavy tail; that of n + 1 has the right expectation for a Poisson
     // count.
     const bool few = e.photons > 0 && e.photons < options_.k;
-    return {few ? e.value * (1 + 1.0 / e.photons) : e.value, e.photons};
+    const bool obstructed = options_.patches != nullptr && options_.patches->obstructed(query.region, e.radius);
+    return {few ? e.value * (1 + 1.0 / e.photons) : e.value, e.photons, obstructed};
 }
 
 } // namespace keyhole

@@ -24,6 +24,8 @@ class ImportanceMap {
     struct Importance {
         Rgb value{0.0};    ///< E, [1/W] up to the scale of the importons' power
         int importons = 0; ///< found; 0 means that nothing is known here, not that E is zero
+        /// Whether something stands on the surface that they lie on: importance may have come from behind it.
+        bool obstructed = false;
     };
 
     /// E(d2, to_light) = integral of fs(d2) G(d2, d1) fs(d1) ... over all ways on to the eye: the sum over importons

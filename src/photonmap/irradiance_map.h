@@ -3,18 +3,22 @@
 
 #include "core/progress.h"
 #include "photonmap/density_estimate.h"
+#include "scene/scene.h"
 
 namespace keyhole {
 
 struct IrradianceOptions {
     int k = 60;                              ///< photons in an estimate
     float max_radius;                        ///< [m]
+    float shrink = 1;                        ///< of regions, as in PhotonQuery
     int stride = 4;                          ///< one estimate for so many photons
     const SurfacePatches* patches = nullptr; ///< for the area at edges; null: the disc's
+    const Scene* scene = nullptr; ///< for walls that stand on a surface and part it; needs `patches`; null: none do
 };
 
-/// Answers with the estimate at the nearest of the chosen photons on the same piece of surface. Immutable and
-/// thread-safe once built.
+/// Answers with the estimate at the nearest of the chosen photons on the same piece of surface. Where other surfaces
+/// stand on it, photons and estimates that they hide don't count: a floor that goes on beneath a wall would let light
+/// through. Immutable and thread-safe once built.
 class IrradianceMap {
   public:
     /// `photons` is only read here.
@@ -22,7 +26,7 @@ class IrradianceMap {
 
     struct Answer {
         Rgb irradiance{0.0}; ///< W/m^2, through the geometric surface
-        bool known = false;  ///< false: no photon of this surface within max_radius; irradiance is 0
+        bool known = false;  ///< false: no estimate of this surface within 4 max_radius; irradiance is 0
     };
 
     /// Irradiance on the side of unit `normal`.
@@ -34,8 +38,9 @@ class IrradianceMap {
 
   private:
     double mean_photons_ = 0; // filled in while map_ is made
-    PhotonMap map_;
+    PhotonMap map_;           // the direction of an estimate is its normal, unless something stands around it
     float max_radius_;
+    const Scene* scene_;
 };
 
 } // namespace keyhole

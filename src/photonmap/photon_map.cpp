@@ -92,6 +92,36 @@ class NearestInRegion {
     float bound_ = 0, above_bound_ = 0;
 };
 
+/// nanoflann's result set for one photon that is accepted; asks only about those that are nearer than the best so far.
+class NearestAccepted {
+  public:
+    NearestAccepted(const PhotonQuery& query, const Photon* photons, const std::function<bool(const Photon&)>& accept)
+        : region_(query.region), photons_(photons),
+          accept_(accept), best_{query.max_radius * query.max_radius, std::numeric_limits<std::uint32_t>::max()} {}
+
+    bool full() const { return true; }
+    float worstDist() const { return std::nextafter(best_.distance2, std::numeric_limits<float>::infinity()); }
+
+    bool addPoint(float /*euclidean2*/, std::uint32_t index) {
+        const Photon& photon = photons_[index];
+        const Neighbour candidate{region_.distance2(photon.position()), index};
+        if (candidate < best_ && region_.accepts(photon.normal().unnormalised()) && accept_(photon)) {
+            best_ = candidate;
+            found_ = &photon;
+        }
+        return true;
+    }
+
+    const Photon* found() const { return found_; }
+
+  private:
+    const SurfaceRegion& region_;
+    const Photon* photons_;
+    const std::function<bool(const Photon&)>& accept_;
+    Neighbour best_;
+    const Photon* found_ = nullptr;
+};
+
 } // namespace
 
 struct PhotonMap::Index {
@@ -113,6 +143,14 @@ std::span<const Photon> PhotonMap::photons() const { return index_->points.photo
 
 std::size_t PhotonMap::bytes() const {
     return index_->points.photons.capacity() * sizeof(Photon) + index_->tree.usedMemory(index_->tree);
+}
+
+const Photon* PhotonMap::nearest_accepted(const PhotonQuery& query,
+                                          const std::function<bool(const Photon&)>& accept) const {
+    if (photons().empty()) return nullptr;
+    NearestAccepted result(query, photons().data(), accept);
+    index_->tree.findNeighbors(result, query.region.position.getValue(), {});
+    return result.found();
 }
 
 Neighbourhood PhotonMap::nearest(const PhotonQuery& query) const {

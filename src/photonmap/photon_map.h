@@ -5,6 +5,7 @@
 #include "photonmap/surface_region.h"
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -15,6 +16,7 @@ struct PhotonQuery {
     SurfaceRegion region;
     float max_radius; ///< [m], finite
     int k;            ///< most photons wanted, > 0
+    float shrink = 1; ///< an estimate uses the photons within this share of the radius found, for passes
 };
 
 /// A photon found. Ordered by distance, equal distances by index.
@@ -47,6 +49,9 @@ class PhotonMap {
     /// The k nearest photons of the query's region. Photons of other surfaces are turned away inside the search: they
     /// neither count nor narrow it. Allocates nothing after a thread's first query of that k.
     Neighbourhood nearest(const PhotonQuery& query) const;
+
+    /// The nearest photon of the region that `accept` accepts; query.k doesn't matter. Null if there is none.
+    const Photon* nearest_accepted(const PhotonQuery& query, const std::function<bool(const Photon&)>& accept) const;
 
     std::span<const Photon> photons() const;
     const Photon& operator[](std::uint32_t i) const { return photons()[i]; }

@@ -9,13 +9,13 @@ namespace {
 
 /// Steps of each chain between two visits to the stores, so that the chains' buffers stay small beside these.
 std::int64_t round_length(std::int64_t photons, std::int64_t chains) {
-    return std::clamp<std::int64_t>(photons / (16 * chains), 8, 256);
+    return std::clamp<std::int64_t>(photons / (32 * chains), 2, 256);
 }
 
 } // namespace
 
 SampledPhotons sample_photons(const std::vector<Path>& seeds, const Mixture<Path>& mixture,
-                              const DepositImportance& importance, const PhotonSamplingOptions& options,
+                              const DepositOptions& deposit, const PhotonSamplingOptions& options,
                               const RunContext& context) {
     const auto chains = static_cast<std::int64_t>(seeds.size());
     SampledPhotons out;
@@ -24,7 +24,7 @@ SampledPhotons sample_photons(const std::vector<Path>& seeds, const Mixture<Path
     std::vector<PathDepositor> depositors;
     depositors.reserve(seeds.size());
     for (std::uint64_t c = 0; c < seeds.size(); ++c)
-        depositors.emplace_back(importance, Rng(options.seed, StreamPurpose::chain, 2 * c + 1));
+        depositors.emplace_back(deposit, Rng(options.seed, StreamPurpose::chain, 2 * c + 1));
 
     // Stores are shared: chains differ in what they find, and thinning must treat all photons alike. The threshold that
     // the run is expected to end with is there from the start.
@@ -59,14 +59,12 @@ SampledPhotons sample_photons(const std::vector<Path>& seeds, const Mixture<Path
     out.chains = set->summary();
     set.reset(); // its memory is needed below
     const double scale = options.brightness / static_cast<double>(out.chains.steps);
-    double lost = 0, total = 0;
-    for (const PathDepositor& depositor : depositors) {
-        lost += depositor.lost_weight();
-        total += depositor.total_weight();
-    }
-    global.release_into(out.global, scale);
-    caustic.release_into(out.caustic, scale);
-    out.lost_share = total > 0 ? lost / total : 0;
+    for (const PathDepositor& depositor : depositors) out.tally.merge(depositor.tally());
+    // The literal rule leaves a scale open: that which makes the photons as visible as the paths were.
+    const double seen = out.tally.visible;
+    out.bytes = global.bytes() + caustic.bytes();
+    out.global = global.release(seen > 0 ? scale * out.tally.visible_weight / seen : scale);
+    out.caustic = caustic.release(scale);
     return out;
 }
 

@@ -19,17 +19,17 @@ struct PhotonSamplingOptions {
     const Mixture<Path>* control = nullptr; ///< of the control chains, as in ChainSet
 };
 
-struct SampledPhotons {
-    std::vector<Photon> global, caustic; ///< power in W
+struct SampledPhotons : Photons {
     ChainSummary chains;
-    double lost_share = 0; ///< share of the deposits whose importance came out as zero
+    std::size_t bytes = 0;      ///< of the stores
+    PathDepositor::Tally tally; ///< of all chains
 };
 
 /// Runs one chain from each seed, all equally long, and stores their photons. The number of chains is that of the seeds
 /// and never follows the threads: the result is the same on any number of them. After a stop every chain has made the
 /// same number of steps.
 SampledPhotons sample_photons(const std::vector<Path>& seeds, const Mixture<Path>& mixture,
-                              const DepositImportance& importance, const PhotonSamplingOptions& options,
+                              const DepositOptions& deposit, const PhotonSamplingOptions& options,
                               const RunContext& context);
 
 } // namespace keyhole

@@ -1,6 +1,7 @@
 #include "photonmap/photon_store.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace keyhole {
 
@@ -28,9 +29,23 @@ double PhotonStore::admit(double weight) {
     return weight;
 }
 
+double PhotonStore::expected_survivors(double t) const {
+    double sum = 0;
+    for (const float w : weights_) sum += std::min(1.0, w / t);
+    return sum;
+}
+
 void PhotonStore::raise_threshold() {
-    // Twice the smallest weight where there was no threshold yet; more rounds follow if that makes no room.
-    threshold_ = 2 * (threshold_ > 0 ? threshold_ : *std::min_element(weights_.begin(), weights_.end()));
+    // Bracketed by doubling, then bisected: no need to be exact, since survivors are counted anyway.
+    const double wanted = 0.9 * static_cast<double>(capacity_);
+    double low = std::max(threshold_, static_cast<double>(*std::min_element(weights_.begin(), weights_.end())));
+    double high = 2 * low;
+    for (; expected_survivors(high) > wanted; high *= 2) low = high;
+    for (int i = 0; i < 5; ++i) {
+        const double middle = (low + high) / 2;
+        (expected_survivors(middle) > wanted ? low : high) = middle;
+    }
+    threshold_ = high;
     std::size_t kept = 0;
     for (std::size_t i = 0; i < photons_.size(); ++i) {
         const double weight = roulette(weights_[i], threshold_, rng_);
@@ -42,13 +57,11 @@ void PhotonStore::raise_threshold() {
     weights_.resize(kept);
 }
 
-void PhotonStore::release_into(std::vector<Photon>& out, double scale) {
-    for (std::size_t i = 0; i < photons_.size(); ++i) {
+std::vector<Photon> PhotonStore::release(double scale) {
+    for (std::size_t i = 0; i < photons_.size(); ++i)
         photons_[i].set_power(photons_[i].power() * (weights_[i] * scale));
-        out.push_back(photons_[i]);
-    }
-    std::vector<Photon>().swap(photons_);
     std::vector<float>().swap(weights_);
+    return std::exchange(photons_, {});
 }
 
 } // namespace keyhole

@@ -24,10 +24,15 @@ struct PhotonBuffer {
     std::vector<float> weights;
 };
 
+/// What a sampler leaves: the photons of both maps, power in W.
+struct Photons {
+    std::vector<Photon> global, caustic;
+};
+
 /// Collects weighted photons and never holds more than its capacity. Weights below a threshold t survive with
-/// probability w / t and then weigh t; when the store is full, t rises and what is stored goes through the same
-/// roulette. Every region's total keeps its expectation whatever is thinned. Not thread-safe. Depends on nothing but
-/// the deposits, their order and its own random stream.
+/// probability w / t and then weigh t; when the store is full, t rises so far that a tenth of what is stored should
+/// fall in the same roulette. Every region's total keeps its expectation whatever is thinned. Not thread-safe. Depends
+/// on nothing but the deposits, their order and its own random stream.
 class PhotonStore {
   public:
     /// Memory for `capacity` photons is taken at once. With a capacity of 0 everything is dropped.
@@ -44,9 +49,9 @@ class PhotonStore {
         weights_.push_back(static_cast<float>(weight));
     }
 
-    /// Appends all photons to `out`, with power times weight times `scale`, and gives the memory back. The store is
-    /// finished after that.
-    void release_into(std::vector<Photon>& out, double scale);
+    /// All photons, with power times weight times `scale`. The store gives its memory back or away and is finished
+    /// after that.
+    std::vector<Photon> release(double scale);
 
     std::size_t size() const { return photons_.size(); }
     double threshold() const { return threshold_; }
@@ -58,8 +63,10 @@ class PhotonStore {
   private:
     /// The weight after roulette and after making room for one more photon; the threshold may rise.
     double admit(double weight);
-    /// Doubles the threshold and sends what is stored through the roulette.
+    /// Raises the threshold so far that a tenth of what is stored should go, and sends it through the roulette.
     void raise_threshold();
+    /// Number of stored photons that a threshold of `t` should leave.
+    double expected_survivors(double t) const;
 
     std::vector<Photon> photons_;
     std::vector<float> weights_; // of photons_

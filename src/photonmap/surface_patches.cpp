@@ -32,12 +32,16 @@ Bounds bounds_of(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& t
     return b;
 }
 
+Bounds bounds_of(const Sphere& sphere) {
+    return {sphere.center - Vec3(sphere.radius), sphere.center + Vec3(sphere.radius)};
+}
+
 std::vector<Bounds> bounds_of(const std::vector<Shape>& shapes) {
     std::vector<Bounds> boxes;
     for (const Shape& shape : shapes) {
         if (!holds_photons(shape)) continue;
         if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) {
-            boxes.push_back({sphere->center - Vec3(sphere->radius), sphere->center + Vec3(sphere->radius)});
+            boxes.push_back(bounds_of(*sphere));
         } else {
             const auto& mesh = std::get<TriangleMesh>(shape.geometry);
             for (const auto& t : mesh.triangles) boxes.push_back(bounds_of(mesh, t));
@@ -74,6 +78,24 @@ double SurfacePatches::area(const SurfaceRegion& region, double r) const {
         sum += sphere != nullptr ? cap_area(*sphere, region, r) : triangle_area(patches_[i], region, r);
     });
     return std::min(sum, kPi * r * r);
+}
+
+bool SurfacePatches::obstructed(const SurfaceRegion& region, double r) const {
+    // The slab above what counts as the same surface.
+    SurfaceRegion above = region;
+    above.position += region.normal * static_cast<float>(2 * r / kFlat);
+    const Bounds slab = bounds_of(above, r);
+    bool found = false;
+    tree_.overlapping(slab, [&](std::uint32_t i) {
+        const Shape& shape = shapes_[patches_[i].shape];
+        if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) {
+            found |= bounds_of(*sphere).overlaps(slab);
+        } else {
+            const auto& mesh = std::get<TriangleMesh>(shape.geometry);
+            found |= bounds_of(mesh, mesh.triangles[patches_[i].triangle]).overlaps(slab);
+        }
+    });
+    return found;
 }
 
 /// Stretched along the normal, the ellipsoid becomes a sphere, which cuts the triangle's plane in a disc; areas in that

@@ -21,6 +21,10 @@ class SurfacePatches {
     /// (a box on a floor) both count, although photons reach only one; so the area is held to that of the disc, pi r^2.
     double area(const SurfaceRegion& region, double r) const;
 
+    /// Whether other surfaces may stand on the region of radius `r`, where they could part one half of it from the
+    /// other. By bounding boxes: true more often than need be on slanted and curved surfaces.
+    bool obstructed(const SurfaceRegion& region, double r) const;
+
   private:
     struct Patch {
         std::uint32_t shape, triangle;

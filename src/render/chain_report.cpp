@@ -47,19 +47,21 @@ StageOne measure_brightness(const Scene& scene, const StageOneSettings& settings
     stats.values["brightness of caustics, error"] = one.caustic.standard_error();
     stats.values["brightness by bidirectional tracing"] = one.technique == Technique::bidirectional ? 1 : 0;
     stats.values["brightness samples"] = static_cast<double>(one.samples);
+    return one;
+}
+
+void warn_of_brightness(RenderStats& stats, bool stopped) {
     if (!(stats.brightness > 0))
         stats.warnings.emplace_back(
-            one.samples < settings.samples
-                ? "stopped before any indirect light or caustic was found: only direct light is "
-                  "rendered"
-                : "no sampled path carried indirect light or a caustic: only direct light is "
-                  "rendered. If there is more, try more brightness_samples");
+            stopped ? "stopped before any indirect light or caustic was found: only direct light is "
+                      "rendered"
+                    : "no sampled path carried indirect light or a caustic: only direct light is "
+                      "rendered. If there is more, try more brightness_samples");
     else if (stats.brightness_error > 0.05 * stats.brightness)
         stats.warnings.push_back(
             fmt::format("the brightness of indirect light is known to {:.0f} % only (standard error): "
                         "raise brightness_samples",
                         100 * stats.brightness_error / stats.brightness));
-    return one;
 }
 
 void report_chains(RenderStats& stats, const Mixture<Path>& mixture, const ChainSummary& chains) {

@@ -7,9 +7,12 @@
 
 namespace keyhole {
 
-/// Stage one, with its figures in `stats`, and a warning where brightness is zero or poorly known.
+/// Stage one, with its figures in `stats`.
 StageOne measure_brightness(const Scene& scene, const StageOneSettings& settings, RenderStats& stats,
                             const RunContext& context);
+
+/// Warns where the brightness in `stats` is zero or poorly known; `stopped`: stage one was cut short.
+void warn_of_brightness(RenderStats& stats, bool stopped);
 
 /// Puts the ledger and the figures of a set of chains into `stats`, and warns where the picture can't be trusted:
 /// chains that stick, and groups of chains that disagree.

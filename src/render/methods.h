@@ -6,9 +6,10 @@
 
 namespace keyhole {
 
-/// Metropolis photon sampling: Fan, Chenney, Lai 2005.
-RenderResult render_mps(const Scene& scene, const Settings& settings, const UserPaths& paths,
-                        const RunContext& context);
+/// Everything that renders from photon maps; the method is the sampler that fills them: mps, ipm or
+/// pm, or the better of the first two by trial.
+RenderResult render_photons(const Scene& scene, const Settings& settings, const UserPaths& paths,
+                            const RunContext& context);
 
 /// Metropolis light transport (Veach and Guibas 1997): the chains of Metropolis photon sampling, drawn directly.
 RenderResult render_mlt(const Scene& scene, const Settings& settings, const UserPaths& paths,

@@ -73,6 +73,7 @@ RenderResult render_mlt(const Scene& scene, const Settings& settings, const User
                                  .seed = static_cast<std::uint64_t>(settings.seed)};
     result.picture = sample_direct(scene, settings, result.stats, context);
     const StageOne one = measure_brightness(scene, first, result.stats, context);
+    warn_of_brightness(result.stats, one.samples < first.samples);
     if (one.brightness.mean() > 0)
         draw_chains(scene, settings, paths, first, one, result.picture, result.stats, context);
     return result;

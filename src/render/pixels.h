@@ -15,11 +15,12 @@
 namespace keyhole {
 
 /// Takes `spp` samples of every pixel: sample(window point, random source) -> PixelSample. Works in rounds of one
-/// sample for every pixel, so that a stop leaves a whole picture. Each sample has a random stream of its own. Returns
-/// the number of full rounds.
+/// sample for every pixel, so that a stop leaves a whole picture. Each sample has a random stream of its own, by
+/// `first_round` plus the rounds before it. Returns the number of full rounds.
 template <class Sample>
 std::int64_t sample_pixels(const Scene& scene, Film& film, std::int64_t spp, std::uint64_t seed, StreamPurpose purpose,
-                           std::string_view stage, const RunContext& context, Sample&& sample) {
+                           std::string_view stage, const RunContext& context, Sample&& sample,
+                           std::int64_t first_round = 0) {
     const ImageWindow& window = scene.camera().window();
     constexpr int kTile = 16;
     const int across = (window.width + kTile - 1) / kTile, down = (window.height + kTile - 1) / kTile;
@@ -36,7 +37,7 @@ std::int64_t sample_pixels(const Scene& scene, Film& film, std::int64_t spp, std
                 for (int x = x0; x < x1; ++x) {
                     const auto pixel = static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(window.width) +
                                        static_cast<std::uint64_t>(x);
-                    Rng rng(seed, purpose, pixel + pixels * static_cast<std::uint64_t>(round));
+                    Rng rng(seed, purpose, pixel + pixels * static_cast<std::uint64_t>(first_round + round));
                     const double u0 = rng.next(), u1 = rng.next();
                     const Vec2 centre(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
                     film.add(x, y, sample(window.to_window(centre + filter.sample_offset(u0, u1)), rng));

@@ -15,10 +15,11 @@ RenderResult render(Scene& scene, const Settings& settings, const RunContext& co
     const UserPaths paths = bind_user_paths(scene, user_paths);
     if (settings.method == "path") return render_path(scene, settings, context);
     if (settings.method == "mlt") return render_mlt(scene, settings, paths, context);
-    if (settings.method == "mps") return render_mps(scene, settings, paths, context);
     if (settings.method == "bdpt") return render_bdpt(scene, settings, context);
     if (settings.method == "pssmlt" || settings.method == "mmlt" || settings.method == "rjmlt")
         return render_primary(scene, settings, context);
+    for (const char* method : {"auto", "mps", "ipm", "pm"})
+        if (settings.method == method) return render_photons(scene, settings, paths, context);
     throw InputError("unknown method '" + settings.method + "'");
 }
 

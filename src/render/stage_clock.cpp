@@ -2,6 +2,7 @@
 
 #include "scene/ray_counter.h"
 
+#include <algorithm>
 #include <ctime>
 
 namespace keyhole {
@@ -22,7 +23,11 @@ StageClock::StageClock(RenderStats& stats, std::string name)
 
 StageClock::~StageClock() {
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start_;
-    stats_.stages.push_back({name_, wall.count(), cpu_seconds() - cpu_, rays_traced() - rays_});
+    auto stage = std::ranges::find(stats_.stages, name_, &StageStats::name);
+    if (stage == stats_.stages.end()) stage = stats_.stages.insert(stage, {name_, 0, 0, 0});
+    stage->wall_seconds += wall.count();
+    stage->cpu_seconds += cpu_seconds() - cpu_;
+    stage->rays += rays_traced() - rays_;
 }
 
 } // namespace keyhole

@@ -8,7 +8,7 @@
 
 namespace keyhole {
 
-/// Appends a line to the statistics when it goes out of scope.
+/// Adds to the line of its name in the statistics when it goes out of scope.
 class StageClock {
   public:
     StageClock(RenderStats& stats, std::string name);

@@ -1,6 +1,7 @@
 #include "sampling/brightness.h"
 
 #include "core/parallel.h"
+#include "sampling/image_lattice.h"
 #include "scene/ray_counter.h"
 
 #include <algorithm>
@@ -12,19 +13,10 @@ namespace {
 
 constexpr std::int64_t kBlock = 64 * StageOne::kGroup;
 
-/// Image point of sample i: a rank-1 lattice (Roberts' R2), shifted by the seed, covers the window evenly at any count.
-Vec2 image_point(std::uint64_t seed, StreamPurpose purpose, std::int64_t i) {
-    Rng shift(seed, purpose, ~0ULL);
-    const auto k = static_cast<double>(i);
-    const double x = shift.next() + k * 0.7548776662466927, y = shift.next() + k * 0.5698402909980532;
-    return {std::min(static_cast<float>(x - std::floor(x)), 0x1.fffffep-1f),
-            std::min(static_cast<float>(y - std::floor(y)), 0x1.fffffep-1f)};
-}
-
 void trace_sample(const Scene& scene, const StageOneSettings& settings, Technique technique, std::int64_t i,
                   auto& sink) {
     Rng rng(settings.seed, StreamPurpose::brightness, static_cast<std::uint64_t>(i));
-    trace_independent(technique, scene, image_point(settings.seed, StreamPurpose::brightness, i),
+    trace_independent(technique, scene, lattice_image_point(settings.seed, StreamPurpose::brightness, i),
                       settings.max_scatterings, settings.set, rng, sink);
 }
 
@@ -98,28 +90,6 @@ Technique choose_technique(const Scene& scene, const StageOneSettings& settings)
     return cost[0] <= cost[1] ? Technique::path : Technique::bidirectional;
 }
 
-/// The importons of one eye path.
-void trace_importons(const Scene& scene, const Vec2& image, int max_scatterings, SampleSource& source,
-                     Importance& out) {
-    Vertex v = sample_eye(scene, source);
-    Vec3 w = scene.camera().ray_direction(v.point, image);
-    Rgb throughput(1.0);
-    int finite = 0;
-    for (int i = 0; i < max_scatterings && finite < 2; ++i) {
-        const auto hit = next_vertex(scene, v, w);
-        if (!hit || hit->point.site != Site::surface) return;
-        throughput *= scene.transmittance(v.point, hit->point);
-        v = *hit;
-        if (v.bsdf.traits().finite)
-            (finite == 0 ? out.first : out.second).push_back({v.point.p, v.point.ng, -w, throughput});
-        const auto next = continue_walk(v, -w, From::eye, source);
-        if (!next) return;
-        finite += is_specular(next->event) ? 0 : 1;
-        throughput *= next->weight;
-        w = next->w;
-    }
-}
-
 } // namespace
 
 StageOne run_stage_one(const Scene& scene, const StageOneSettings& settings, const RunContext& context) {
@@ -146,31 +116,6 @@ StageOne run_stage_one(const Scene& scene, const StageOneSettings& settings, con
     }
     stage.samples = static_cast<std::int64_t>(stage.brightness.count());
     return stage;
-}
-
-Importance trace_importance(const Scene& scene, int max_scatterings, std::int64_t samples, std::uint64_t seed,
-                            const RunContext& context) {
-    const std::int64_t blocks = (samples + kBlock - 1) / kBlock;
-    std::vector<Importance> parts(static_cast<std::size_t>(blocks));
-    context.begin("importance", static_cast<std::uint64_t>(samples), "paths");
-    parallel_for(blocks, [&](std::int64_t b) {
-        const Range range{b * kBlock, std::min(samples, (b + 1) * kBlock)};
-        for (std::int64_t i = range.begin; i < range.end; ++i) {
-            Rng rng(seed, StreamPurpose::importance, static_cast<std::uint64_t>(i));
-            trace_importons(scene, image_point(seed, StreamPurpose::importance, i), max_scatterings, rng,
-                            parts[static_cast<std::size_t>(b)]);
-        }
-        context.advance(static_cast<std::uint64_t>(range.size()));
-    });
-    context.end();
-    Importance all;
-    all.samples = samples;
-    for (Importance& part : parts) {
-        all.first.insert(all.first.end(), part.first.begin(), part.first.end());
-        all.second.insert(all.second.end(), part.second.begin(), part.second.end());
-        part = {};
-    }
-    return all;
 }
 
 std::vector<Path> choose_seeds(const Scene& scene, const StageOneSettings& settings, const StageOne& stage,

@@ -1,4 +1,4 @@
-// Stage one: the mean luminance B_eye of what stage two samples, seeds for its chains, and importance.
+// Stage one: the mean luminance B_eye of what stage two samples, and seeds for its chains.
 #pragma once
 
 #include "core/progress.h"
@@ -10,21 +10,6 @@
 #include <vector>
 
 namespace keyhole {
-
-/// Importance that arrived at a surface from the eye; the adjoint of a photon. `weight` is RGB throughput from a window
-/// of density 1, so that the mean over samples of a sum over importons is an integral over eye sides.
-struct Importon {
-    Vec3 position;
-    Vec3 ng;     ///< unit geometric normal, of either orientation
-    Vec3 to_eye; ///< unit
-    Rgb weight;
-};
-
-/// Importons at the first and second non-specular vertex seen.
-struct Importance {
-    std::int64_t samples = 0; ///< eye paths that were traced for them
-    std::vector<Importon> first, second;
-};
 
 struct StageOneSettings {
     PathSet set = PathSet::stored;
@@ -46,10 +31,6 @@ struct StageOne {
 
 /// Independent paths over the window, by whichever technique needs less work for the same error here.
 StageOne run_stage_one(const Scene& scene, const StageOneSettings& settings, const RunContext& context);
-
-/// Traces `samples` eye paths as far as their second non-specular vertex. Reproducible on any number of threads.
-Importance trace_importance(const Scene& scene, int max_scatterings, std::int64_t samples, std::uint64_t seed,
-                            const RunContext& context);
 
 /// `count` of the traced paths, drawn with probability proportional to the luminance of their contributions by
 /// systematic resampling, traced again from their random streams. Empty if no path found light.

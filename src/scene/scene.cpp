@@ -109,6 +109,13 @@ void Scene::prepare_emitters() {
         powers.push_back(emitters_[i]->power());
         if (is_environment(*emitters_[i])) environment_ = i;
     }
+    // By power, with a floor: a strong light must not starve weak ones, which may stand nearer.
+    double total = 0, shining = 0;
+    for (const double p : powers) {
+        total += p;
+        shining += p > 0 ? 1 : 0;
+    }
+    for (double& p : powers) p += p > 0 ? 0.1 * total / shining : 0.0;
     emitter_distribution_ = EmitterDistribution(powers);
     light_tree_ = LightTree(emitters_, emitter_distribution_, bounding_sphere());
 }

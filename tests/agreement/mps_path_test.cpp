@@ -17,6 +17,7 @@ TEST_P(Mps_AgreesWithPathTracing, BlockByBlock) {
     path.spp = 48;
     path.seed = 1000;
     Settings mps;
+    mps.method = "mps";
     mps.spp = 4;
     mps.brightness_samples = 400'000;
     mps.mutations = 1'000'000;

@@ -18,6 +18,7 @@ TEST_P(Picture_IsTheSameOnAnyNumberOfThreads, BitForBit) {
     settings.importons = 20'000;
     settings.chains = 100;
     settings.mutations = 50'000;
+    settings.light_paths = 20'000;
     settings.photons = 10'000; // fewer than the chains would store: the ceiling is part of the test
     std::vector<Picture> pictures;
     for (const int threads : {1, 2, 3}) {
@@ -32,7 +33,7 @@ TEST_P(Picture_IsTheSameOnAnyNumberOfThreads, BitForBit) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, Picture_IsTheSameOnAnyNumberOfThreads,
-                         testing::Values("mps", "mlt", "path", "bdpt", "pssmlt", "mmlt", "rjmlt"),
+                         testing::Values("mps", "ipm", "pm", "mlt", "path", "bdpt", "pssmlt", "mmlt", "rjmlt"),
                          [](const auto& info) { return std::string(info.param); });
 
 } // namespace

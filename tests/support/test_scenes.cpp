@@ -131,6 +131,15 @@ std::unique_ptr<Scene> point_light_box() {
     return m.build();
 }
 
+std::unique_ptr<Scene> glass_wall_box() {
+    SceneMaker m = box_shell(make_diffuse(Rgb(0.2, 0.4, 0.7)));
+    add_light(m);
+    const auto glass = make_glass(1.5);
+    m.rectangle({-1, 0, 0.8f}, {0, 2, 0}, {2, 0, 0}, glass); // faces away from the eye
+    m.rectangle({-1, 0, 0.9f}, {2, 0, 0}, {0, 2, 0}, glass);
+    return m.build();
+}
+
 std::unique_ptr<Scene> furnace(double rho) {
     SceneMaker m;
     m.room({-1, -1, -1}, {1, 1, 1}, make_diffuse(Rgb(rho)), Rgb(1.0));

@@ -39,6 +39,9 @@ std::unique_ptr<Scene> mirror_glass_box(float lens_radius = 0);
 /// diffuse_box() lit by a point light.
 std::unique_ptr<Scene> point_light_box();
 
+/// diffuse_box() with a pane of glass across it, between its light at the rear and the eye.
+std::unique_ptr<Scene> glass_wall_box();
+
 /// Closed box of albedo `rho` whose walls all emit 1 W/(m^2 sr): radiance is 1 / (1 - rho) everywhere.
 std::unique_ptr<Scene> furnace(double rho);
 

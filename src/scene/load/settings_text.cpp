@@ -28,6 +28,13 @@ std::optional<std::int64_t> parse_whole(std::string_view text) {
         if (text.back() == 'M') factor = 1e6;
         if (text.back() == 'G') factor = 1e9;
         if (factor > 1) text.remove_suffix(1);
+        // KiB, MiB, GiB
+        if (text.size() > 3 && text.substr(text.size() - 2) == "iB") {
+            const auto unit = std::string_view("KMG").find(text[text.size() - 3]);
+            if (unit == std::string_view::npos) return std::nullopt;
+            factor = std::ldexp(1.0, 10 * (static_cast<int>(unit) + 1));
+            text.remove_suffix(3);
+        }
     }
     const auto x = parse_all<double>(text);
     if (!x) return std::nullopt;

@@ -15,7 +15,7 @@ struct SettingError {
 };
 
 /// Sets one setting, checked against visit_settings(). Whole numbers may be written 1e6 or with k, M or G for powers of
-/// a thousand. Leaves `settings` as they are on an error.
+/// a thousand, KiB, MiB or GiB for powers of 1024. Leaves `settings` as they are on an error.
 std::optional<SettingError> set_setting(Settings& settings, const std::string& key, const std::string& value);
 
 /// Applies one `key=value`. @throws InputError with what was found and what was expected.

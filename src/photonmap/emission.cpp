@@ -1,0 +1,173 @@
+#include "photonmap/emission.h"
+
+#include "core/parallel.h"
+#include "sampling/light_tracer.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace keyhole {
+namespace {
+
+/// What decides whether a photon is kept: importance where it is known, a small multiple of power elsewhere.
+struct Weighing {
+    EmissionGuide guide;
+    double unknown_scale = 0; ///< weight of a photon of unknown importance over the luminance of its power
+
+    struct Weight {
+        double value;
+        bool known;
+    };
+    Weight operator()(PhotonKind kind, const Vertex& v, const Vec3& to_light, const Rgb& power) const {
+        const ImportanceGuide* map = kind == PhotonKind::global ? guide.global : guide.caustic;
+        if (map == nullptr) return {1, true};
+        if (const auto visible = map->visible_power(v, to_light, power)) return {*visible, true};
+        return {luminance(power) * unknown_scale, false};
+    }
+};
+
+/// Photons of a block of paths, and what the weighing of later ones learns from them.
+struct Block {
+    PhotonBuffer global, caustic;
+    double known_global = 0, known_caustic = 0; ///< weight
+    double unknown = 0;                         ///< luminance of power
+    std::uint64_t arrivals = 0;
+
+    void learn(const Block& o) {
+        known_global += o.known_global;
+        known_caustic += o.known_caustic;
+        unknown += o.unknown;
+        arrivals += o.arrivals;
+    }
+    /// Photons of unknown importance together weigh a twentieth of the others: few enough to cost little, enough for
+    /// none to become an outlier where the guide is wrong.
+    double unknown_scale() const {
+        const double known = known_global + known_caustic;
+        return known > 0 && unknown > 0 ? 0.05 * known / unknown : 1.0;
+    }
+};
+
+/// Receives the arrivals of one light path after the other.
+class Collector {
+  public:
+    Collector(const Weighing& weighing, double global_threshold, double caustic_threshold, int max_scatterings)
+        : weighing_(weighing), global_threshold_(global_threshold), caustic_threshold_(caustic_threshold),
+          max_scatterings_(max_scatterings) {}
+
+    void begin(Rng& rng) {
+        rng_ = &rng;
+        arrivals_ = 0;
+    }
+
+    bool arrival(const Vertex& v, const Vec3& to_light, const Rgb& power, bool specular_only) {
+        ++arrivals_;
+        if (!v.bsdf.traits().finite) return true;
+        // From d2 light still has to be scattered at d1.
+        if (arrivals_ > 1 && arrivals_ < max_scatterings_) store(PhotonKind::global, v, to_light, power);
+        if (specular_only) store(PhotonKind::caustic, v, to_light, power);
+        return true;
+    }
+
+    Block block;
+
+  private:
+    void store(PhotonKind kind, const Vertex& v, const Vec3& to_light, const Rgb& power) {
+        if (!(luminance(power) > 0)) return;
+        const bool global = kind == PhotonKind::global;
+        const auto [weight, known] = weighing_(kind, v, to_light, power);
+        ++block.arrivals;
+        (!known   ? block.unknown
+         : global ? block.known_global
+                  : block.known_caustic) += known ? weight : luminance(power);
+        const double kept = roulette(weight, global ? global_threshold_ : caustic_threshold_, *rng_);
+        if (!(kept > 0)) return;
+        PhotonBuffer& buffer = global ? block.global : block.caustic;
+        buffer.photons.emplace_back(v.point.p, v.point.ng, to_light, power / weight);
+        buffer.weights.push_back(static_cast<float>(kept));
+    }
+
+    Weighing weighing_;
+    double global_threshold_, caustic_threshold_;
+    int max_scatterings_;
+    Rng* rng_ = nullptr;
+    int arrivals_ = 0;
+};
+
+constexpr std::int64_t kBlock = 64;   // paths
+constexpr std::int64_t kPilot = 8192; // paths
+
+Block trace_block(const Scene& scene, const EmissionOptions& options, Range paths, Collector collector) {
+    for (std::int64_t i = paths.begin; i < paths.end; ++i) {
+        Rng rng(options.seed, StreamPurpose::emission, static_cast<std::uint64_t>(i));
+        collector.begin(rng);
+        trace_light_path(scene, options.max_scatterings, rng, collector);
+    }
+    return std::move(collector.block);
+}
+
+/// Traces a range of paths in blocks, in parallel.
+std::vector<Block> trace_blocks(const Scene& scene, const EmissionOptions& options, Range paths,
+                                const Collector& collector) {
+    std::vector<Block> blocks(static_cast<std::size_t>((paths.size() + kBlock - 1) / kBlock));
+    parallel_for(static_cast<std::int64_t>(blocks.size()), [&](std::int64_t b) {
+        const std::int64_t begin = paths.begin + b * kBlock;
+        blocks[static_cast<std::size_t>(b)] =
+            trace_block(scene, options, {begin, std::min(begin + kBlock, paths.end)}, collector);
+    });
+    return blocks;
+}
+
+/// Weights of the first paths; nothing is stored.
+Block learn_from_pilot(const Scene& scene, const EmissionGuide& guide, const EmissionOptions& options) {
+    const double never = std::numeric_limits<double>::infinity();
+    Block sum;
+    for (const Block& b : trace_blocks(scene, options, {0, std::min(kPilot, options.paths)},
+                                       Collector({guide, 1}, never, never, options.max_scatterings)))
+        sum.learn(b);
+    sum.arrivals = 0;
+    return sum;
+}
+
+} // namespace
+
+double caustic_share(const Scene& scene, const EmissionGuide& guide, const EmissionOptions& options) {
+    if (!scene.traits().delta) return 0;
+    const Block pilot = learn_from_pilot(scene, guide, options);
+    const double all = pilot.known_global + pilot.known_caustic;
+    return all > 0 ? std::clamp(pilot.known_caustic / all, 0.02, 0.98) : 0.5;
+}
+
+EmittedPhotons emit_photons(const Scene& scene, const EmissionGuide& guide, const EmissionOptions& options,
+                            const RunContext& context) {
+    EmittedPhotons out;
+    if (scene.emitter_distribution().empty()) return out;
+    PhotonStore global(options.global_photons, 0, Rng(options.seed, StreamPurpose::thinning, 0));
+    PhotonStore caustic(options.caustic_photons, 0, Rng(options.seed, StreamPurpose::thinning, 1));
+    Block learnt = learn_from_pilot(scene, guide, options);
+
+    // In rounds, so that buffers stay small beside the stores, and thresholds follow what is stored.
+    const auto photons = static_cast<std::int64_t>(options.global_photons + options.caustic_photons);
+    const std::int64_t round = std::clamp<std::int64_t>(photons / 32 / kBlock, 4, 512) * kBlock;
+    context.begin("photons", static_cast<std::uint64_t>(options.paths), "light paths");
+    while (out.paths < options.paths && !(context.stopped() && out.paths > 0)) {
+        const Range range{out.paths, std::min(options.paths, out.paths + round)};
+        const Weighing weighing{guide, learnt.unknown_scale()};
+        const Collector collector(weighing, global.threshold(), caustic.threshold(), options.max_scatterings);
+        for (Block& b : trace_blocks(scene, options, range, collector)) {
+            global.absorb(b.global);
+            caustic.absorb(b.caustic);
+            learnt.learn(b);
+        }
+        out.paths = range.end;
+        context.advance(static_cast<std::uint64_t>(range.size()));
+    }
+    context.end();
+    out.arrivals = learnt.arrivals;
+    const double scale = 1 / static_cast<double>(out.paths);
+    out.bytes = global.bytes() + caustic.bytes();
+    out.global = global.release(scale);
+    out.caustic = caustic.release(scale);
+    return out;
+}
+
+} // namespace keyhole

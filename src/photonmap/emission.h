@@ -1,0 +1,47 @@
+// Photons by light tracing: standard photon mapping (Jensen 2001), or emission with importance storing.
+#pragma once
+
+#include "core/progress.h"
+#include "photonmap/importance_guide.h"
+#include "photonmap/photon_store.h"
+#include "scene/scene.h"
+
+#include <cstdint>
+
+namespace keyhole {
+
+struct EmissionOptions {
+    std::int64_t paths;          ///< light paths traced
+    std::size_t global_photons;  ///< ceiling for the global map
+    std::size_t caustic_photons; ///< ceiling for the caustic map
+    int max_scatterings = 24;
+    std::uint64_t seed;
+};
+
+/// Where emitted photons are worth storing; null members: everywhere alike.
+struct EmissionGuide {
+    const ImportanceGuide* global = nullptr;  ///< at d2
+    const ImportanceGuide* caustic = nullptr; ///< at d1
+};
+
+struct EmittedPhotons : Photons {
+    std::int64_t paths = 0;
+    std::uint64_t arrivals = 0; ///< photons that could have been stored
+    std::size_t bytes = 0;      ///< of the stores
+};
+
+/// Traces light paths and stores a photon at every vertex where a map can be asked (MATHEMATICS: "emission"): in the
+/// global map unless light came straight from the emitter, and, if it came through specular vertices only, in the
+/// caustic map as well; each map is complete by itself.
+///
+/// With a guide a photon is kept with probability min(1, Y(Phi E) / t), and weighed by the reciprocal (after Keller and
+/// Wald 2000); t follows from the ceilings. E decides what is kept and nothing else: its errors bias no expectation.
+/// Where E is unknown photons share a small part of the store by their power. Reproducible on any number of threads.
+EmittedPhotons emit_photons(const Scene& scene, const EmissionGuide& guide, const EmissionOptions& options,
+                            const RunContext& context);
+
+/// The share of the importance of all photons, or of their number without a guide, that the caustic map gets. From the
+/// first few thousand of the same paths.
+double caustic_share(const Scene& scene, const EmissionGuide& guide, const EmissionOptions& options);
+
+} // namespace keyhole

@@ -1,0 +1,32 @@
+// The eye's side of a stored photon: how light goes on from d2 to the eye.
+#pragma once
+
+#include "core/rng.h"
+#include "sampling/path.h"
+#include "scene/scene.h"
+
+#include <cstdint>
+#include <optional>
+
+namespace keyhole {
+
+/// 1 / Y(flux * rest), where `rest` is what the contribution of a measured path has from vertex d2 on: the literal
+/// factor of a photon of RGB `flux` at d2 (MPS 3.2). 0 where that isn't finite.
+double literal_factor(const Path& path, int d2, const Rgb& flux);
+
+/// Density with which sample_eye_side() draws the eye's side of a measured path from vertex d2 on, in the coordinates
+/// of the path. 0 where it never does: the eye sees d1 through specular vertices.
+double eye_side_density(const Path& path, int d2);
+
+/// Draws an eye side from `d2`, which light reaches from `to_light`: scattering and specular vertices as far as d1, and
+/// a straight edge to the eye. Whether that is a path that carries light, with at most `max_scatterings` vertices
+/// between d2 and the eye.
+bool sample_eye_side(const Scene& scene, const Vertex& d2, const Vec3& to_light, int max_scatterings,
+                     SampleSource& source);
+
+/// The number of draws until one carries light: its expectation is the reciprocal of the probability of that (Booth
+/// 2007; Zeltner et al. 2020). None after `most` draws.
+std::optional<std::int64_t> draws_until_valid(const Scene& scene, const Vertex& d2, const Vec3& to_light,
+                                              int max_scatterings, std::int64_t most, SampleSource& source);
+
+} // namespace keyhole

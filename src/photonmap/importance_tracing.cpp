@@ -1,0 +1,70 @@
+#include "photonmap/importance_tracing.h"
+
+#include "core/parallel.h"
+#include "sampling/image_lattice.h"
+#include "sampling/walk.h"
+
+#include <algorithm>
+#include <array>
+
+namespace keyhole {
+namespace {
+
+/// The importons of one eye path.
+void trace_importons(const Scene& scene, const Vec2& image, const ImportanceTracing& options, SampleSource& source,
+                     Importons& out) {
+    Vertex v = sample_eye(scene, source);
+    Vec3 w = scene.camera().ray_direction(v.point, image);
+    Rgb throughput(1.0 / static_cast<double>(options.samples));
+    int finite = 0;
+    for (int i = 0; i < options.max_scatterings && finite < 2; ++i) {
+        const auto hit = next_vertex(scene, v, w);
+        if (!hit || hit->point.site != Site::surface) return;
+        throughput *= scene.transmittance(v.point, hit->point);
+        v = *hit;
+        if (v.bsdf.traits().finite && (finite == 1 || options.at_d1))
+            (finite == 0 ? out.first : out.second).emplace_back(v.point.p, v.point.ng, -w, throughput);
+        const auto next = continue_walk(v, -w, From::eye, source);
+        if (!next) return;
+        finite += is_specular(next->event) ? 0 : 1;
+        throughput *= next->weight;
+        w = next->w;
+    }
+}
+
+void append(std::vector<Photon>& from, std::vector<Photon>& to) {
+    to.insert(to.end(), from.begin(), from.end());
+    from.clear();
+}
+
+} // namespace
+
+Importons trace_importance(const Scene& scene, const ImportanceTracing& options, const RunContext& context) {
+    constexpr std::int64_t kBlock = 512, kBlocks = 64;
+    std::array<Importons, kBlocks> parts;
+    Importons all;
+    // A vertex with a finite and a specular part may leave several importons at its image's path: rare enough for the
+    // vectors to grow then.
+    all.second.reserve(static_cast<std::size_t>(options.samples));
+    if (options.at_d1) all.first.reserve(static_cast<std::size_t>(options.samples));
+    context.begin("importance", static_cast<std::uint64_t>(options.samples), "paths");
+    for (std::int64_t begin = 0; begin < options.samples; begin += kBlock * kBlocks) {
+        parallel_for(kBlocks, [&](std::int64_t b) {
+            const std::int64_t first = begin + b * kBlock, end = std::min(options.samples, first + kBlock);
+            for (std::int64_t i = first; i < end; ++i) {
+                Rng rng(options.seed, StreamPurpose::importance, static_cast<std::uint64_t>(i));
+                trace_importons(scene, lattice_image_point(options.seed, StreamPurpose::importance, i), options, rng,
+                                parts[static_cast<std::size_t>(b)]);
+            }
+        });
+        for (Importons& part : parts) {
+            append(part.first, all.first);
+            append(part.second, all.second);
+        }
+        context.advance(static_cast<std::uint64_t>(std::min(kBlock * kBlocks, options.samples - begin)));
+    }
+    context.end();
+    return all;
+}
+
+} // namespace keyhole

@@ -1,0 +1,31 @@
+// Importons: the importance that eye paths bring to the surfaces where photon maps are asked.
+#pragma once
+
+#include "core/progress.h"
+#include "photonmap/photon.h"
+#include "scene/scene.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace keyhole {
+
+struct ImportanceTracing {
+    std::int64_t samples; ///< eye paths
+    bool at_d1 = true;    ///< whether importons at the first non-specular vertex are wanted as well
+    int max_scatterings = 24;
+    std::uint64_t seed;
+};
+
+/// Importons, the adjoint of photons: `power` is RGB throughput from a window of density 1, over the number of eye
+/// paths, so that a sum over importons is an integral over eye sides; `direction` leads towards the eye's side.
+struct Importons {
+    std::vector<Photon> first;  ///< at d1
+    std::vector<Photon> second; ///< at d2
+};
+
+/// Traces eye paths as far as their second non-specular vertex. Takes no more memory than the result, and a little.
+/// Reproducible on any number of threads.
+Importons trace_importance(const Scene& scene, const ImportanceTracing& options, const RunContext& context);
+
+} // namespace keyhole

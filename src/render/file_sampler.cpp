@@ -1,0 +1,29 @@
+// Photons from a file.
+#include "core/error.h"
+#include "render/photon_file.h"
+#include "render/photon_sampler.h"
+
+namespace keyhole {
+namespace {
+
+class FileSampler final : public PhotonSampler {
+  public:
+    explicit FileSampler(const SamplerContext& context) : c_(context) {}
+
+    Photons sample(std::uint64_t /*seed*/, RenderStats& /*stats*/, const RunContext& /*context*/) override {
+        return load_photons(c_.settings.load_map, photon_file_key(c_.scene, c_.settings));
+    }
+
+  private:
+    SamplerContext c_;
+};
+
+} // namespace
+
+std::unique_ptr<PhotonSampler> make_file_sampler(const SamplerContext& context) {
+    if (context.settings.passes != 1)
+        throw InputError("a saved photon map is one pass: expected passes=1 with --load-map");
+    return std::make_unique<FileSampler>(context);
+}
+
+} // namespace keyhole

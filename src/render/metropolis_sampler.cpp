@@ -1,0 +1,145 @@
+// Metropolis photon sampling (Fan, Chenney, Lai 2005): stage one, and stage two as chains over whole paths.
+#include "photonmap/importance_tracing.h"
+#include "photonmap/photon_sampling.h"
+#include "render/chain_report.h"
+#include "render/memory_plan.h"
+#include "render/photon_sampler.h"
+#include "render/radii.h"
+#include "render/stage_clock.h"
+#include "sampling/proposals/registry.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace keyhole {
+namespace {
+
+/// Each photon weighs the same where it is asked, so the maps share the ceiling as they share the light. Either keeps
+/// a little where stage one may have missed its paths.
+std::size_t caustic_share(const StageOne& one, const Scene& scene, std::size_t photons) {
+    if (!scene.traits().delta) return 0;
+    const double share = one.caustic.mean() / one.brightness.mean();
+    return static_cast<std::size_t>(std::clamp(share, 0.02, 0.98) * static_cast<double>(photons));
+}
+
+void report_power(const PathDepositor::Tally& t, RenderStats& stats) {
+    stats.values["share of power without importance"] = t.total > 0 ? t.lost / t.total : 0;
+    // How unequal photons are: what the rule in force makes of them, and what MPS 3.2 would.
+    const auto variation = [](const RunningStats& s) { return s.mean() > 0 ? std::sqrt(s.variance()) / s.mean() : 0; };
+    stats.values["photon power, coefficient of variation"] = variation(t.power);
+    stats.values["photon power, coefficient of variation, literal"] = variation(t.literal_power);
+    stats.values["photons with power by drawing eye sides"] = static_cast<double>(t.untrusted);
+    stats.values["eye sides drawn"] = static_cast<double>(t.draws);
+}
+
+/// Adds the ledgers of a later pass.
+void add_ledger(std::vector<ProposalStats>& lines, const std::vector<ProposalStats>& more) {
+    for (std::size_t k = 0; k < more.size() && k < lines.size(); ++k) {
+        lines[k].proposed += more[k].proposed;
+        lines[k].zero += more[k].zero;
+        lines[k].nan += more[k].nan;
+        lines[k].rejected += more[k].rejected;
+        lines[k].accepted += more[k].accepted;
+        for (const auto& [reason, n] : more[k].failed) lines[k].failed[reason] += n;
+        lines[k].seconds += more[k].seconds;
+    }
+}
+
+PowerRule power_rule(const Settings& settings) {
+    return settings.power == "reciprocal" ? PowerRule::reciprocal
+           : settings.power == "literal"  ? PowerRule::literal
+                                          : PowerRule::marginal;
+}
+
+class MetropolisSampler final : public PhotonSampler {
+  public:
+    explicit MetropolisSampler(const SamplerContext& context)
+        : c_(context), rule_(power_rule(context.settings)),
+          set_(context.settings.paths == "all" ? PathSet::all : PathSet::stored) {}
+
+    Photons sample(std::uint64_t seed, RenderStats& stats, const RunContext& context) override {
+        const StageOneSettings first{.set = set_,
+                                     .max_scatterings = static_cast<int>(c_.settings.max_depth),
+                                     .samples = c_.settings.brightness_samples,
+                                     .seed = seed};
+        const StageOne one = brightness(first, stats, context);
+        if (!(one.brightness.mean() > 0)) return {};
+        const StageClock clock(stats, "photons");
+        return run_chains(first, one, stats, context);
+    }
+
+    void finish(RenderStats& stats) override { warn_of_brightness(stats, stopped_); }
+
+  private:
+    /// B of a pass is its own: passes are independent, and the mean over them has the error of all samples of B
+    /// together.
+    StageOne brightness(const StageOneSettings& settings, RenderStats& stats, const RunContext& context) {
+        StageOne one = measure_brightness(c_.scene, settings, stats, context);
+        stopped_ = one.samples < settings.samples;
+        brightness_.merge(one.brightness);
+        stats.brightness = brightness_.mean();
+        stats.brightness_error = brightness_.standard_error();
+        return one;
+    }
+
+    /// Chains from the seeds of stage one, photons with the power that the rule gives them.
+    Photons run_chains(const StageOneSettings& first, const StageOne& one, RenderStats& stats,
+                       const RunContext& context) {
+        const Settings& s = c_.settings;
+        const std::vector<Path> seeds = choose_seeds(c_.scene, first, one, s.chains);
+        const bool delta = c_.scene.traits().delta;
+        const MemoryPlan plan = plan_memory(s, ImportanceUse::beside, delta ? 2 : 1);
+        Importons importons = trace_importance(
+            c_.scene,
+            {.samples = plan.importons, .at_d1 = delta, .max_scatterings = first.max_scatterings, .seed = first.seed},
+            context);
+        const ImportanceOptions options{.k = 50, .max_radius = Radii(c_.scene).importance, .patches = &c_.patches};
+        const ImportanceMap at_d1(std::move(importons.first), options);
+        const ImportanceMap at_d2(std::move(importons.second), options);
+        stats.importons = at_d1.map().photons().size() + at_d2.map().photons().size();
+        stats.importon_bytes = at_d1.bytes() + at_d2.bytes();
+
+        const ChainMixtures mixtures({&c_.scene, set_, static_cast<int>(s.max_depth)}, s, c_.user_paths);
+        const std::size_t caustic = caustic_share(one, c_.scene, plan.photons);
+        SampledPhotons photons = sample_photons(seeds, mixtures.mixture,
+                                                {.global = &at_d2,
+                                                 .caustic = &at_d1,
+                                                 .rule = rule_,
+                                                 .scene = &c_.scene,
+                                                 .max_scatterings = static_cast<int>(s.max_depth)},
+                                                {.mutations = s.mutations,
+                                                 .global_photons = plan.photons - caustic,
+                                                 .caustic_photons = caustic,
+                                                 .brightness = one.brightness.mean(),
+                                                 .seed = first.seed,
+                                                 .control = mixtures.control_or_null()},
+                                                context);
+        stats.photon_bytes = std::max<std::uint64_t>(stats.photon_bytes, photons.bytes + stats.importon_bytes);
+        report_power(photons.tally, stats);
+        report(mixtures.mixture, photons.chains, stats);
+        return photons;
+    }
+
+    /// The first pass raises the alarms; the others add to the ledger.
+    void report(const Mixture<Path>& mixture, const ChainSummary& chains, RenderStats& stats) {
+        RenderStats pass;
+        report_chains(first_pass_ ? stats : pass, mixture, chains);
+        add_ledger(stats.proposals, pass.proposals);
+        first_pass_ = false;
+    }
+
+    SamplerContext c_;
+    PowerRule rule_;
+    PathSet set_;
+    RunningStats brightness_; // over all passes
+    bool stopped_ = false;    // in stage one
+    bool first_pass_ = true;
+};
+
+} // namespace
+
+std::unique_ptr<PhotonSampler> make_metropolis_sampler(const SamplerContext& context) {
+    return std::make_unique<MetropolisSampler>(context);
+}
+
+} // namespace keyhole

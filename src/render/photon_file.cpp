@@ -1,0 +1,112 @@
+#include "render/photon_file.h"
+
+#include "core/error.h"
+#include "core/hash.h"
+#include "film/atomic_file.h"
+#include "sampling/scene_hash.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <type_traits>
+
+namespace keyhole {
+namespace {
+
+constexpr std::array<char, 8> kMagic{'K', 'H', 'P', 'H', 'O', 'T', 'O', 'N'};
+constexpr std::uint32_t kVersion = 1; ///< to be raised whenever Photon, or what a map holds, changes
+constexpr std::uint32_t kByteOrder = 0x01020304;
+
+struct Header {
+    std::array<char, 8> magic = kMagic;
+    std::uint32_t byte_order = kByteOrder;
+    std::uint32_t version = kVersion;
+    std::uint64_t scene = 0;
+    std::int64_t max_scatterings = 0;
+    std::uint64_t global = 0, caustic = 0; ///< photons
+    std::uint64_t checksum = 0;
+};
+static_assert(std::is_trivially_copyable_v<Header> && sizeof(Header) == 56);
+
+[[noreturn]] void refuse(const std::string& path, const std::string& why) {
+    throw InputError(fmt::format("{}: {}", path, why));
+}
+
+void check(const std::string& path, const Header& found, const PhotonFileKey& key) {
+    if (found.magic != kMagic) refuse(path, "found no photon map, expected a file that --save-map wrote");
+    if (found.byte_order != kByteOrder) refuse(path, "found a photon map from a machine of another byte order");
+    if (found.version != kVersion)
+        refuse(path, fmt::format("found a photon map of version {}, expected version {}", found.version, kVersion));
+    if (found.scene != key.scene)
+        refuse(path, "found the photon map of another scene, camera included; expected that of the scene to render");
+    if (found.max_scatterings != key.max_scatterings)
+        refuse(path, fmt::format("found a photon map made with max_depth={}, expected max_depth={}",
+                                 found.max_scatterings, key.max_scatterings));
+}
+
+void append(std::vector<char>& bytes, const void* data, std::size_t size) {
+    const auto* begin = static_cast<const char*>(data);
+    bytes.insert(bytes.end(), begin, begin + size);
+}
+
+std::uint64_t checksum(const Photons& photons) {
+    Hash hash;
+    hash.add(photons.global);
+    hash.add(photons.caustic);
+    return hash.value();
+}
+
+std::vector<Photon> read_photons(std::ifstream& file, const std::string& path, std::uint64_t count) {
+    std::vector<Photon> photons(count, Photon({0, 0, 0}, {0, 0, 1}, {0, 0, 1}, Rgb(0.0)));
+    file.read(reinterpret_cast<char*>(photons.data()), static_cast<std::streamsize>(count * sizeof(Photon)));
+    if (!file) refuse(path, "cannot be read");
+    return photons;
+}
+
+} // namespace
+
+PhotonFileKey photon_file_key(const Scene& scene, const Settings& settings) {
+    return {scene_hash(scene), settings.max_depth};
+}
+
+void save_photons(const std::string& path, const PhotonFileKey& key, const Photons& photons) {
+    Header header;
+    header.scene = key.scene;
+    header.max_scatterings = key.max_scatterings;
+    header.global = photons.global.size();
+    header.caustic = photons.caustic.size();
+    header.checksum = checksum(photons);
+    std::vector<char> bytes;
+    bytes.reserve(sizeof header + (photons.global.size() + photons.caustic.size()) * sizeof(Photon));
+    append(bytes, &header, sizeof header);
+    append(bytes, photons.global.data(), photons.global.size() * sizeof(Photon));
+    append(bytes, photons.caustic.data(), photons.caustic.size() * sizeof(Photon));
+    write_file_atomically(path, bytes);
+}
+
+Photons load_photons(const std::string& path, const PhotonFileKey& key) {
+    std::ifstream file(path, std::ios::binary | std::ios::ate);
+    if (!file) refuse(path, fmt::format("cannot be opened: {}", std::strerror(errno)));
+    const auto size = static_cast<std::uint64_t>(file.tellg());
+    Header header;
+    if (size < sizeof header) refuse(path, "found no photon map, expected a file that --save-map wrote");
+    file.seekg(0);
+    file.read(reinterpret_cast<char*>(&header), sizeof header);
+    check(path, header, key);
+    const std::uint64_t most = (size - sizeof header) / sizeof(Photon);
+    if (header.global > most || header.caustic > most ||
+        size != sizeof header + (header.global + header.caustic) * sizeof(Photon))
+        refuse(path, fmt::format("found {} bytes where the header promises {} photons: the file is damaged", size,
+                                 header.global + header.caustic));
+    Photons photons;
+    photons.global = read_photons(file, path, header.global);
+    photons.caustic = read_photons(file, path, header.caustic);
+    if (checksum(photons) != header.checksum)
+        refuse(path, "the photons are not those that were saved: the file is damaged");
+    return photons;
+}
+
+} // namespace keyhole

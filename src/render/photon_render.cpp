@@ -1,0 +1,120 @@
+// The methods that render from photon maps: pass by pass a sampler, the maps, the gather.
+#include "film/pass_error.h"
+#include "gather/final_gather.h"
+#include "render/methods.h"
+#include "render/photon_file.h"
+#include "render/photon_sampler.h"
+#include "render/pixels.h"
+#include "render/radii.h"
+#include "render/sampler_trial.h"
+#include "render/stage_clock.h"
+
+#include <fmt/format.h>
+
+namespace keyhole {
+namespace {
+
+/// What `auto` stands for in this scene; says so.
+std::string choose_method(const SamplerContext& c, RenderStats& stats, const RunContext& context) {
+    const StageClock clock(stats, "trial of samplers");
+    const SamplerTrial trial = try_samplers(c, context);
+    const std::string method(trial.best());
+    const double better = std::min(trial.emission, trial.metropolis);
+    stats.remarks.push_back(
+        std::isfinite(better)
+            ? fmt::format("method {} chosen: for the same error ipm would need {:.2g} times the work, mps {:.2g} times",
+                          method, trial.emission / better, trial.metropolis / better)
+            : "method ipm chosen: no light that photon maps would hold was found in a trial");
+    return method;
+}
+
+std::unique_ptr<PhotonSampler> make_sampler(const SamplerContext& c, RenderStats& stats, const RunContext& context) {
+    if (!c.settings.load_map.empty()) return make_file_sampler(c);
+    const std::string method = c.settings.method == "auto" ? choose_method(c, stats, context) : c.settings.method;
+    if (method == "mps") return make_metropolis_sampler(c);
+    return make_emission_sampler(c, method == "ipm");
+}
+
+/// Passes have seeds of their own; the first has the render's.
+std::uint64_t seed_of_pass(std::uint64_t seed, std::int64_t pass) {
+    if (pass == 0) return seed;
+    Rng rng(seed, StreamPurpose::seed_choice, static_cast<std::uint64_t>(pass));
+    return static_cast<std::uint64_t>(rng.next() * 0x1p32) << 20 ^ static_cast<std::uint64_t>(rng.next() * 0x1p32);
+}
+
+/// Stage three: what the eye sees, from the photons of a pass. Returns whether it was completed.
+bool gather_pass(const SamplerContext& c, std::int64_t pass, Photons photons, Film& film, RenderStats& stats,
+                 const RunContext& context) {
+    const StageClock clock(stats, "gather");
+    const Settings& s = c.settings;
+    const Radii radii(c.scene, pass);
+    const PhotonMap global(std::move(photons.global)), caustic(std::move(photons.caustic));
+    IrradianceOptions estimates{.k = static_cast<int>(s.nearest),
+                                .max_radius = radii.global,
+                                .shrink = radii.shrink,
+                                .patches = &c.patches,
+                                .scene = &c.scene};
+    // An estimate made beforehand is asked from a little way off. Once regions get as small as that, each is made where
+    // it is asked.
+    const bool beforehand =
+        static_cast<float>(s.nearest) * radii.shrink * radii.shrink > 2.0f * static_cast<float>(estimates.stride);
+    const std::optional<IrradianceMap> irradiance =
+        beforehand ? std::optional<IrradianceMap>(std::in_place, global, estimates, context) : std::nullopt;
+    stats.photons_global = global.photons().size();
+    stats.photons_caustic = caustic.photons().size();
+    stats.photon_bytes = std::max<std::uint64_t>(stats.photon_bytes, global.bytes() + caustic.bytes() +
+                                                                         (irradiance ? irradiance->bytes() : 0));
+    if (irradiance) stats.values["photons per lookup"] = irradiance->mean_photons();
+
+    const GatherMaps maps{.global = global.photons().empty() ? nullptr : &global,
+                          .irradiance = irradiance ? &*irradiance : nullptr,
+                          .caustic = caustic.photons().empty() ? nullptr : &caustic,
+                          .patches = &c.patches};
+    const FinalGather gather(c.scene, maps,
+                             {.rays = static_cast<int>(s.gather_rays),
+                              .nearest = static_cast<int>(s.nearest),
+                              .max_radius = radii.global,
+                              .caustic_radius = radii.caustic,
+                              .shrink = radii.shrink,
+                              .max_scatterings = static_cast<int>(s.max_depth)});
+    const auto rounds = sample_pixels(
+        c.scene, film, s.spp, static_cast<std::uint64_t>(s.seed), StreamPurpose::gather, "gather", context,
+        [&](const Vec2& image, SampleSource& source) { return gather.sample(image, source); }, pass * s.spp);
+    return rounds == s.spp;
+}
+
+} // namespace
+
+RenderResult render_photons(const Scene& scene, const Settings& settings, const UserPaths& paths,
+                            const RunContext& context) {
+    RenderResult result;
+    RenderStats& stats = result.stats;
+    const SurfacePatches patches(scene.shapes());
+    const SamplerContext c{scene, settings, patches, paths};
+    const auto sampler = make_sampler(c, stats, context);
+    Film film(scene.camera().window().width, scene.camera().window().height);
+    PassError error;
+    std::int64_t pass = 0;
+    for (bool done = false; !done;) {
+        Photons photons =
+            sampler->sample(seed_of_pass(static_cast<std::uint64_t>(settings.seed), pass), stats, context);
+        if (pass == 0 && !settings.save_map.empty())
+            save_photons(settings.save_map, photon_file_key(scene, settings), photons);
+        // The photons of a pass that was cut short are good for a first picture, not for one that is there.
+        if (pass > 0 && context.stopped()) break;
+        const bool whole = gather_pass(c, pass, std::move(photons), film, stats, context);
+        pass += whole ? 1 : 0;
+        error.add(film);
+        done = !whole || pass == settings.passes || (pass >= 4 && error.relative() <= settings.target_error);
+    }
+    // With a time or an error to go for, there is no number of passes that would be all of them.
+    stats.complete = settings.passes > 0 && settings.target_error == 0 ? pass == settings.passes : pass > 0;
+    stats.values["passes"] = static_cast<double>(pass);
+    if (pass > 1) stats.values["relative error"] = error.relative();
+    sampler->finish(stats);
+    film.report(stats);
+    result.picture = film.to_picture();
+    return result;
+}
+
+} // namespace keyhole

@@ -1,0 +1,46 @@
+// What the methods that render from photon maps differ in.
+#pragma once
+
+#include "core/progress.h"
+#include "core/render_stats.h"
+#include "core/settings.h"
+#include "photonmap/photon_store.h"
+#include "photonmap/surface_patches.h"
+#include "sampling/user_paths.h"
+#include "scene/scene.h"
+
+#include <memory>
+
+namespace keyhole {
+
+/// Stages one and two of a pass: everything up to the photons. Called for one pass after the other.
+class PhotonSampler {
+  public:
+    virtual ~PhotonSampler() = default;
+
+    /// The photons of a pass that are independent of those of other passes. `seed` is that of the pass. Adds what it
+    /// did to `stats`.
+    virtual Photons sample(std::uint64_t seed, RenderStats& stats, const RunContext& context) = 0;
+    /// Says what the last pass leaves to be said.
+    virtual void finish(RenderStats& /*stats*/) {}
+};
+
+/// What a sampler works with. All must outlive it.
+struct SamplerContext {
+    const Scene& scene;
+    const Settings& settings;
+    const SurfacePatches& patches;
+    const UserPaths& user_paths; ///< for chains
+};
+
+/// Metropolis photon sampling: Fan, Chenney, Lai 2005.
+std::unique_ptr<PhotonSampler> make_metropolis_sampler(const SamplerContext& context);
+
+/// The photons of settings.load_map. sample() throws InputError if the file isn't for this scene.
+/// @throws InputError if more than one pass is asked for.
+std::unique_ptr<PhotonSampler> make_file_sampler(const SamplerContext& context);
+
+/// Light tracing: standard photon mapping (Jensen 2001), or storing by importance.
+std::unique_ptr<PhotonSampler> make_emission_sampler(const SamplerContext& context, bool by_importance);
+
+} // namespace keyhole

@@ -1,0 +1,135 @@
+#include "render/sampler_trial.h"
+
+#include "core/parallel.h"
+#include "core/statistics.h"
+#include "photonmap/importance_guide.h"
+#include "photonmap/importance_tracing.h"
+#include "render/radii.h"
+#include "sampling/brightness.h"
+#include "sampling/chain.h"
+#include "sampling/light_tracer.h"
+#include "sampling/proposals/registry.h"
+#include "scene/ray_counter.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace keyhole {
+namespace {
+
+constexpr std::int64_t kImportons = 50'000, kLightPaths = 32'768, kBrightnessSamples = 32'768;
+constexpr std::int64_t kChains = 256, kSteps = 128;
+
+/// What a mutation does besides tracing rays, measuring paths in the main, costs as much as several rays of light
+/// tracing.
+constexpr double kMutationRay = 3;
+
+constexpr int kCells = 4; // along each axis
+constexpr std::size_t kParts = kCells * kCells * kCells;
+using Shares = std::array<double, kParts>;
+
+/// The part of the scene that a point lies in: equal cells of its bounding box.
+std::size_t part(const Scene& scene, const Vec3& p) {
+    std::size_t index = 0;
+    for (int k = 0; k < 3; ++k) {
+        const float extent = scene.upper()[k] - scene.lower()[k];
+        const float x = extent > 0 ? (p[k] - scene.lower()[k]) / extent : 0.0f;
+        index = index * kCells + static_cast<std::size_t>(std::clamp(static_cast<int>(x * kCells), 0, kCells - 1));
+    }
+    return index;
+}
+
+/// Variance of the parts' shares from one sample to the next, summed, over the square of the total.
+double relative_variance(const std::vector<Shares>& samples) {
+    std::array<RunningStats, kParts> parts;
+    for (const Shares& s : samples)
+        for (std::size_t r = 0; r < kParts; ++r) parts[r].add(s[r]);
+    double variance = 0, total = 0;
+    for (const RunningStats& p : parts) {
+        variance += p.variance();
+        total += p.mean();
+    }
+    return total > 0 ? variance / (total * total) : std::numeric_limits<double>::infinity();
+}
+
+/// Visible power of the photons of one light path, by part.
+struct VisiblePower {
+    const Scene& scene;
+    const ImportanceGuide& global;
+    const ImportanceGuide* caustic;
+    Shares shares{};
+    int arrivals = 0;
+
+    bool arrival(const Vertex& v, const Vec3& to_light, const Rgb& power, bool specular_only) {
+        if (!v.bsdf.traits().finite) return true;
+        double visible = arrivals++ > 0 || specular_only ? global.visible_power(v, to_light, power).value_or(0) : 0;
+        if (specular_only && caustic != nullptr) visible += caustic->visible_power(v, to_light, power).value_or(0);
+        shares[part(scene, v.point.p)] += visible;
+        return true;
+    }
+};
+
+double try_emission(const SamplerContext& c, const RunContext& run) {
+    const bool delta = c.scene.traits().delta;
+    const auto depth = static_cast<int>(c.settings.max_depth);
+    const auto seed = static_cast<std::uint64_t>(c.settings.seed);
+    Importons importons =
+        trace_importance(c.scene, {.samples = kImportons, .at_d1 = delta, .max_scatterings = depth, .seed = seed}, run);
+    const float radius = Radii(c.scene).importance;
+    const ImportanceGuide global(PhotonMap(std::move(importons.second)), radius, c.patches, run);
+    const ImportanceGuide caustic(PhotonMap(std::move(importons.first)), radius, c.patches, run);
+    const std::uint64_t before = rays_traced();
+    std::vector<Shares> samples(kLightPaths);
+    parallel_for(kLightPaths, [&](std::int64_t i) {
+        Rng rng(seed, StreamPurpose::emission, static_cast<std::uint64_t>(i));
+        VisiblePower sink{c.scene, global, delta ? &caustic : nullptr};
+        trace_light_path(c.scene, depth, rng, sink);
+        samples[static_cast<std::size_t>(i)] = sink.shares;
+    });
+    return relative_variance(samples) * static_cast<double>(rays_traced() - before) / kLightPaths;
+}
+
+double try_metropolis(const SamplerContext& c, const RunContext& run) {
+    const Settings& s = c.settings;
+    const StageOneSettings first{.max_scatterings = static_cast<int>(s.max_depth),
+                                 .samples = kBrightnessSamples,
+                                 .seed = static_cast<std::uint64_t>(s.seed)};
+    const std::uint64_t start = rays_traced();
+    const StageOne one = run_stage_one(c.scene, first, run);
+    const std::vector<Path> seeds = choose_seeds(c.scene, first, one, kChains);
+    if (seeds.empty()) return std::numeric_limits<double>::infinity();
+    const double b = one.brightness.mean();
+    const double brightness =
+        one.brightness.variance() / (b * b) * static_cast<double>(rays_traced() - start) / kBrightnessSamples;
+
+    const Mixture<Path> mixture =
+        make_mixture({&c.scene, PathSet::stored, static_cast<int>(s.max_depth)}, s, c.user_paths);
+    const std::uint64_t before = rays_traced();
+    std::vector<Shares> samples(seeds.size(), Shares{});
+    parallel_for(static_cast<std::int64_t>(seeds.size()), [&](std::int64_t i) {
+        const auto k = static_cast<std::size_t>(i);
+        Chain<Path> chain(seeds[k], mixture, Rng(first.seed, StreamPurpose::chain, static_cast<std::uint64_t>(i)));
+        for (std::int64_t step = 0; step < kSteps; ++step)
+            chain.step([&](const Path& path, double weight) {
+                const StoragePoint at = storage_point(path);
+                if (at.kind == PhotonKind::none) return;
+                samples[k][part(c.scene, path.x[static_cast<std::size_t>(at.vertex)].point.p)] += weight / kSteps;
+            });
+    });
+    // A chain is one sample, of kSteps times the work of a step.
+    const double chains = relative_variance(samples) * kMutationRay * static_cast<double>(rays_traced() - before) /
+                          static_cast<double>(seeds.size());
+    // Work is shared between the two so that their variances add up to least.
+    const double root = std::sqrt(brightness) + std::sqrt(chains);
+    return root * root;
+}
+
+} // namespace
+
+SamplerTrial try_samplers(const SamplerContext& context, const RunContext& run) {
+    return {try_emission(context, run), try_metropolis(context, run)};
+}
+
+} // namespace keyhole

@@ -1,0 +1,26 @@
+// Which sampler suits a scene, by trial.
+#pragma once
+
+#include "render/photon_sampler.h"
+
+#include <optional>
+#include <string_view>
+
+namespace keyhole {
+
+/// What a trial says about a sampler: the variance of the share of visible power that falls in each part of the scene,
+/// summed over the parts, times work. Half of it needs half the time for the same error.
+struct SamplerTrial {
+    double emission;   ///< ipm
+    double metropolis; ///< mps, brightness included; infinite where stage one found nothing
+
+    /// The method that `settings.method` = auto stands for.
+    std::string_view best() const { return metropolis < emission ? "mps" : "ipm"; }
+};
+
+/// Tries both on a little of everything: light paths, samples of stage one, steps of chains from its seeds (their
+/// autocorrelation counts, since chains are compared as wholes). Work is measured in rays and not in seconds, so that
+/// the choice is the same on every machine and at every load.
+SamplerTrial try_samplers(const SamplerContext& context, const RunContext& run);
+
+} // namespace keyhole

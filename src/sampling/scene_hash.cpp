@@ -1,0 +1,51 @@
+#include "sampling/scene_hash.h"
+
+#include "core/hash.h"
+#include "sampling/light_tracer.h"
+
+namespace keyhole {
+namespace {
+
+void add_geometry(const Shape& shape, Hash& hash) {
+    if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) {
+        hash.add(sphere->center);
+        hash.add(sphere->radius);
+        return;
+    }
+    const auto& mesh = std::get<TriangleMesh>(shape.geometry);
+    hash.add(mesh.positions);
+    hash.add(mesh.normals);
+    hash.add(mesh.triangles);
+}
+
+void add_camera(const Camera& camera, Hash& hash) {
+    const CameraParameters& c = camera.parameters();
+    for (const Vec3& v : {c.origin, c.right, c.up, c.forward}) hash.add(v);
+    for (const float f : {c.fov_degrees, c.lens_radius, c.focus_distance}) hash.add(f);
+}
+
+/// What light does here.
+struct Probe {
+    Hash& hash;
+    bool arrival(const Vertex& v, const Vec3&, const Rgb& power, bool) {
+        hash.add(v.point.p);
+        hash.add(power);
+        return true;
+    }
+};
+
+} // namespace
+
+std::uint64_t scene_hash(const Scene& scene) {
+    Hash hash;
+    for (const Shape& shape : scene.shapes()) add_geometry(shape, hash);
+    add_camera(scene.camera(), hash);
+    Probe probe{hash};
+    for (std::uint64_t i = 0; i < 4096; ++i) {
+        Rng rng(0, StreamPurpose::emission, i);
+        trace_light_path(scene, 8, rng, probe);
+    }
+    return hash.value();
+}
+
+} // namespace keyhole

@@ -1,0 +1,61 @@
+// Passes: their mean converges to what path tracing finds, within the memory of one.
+#include "film/image_error.h"
+#include "render/render.h"
+#include "support/agreement.h"
+#include "support/test_scenes.h"
+
+#include <gtest/gtest.h>
+
+namespace keyhole {
+namespace {
+
+class Passes : public testing::TestWithParam<const char*> {
+  protected:
+    static Settings settings() {
+        Settings s;
+        s.method = GetParam();
+        s.spp = 1;
+        s.gather_rays = 1;
+        s.photon_memory = 256 * 1024;
+        s.light_paths = 10'000;
+        s.mutations = 20'000;
+        s.brightness_samples = 10'000;
+        s.power = "reciprocal"; // of mps: passes can't average the error of an importance map away
+        return s;
+    }
+};
+
+TEST_P(Passes, ConvergeToPathTracing) {
+    const auto scene = test::diffuse_box();
+    Settings path;
+    path.method = "path";
+    path.spp = 512;
+    path.seed = 1000;
+    Settings passes = settings();
+    passes.passes = 40;
+    const test::Disagreement d =
+        test::compare(test::render_blocks(*scene, passes, 4), test::render_blocks(*scene, path, 4), 0.01);
+    EXPECT_EQ(d.rejected, 0) << d.report << "mean brightness ratio " << d.ratio;
+}
+
+TEST_P(Passes, SayHowFarTheyAre) {
+    const auto scene = test::diffuse_box();
+    Settings s = settings();
+    s.passes = 0;
+    s.target_error = 0.25;
+    const RenderResult result = render(*scene, s, {});
+    EXPECT_GT(result.stats.values.at("passes"), 4);
+    EXPECT_LE(result.stats.values.at("relative error"), 0.25);
+    EXPECT_GT(result.stats.values.at("relative error"), 0.2) << "passes were wasted";
+    s.seed = 77; // against an independent render with a quarter of its error
+    s.target_error = 0.0625;
+    const Picture reference = render(*scene, s, {}).picture;
+    const double error = image_error(result.picture.layers.at("beauty"), reference.layers.at("beauty")).relmse;
+    EXPECT_NEAR(std::sqrt(error), result.stats.values.at("relative error"), 0.07);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, Passes, testing::Values("ipm", "mps"),
+                         [](const auto& info) { return std::string(info.param); });
+
+} // namespace
+} // namespace keyhole

@@ -1,0 +1,106 @@
+// Saved photon maps: the same picture, or a refusal in words.
+#include "core/error.h"
+#include "render/render.h"
+#include "support/scratch_directory.h"
+#include "support/test_scenes.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace keyhole {
+namespace {
+
+using testing::HasSubstr;
+
+Settings small_settings() {
+    Settings s;
+    s.method = "pm";
+    s.spp = 1;
+    s.light_paths = 5'000;
+    return s;
+}
+
+std::string refusal(Scene& scene, const Settings& settings) {
+    try {
+        render(scene, settings, {});
+    } catch (const InputError& e) {
+        return e.what();
+    }
+    return "none";
+}
+
+class SavedMap : public testing::Test {
+  protected:
+    void SetUp() override {
+        Settings s = small_settings();
+        s.save_map = file_;
+        picture_ = render(*scene_, s, {}).picture;
+    }
+    Settings loading() const {
+        Settings s = small_settings();
+        s.method = "auto"; // not asked: the photons are there
+        s.load_map = file_;
+        return s;
+    }
+    /// Changes one byte of the file.
+    void damage(std::streamoff offset) const {
+        std::fstream f(file_, std::ios::binary | std::ios::in | std::ios::out);
+        f.seekg(offset);
+        const auto byte = static_cast<char>(f.get() ^ 1);
+        f.seekp(offset);
+        f.put(byte);
+    }
+
+    ScratchDirectory directory_;
+    std::string file_ = directory_.path("map.photons");
+    std::unique_ptr<Scene> scene_ = test::mirror_glass_box();
+    Picture picture_;
+};
+
+TEST_F(SavedMap, MakesTheSamePicture) {
+    const Picture again = render(*scene_, loading(), {}).picture;
+    for (const auto& [name, image] : picture_.layers) EXPECT_EQ(image.data, again.layers.at(name).data) << name;
+}
+
+TEST_F(SavedMap, IsRefusedForAnotherScene) {
+    auto other = test::diffuse_box();
+    EXPECT_THAT(refusal(*other, loading()), HasSubstr("another scene"));
+    auto moved = test::mirror_glass_box(0.01f); // another lens
+    EXPECT_THAT(refusal(*moved, loading()), HasSubstr("another scene"));
+}
+
+TEST_F(SavedMap, IsRefusedForAnotherDepth) {
+    Settings s = loading();
+    s.max_depth = 5;
+    EXPECT_THAT(refusal(*scene_, s), HasSubstr("max_depth=24, expected max_depth=5"));
+}
+
+TEST_F(SavedMap, IsRefusedWhereItIsNoWholeMap) {
+    damage(0);
+    EXPECT_THAT(refusal(*scene_, loading()), HasSubstr("found no photon map"));
+    damage(0);
+    damage(12);
+    EXPECT_THAT(refusal(*scene_, loading()), HasSubstr("version"));
+    damage(12);
+    damage(1000);
+    EXPECT_THAT(refusal(*scene_, loading()), HasSubstr("damaged"));
+    damage(1000);
+    std::filesystem::resize_file(file_, std::filesystem::file_size(file_) - 1);
+    EXPECT_THAT(refusal(*scene_, loading()), HasSubstr("damaged"));
+    std::filesystem::resize_file(file_, 10);
+    EXPECT_THAT(refusal(*scene_, loading()), HasSubstr("found no photon map"));
+    std::filesystem::remove(file_);
+    EXPECT_THAT(refusal(*scene_, loading()), HasSubstr("cannot be opened"));
+}
+
+TEST_F(SavedMap, IsOnePass) {
+    Settings s = loading();
+    s.passes = 2;
+    EXPECT_THAT(refusal(*scene_, s), HasSubstr("expected passes=1"));
+}
+
+} // namespace
+} // namespace keyhole

@@ -1,0 +1,46 @@
+// The ceiling on the memory of photons holds, by what was allocated, and thins without bias.
+#include "render/render.h"
+#include "support/test_scenes.h"
+
+#include <gtest/gtest.h>
+
+namespace keyhole {
+namespace {
+
+Settings settings_for(const char* method, std::int64_t memory) {
+    Settings s;
+    s.method = method;
+    s.photon_memory = memory;
+    s.spp = 1;
+    s.gather_rays = 1;
+    s.brightness_samples = 20'000;
+    s.mutations = 60'000;
+    s.light_paths = 60'000;
+    s.importons = 100'000;
+    return s;
+}
+
+class PhotonMemory_StaysUnderItsCeiling : public testing::TestWithParam<const char*> {};
+
+TEST_P(PhotonMemory_StaysUnderItsCeiling, AtEverySize) {
+    for (const bool specular : {false, true}) {
+        for (const std::int64_t kib : {256, 1024, 4096}) {
+            SCOPED_TRACE(testing::Message() << kib << " KiB" << (specular ? ", with caustics" : ""));
+            const auto scene = specular ? test::mirror_glass_box() : test::diffuse_box();
+            const RenderStats stats = render(*scene, settings_for(GetParam(), kib * 1024), {}).stats;
+            EXPECT_LE(stats.photon_bytes, static_cast<std::uint64_t>(kib) * 1024);
+            const auto photons = stats.photons_global + stats.photons_caustic;
+            EXPECT_GT(photons, 1000u);
+            // Small budgets are used up: a photon, its index and its part of the irradiance are about 40 bytes.
+            if (kib == 256) {
+                EXPECT_GT(photons * 40, 256u * 1024 / 3);
+            }
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, PhotonMemory_StaysUnderItsCeiling, testing::Values("mps", "ipm", "pm"),
+                         [](const auto& info) { return std::string(info.param); });
+
+} // namespace
+} // namespace keyhole
