@@ -28,6 +28,9 @@ enum class StreamPurpose : std::uint64_t {
     emission,
     gather,
     test,
+    cache,
+    irradiance,
+    lattice,
 };
 
 /// PCG32 (O'Neill 2014). One for each chain and each pixel, never for each thread, so that a picture does not

@@ -49,6 +49,9 @@ struct Settings {
     std::string failures = "reject";
     AutoNumber p_large;
     std::string large_step_mis = "on";
+    bool irradiance_cache = true;
+    double cache_error = 0.3;
+    std::int64_t cache_rays = 400;
     double p_bidirectional = 0.4;
     double p_lens_subpath = 0.1;
     double p_lens_perturbation = 0.2;
@@ -58,9 +61,9 @@ struct Settings {
     double p_user_path = 0.2;
 };
 
-/// One line of the table. `Visitor` is called as visitor(key, member, minimum, maximum, help) for numbers and
-/// visitor(key, member, choices, help) for words; an
-/// AutoNumber is a number or `auto`; members are references into `settings`.
+/// One line of the table. `Visitor` is called as visitor(key, member, minimum, maximum, help) for numbers,
+/// visitor(key, member, choices, help) for words and visitor(key, member, help) for switches; an AutoNumber is a number
+/// or `auto`; members are references into `settings`.
 template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
     using I = std::int64_t;
     visit("method", s.method,
@@ -94,6 +97,9 @@ template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
     visit("p_large", s.p_large, 0.0, 1.0, "probability of large steps of pssmlt and mmlt");
     visit("large_step_mis", s.large_step_mis, std::vector<std::string_view>{"on", "off"},
           "whether large steps deposit as samples on their own account");
+    visit("irradiance_cache", s.irradiance_cache, "cache irradiance on diffuse surfaces");
+    visit("cache_error", s.cache_error, 0.01, 1.0, "reach of a cached irradiance over the distance to surroundings");
+    visit("cache_rays", s.cache_rays, I{8}, I{1} << 20, "gather rays for a cached irradiance");
     visit("p_bidirectional", s.p_bidirectional, 0.0, 1.0, "relative frequency of bidirectional proposals");
     visit("p_lens_subpath", s.p_lens_subpath, 0.0, 1.0, "relative frequency of lens sub-path proposals");
     visit("p_lens_perturbation", s.p_lens_perturbation, 0.0, 1.0, "relative frequency of lens perturbations");

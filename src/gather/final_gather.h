@@ -1,56 +1,43 @@
-// Stage three: what the eye sees, from direct light, the caustic map, and gather rays that ask the global map and find
-// direct light at what they hit.
+// Stage three: what the eye sees, from direct light, the caustic map, and gather rays or their cached irradiance.
 #pragma once
 
 #include "core/pixel_sample.h"
-#include "photonmap/irradiance_map.h"
-#include "sampling/walk.h"
+#include "gather/gather_rays.h"
+#include "gather/irradiance_cache.h"
 
 namespace keyhole {
-
-/// What stage three asks. Maps may be null: nothing of that kind was found.
-struct GatherMaps {
-    const PhotonMap* global = nullptr;
-    const IrradianceMap* irradiance = nullptr; ///< of the global map
-    const PhotonMap* caustic = nullptr;
-    const SurfacePatches* patches = nullptr;
-};
-
-struct GatherOptions {
-    int rays = 4;         ///< gather rays from each visible point
-    int nearest = 60;     ///< photons in a radiance estimate
-    float max_radius;     ///< of a lookup in the global map [m]
-    float caustic_radius; ///< of a lookup in the caustic map [m]
-    float shrink = 1;     ///< of lookup regions, as in PhotonQuery
-    int max_scatterings = 24;
-};
 
 /// Immutable and thread-safe.
 class FinalGather {
   public:
-    FinalGather(const Scene& scene, const GatherMaps& maps, const GatherOptions& options)
-        : scene_(scene), maps_(maps), options_(options) {}
+    /// `cache` may be null: gather rays from every sample. `rays_per_point` gather rays from each visible point that
+    /// the cache doesn't serve.
+    FinalGather(const GatherRays& rays, const IrradianceCache* cache, int rays_per_point)
+        : scene_(rays.scene()), rays_(rays), cache_(cache), rays_per_point_(rays_per_point) {}
 
-    /// Estimates what arrives at the eye through window point `image`. Unbiased but for the maps.
+    /// Estimates what arrives at the eye through window point `image`. Unbiased but for the maps and the cache.
     PixelSample sample(const Vec2& image, SampleSource& source) const;
 
   private:
+    struct EyeRay {
+        Vertex from;
+        Vec3 w; ///< unit
+        Rgb throughput;
+    };
+    /// Adds what arrives along the ray. At the first `splits` places that both reflect and transmit both are followed.
+    void follow(EyeRay ray, int scatterings, int splits, SampleSource& source, PixelSample& out) const;
     /// Everything that the finite scattering at the last two vertices seen does: direct light, caustic, gather rays.
     void shade(const Vertex& v, const Vec3& back, const Rgb& throughput, int scatterings, SampleSource& source,
                PixelSample& out) const;
-    Rgb direct_light(const Vertex& v, const Vec3& back, SampleSource& source) const;
-    /// Direct light where no gather rays follow that would meet emitters: both techniques, one sample each.
-    Rgb direct_light_alone(const Vertex& v, const Vec3& back, SampleSource& source) const;
-    /// One gather ray; `direct` takes its share of direct light (MIS against direct_light()).
-    Rgb gather_ray(const Vertex& from, const Vec3& back, int scatterings, SampleSource& source, PixelSample& out,
-                   Rgb& direct) const;
-    /// Radiance that the global map gives at `v` towards `back`.
-    Rgb ask_global_map(const Vertex& v, const Vec3& back, PixelSample& out) const;
-    Rgb ask_caustic_map(const Vertex& v, const Vec3& back) const;
+    /// Radiance towards `back` by cached irradiance; none where the surface or the cache won't do.
+    std::optional<Rgb> ask_cache(const Vertex& v, const Vec3& back) const;
+    /// One gather ray; its share of direct light (MIS against next_event()) goes to `direct`.
+    Rgb gather(const Vertex& from, const Vec3& back, int scatterings, SampleSource& source, Rgb& direct) const;
 
     const Scene& scene_;
-    GatherMaps maps_;
-    GatherOptions options_;
+    const GatherRays& rays_;
+    const IrradianceCache* cache_;
+    int rays_per_point_;
 };
 
 } // namespace keyhole

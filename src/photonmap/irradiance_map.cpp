@@ -88,7 +88,7 @@ IrradianceMap::Answer IrradianceMap::irradiance(const Vec3& position, const Vec3
         if (!visible(*estimate)) estimate = map_.nearest_accepted(query, visible);
         if (estimate == nullptr) return {};
     }
-    return {estimate->power(), true};
+    return {estimate->power(), true, static_cast<std::uint32_t>(estimate - map_.photons().data())};
 }
 
 } // namespace keyhole

@@ -25,12 +25,16 @@ class IrradianceMap {
     IrradianceMap(const PhotonMap& photons, const IrradianceOptions& options, const RunContext& context);
 
     struct Answer {
-        Rgb irradiance{0.0}; ///< W/m^2, through the geometric surface
-        bool known = false;  ///< false: no estimate of this surface within 4 max_radius; irradiance is 0
+        Rgb irradiance{0.0};     ///< W/m^2, through the geometric surface
+        bool known = false;      ///< false: no estimate of this surface within 4 max_radius; irradiance is 0
+        std::uint32_t place = 0; ///< index among places()
     };
 
     /// Irradiance on the side of unit `normal`.
     Answer irradiance(const Vec3& position, const Vec3& normal) const;
+
+    /// Where irradiance was estimated.
+    std::span<const Photon> places() const { return map_.photons(); }
 
     std::size_t bytes() const { return map_.bytes(); }
     /// Mean number of photons that went into an estimate.

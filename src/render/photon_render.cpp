@@ -1,5 +1,6 @@
 // The methods that render from photon maps: pass by pass a sampler, the maps, the gather.
 #include "film/pass_error.h"
+#include "gather/fill_cache.h"
 #include "gather/final_gather.h"
 #include "render/methods.h"
 #include "render/photon_file.h"
@@ -45,6 +46,7 @@ std::uint64_t seed_of_pass(std::uint64_t seed, std::int64_t pass) {
 /// Stage three: what the eye sees, from the photons of a pass. Returns whether it was completed.
 bool gather_pass(const SamplerContext& c, std::int64_t pass, Photons photons, Film& film, RenderStats& stats,
                  const RunContext& context) {
+    const std::uint64_t seed = seed_of_pass(static_cast<std::uint64_t>(c.settings.seed), pass);
     const StageClock clock(stats, "gather");
     const Settings& s = c.settings;
     const Radii radii(c.scene, pass);
@@ -66,17 +68,25 @@ bool gather_pass(const SamplerContext& c, std::int64_t pass, Photons photons, Fi
                                                                          (irradiance ? irradiance->bytes() : 0));
     if (irradiance) stats.values["photons per lookup"] = irradiance->mean_photons();
 
+    std::optional<Sites> sites;
+    if (irradiance) {
+        const SiteOptions at{.k = estimates.k, .max_radius = estimates.max_radius, .seed = seed};
+        sites.emplace(c.scene, global, irradiance->places(), at, context);
+    }
     const GatherMaps maps{.global = global.photons().empty() ? nullptr : &global,
                           .irradiance = irradiance ? &*irradiance : nullptr,
+                          .sites = sites ? &*sites : nullptr,
                           .caustic = caustic.photons().empty() ? nullptr : &caustic,
                           .patches = &c.patches};
-    const FinalGather gather(c.scene, maps,
-                             {.rays = static_cast<int>(s.gather_rays),
-                              .nearest = static_cast<int>(s.nearest),
-                              .max_radius = radii.global,
-                              .caustic_radius = radii.caustic,
-                              .shrink = radii.shrink,
-                              .max_scatterings = static_cast<int>(s.max_depth)});
+    const LookupOptions lookups{.nearest = static_cast<int>(s.nearest),
+                                .max_radius = radii.global,
+                                .caustic_radius = radii.caustic,
+                                .shrink = radii.shrink};
+    const GatherRays rays(c.scene, maps, lookups, static_cast<int>(s.max_depth));
+    std::optional<IrradianceCache> cache;
+    if (s.irradiance_cache) cache = fill_cache(rays, cache_options(s, seed), context);
+    if (cache) stats.values["cached irradiances"] = static_cast<double>(cache->size());
+    const FinalGather gather(rays, cache ? &*cache : nullptr, static_cast<int>(s.gather_rays));
     const auto rounds = sample_pixels(
         c.scene, film, s.spp, static_cast<std::uint64_t>(s.seed), StreamPurpose::gather, "gather", context,
         [&](const Vec2& image, SampleSource& source) { return gather.sample(image, source); }, pass * s.spp);

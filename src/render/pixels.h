@@ -1,6 +1,7 @@
 // The loop over pixels that all methods share which sample them one by one.
 #pragma once
 
+#include "core/lattice_source.h"
 #include "core/parallel.h"
 #include "core/pixel_sample.h"
 #include "core/progress.h"
@@ -16,7 +17,8 @@ namespace keyhole {
 
 /// Takes `spp` samples of every pixel: sample(window point, random source) -> PixelSample. Works in rounds of one
 /// sample for every pixel, so that a stop leaves a whole picture. Each sample has a random stream of its own, by
-/// `first_round` plus the rounds before it. Returns the number of full rounds.
+/// `first_round` plus the rounds before it, and shares the pixel with the others evenly (LatticeSource). Returns the
+/// number of full rounds.
 template <class Sample>
 std::int64_t sample_pixels(const Scene& scene, Film& film, std::int64_t spp, std::uint64_t seed, StreamPurpose purpose,
                            std::string_view stage, const RunContext& context, Sample&& sample,
@@ -37,10 +39,12 @@ std::int64_t sample_pixels(const Scene& scene, Film& film, std::int64_t spp, std
                 for (int x = x0; x < x1; ++x) {
                     const auto pixel = static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(window.width) +
                                        static_cast<std::uint64_t>(x);
-                    Rng rng(seed, purpose, pixel + pixels * static_cast<std::uint64_t>(first_round + round));
-                    const double u0 = rng.next(), u1 = rng.next();
+                    const auto sample_number = static_cast<std::uint64_t>(first_round + round);
+                    LatticeSource source(Rng(seed, StreamPurpose::lattice, pixel), sample_number,
+                                         Rng(seed, purpose, pixel + pixels * sample_number));
+                    const double u0 = source.next(), u1 = source.next();
                     const Vec2 centre(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-                    film.add(x, y, sample(window.to_window(centre + filter.sample_offset(u0, u1)), rng));
+                    film.add(x, y, sample(window.to_window(centre + filter.sample_offset(u0, u1)), source));
                 }
             }
             context.advance(static_cast<std::uint64_t>((x1 - x0) * (y1 - y0)));

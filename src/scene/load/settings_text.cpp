@@ -89,6 +89,11 @@ struct Setter {
             return refuse(expected_one_of(value, choices));
         member = value;
     }
+    void operator()(const char* name, bool& member, const char*) {
+        if (!matches(name)) return;
+        if (value != "true" && value != "false") return refuse("expected true or false");
+        member = value == "true";
+    }
 };
 
 } // namespace

@@ -1,0 +1,62 @@
+#!/usr/bin/python3
+"""Error of Keyhole's pictures at given CPU times, beside that of other renderers.
+
+usage: bench/compare_peers.py KEYHOLE SHARED [--scenes box,rooms,lantern] [--budgets 5,15,45] [--set KEY=VALUE ...]
+
+SHARED holds scenes/mps/NAME.pbrt, references/mps/NAME.{a,b}.exr and tools/picture_error.py. Renders each scene on one
+thread with the settings of BUDGETS and prints the CPU seconds of the whole process and the trimmed relative squared
+error free of the references' noise (cross_trim), with the bound it is to stay below: a quarter of the best peer's.
+"""
+import argparse, json, os, resource, subprocess, sys, tempfile
+
+# Settings that use about so many CPU seconds on the machine of the README's figures.
+BUDGETS = {5: "", 15: "", 45: ""}
+BOUND = {"box": {5: .0018, 15: .0012, 45: .0009},
+         "rooms": {5: .0028, 15: .0005, 45: .0002},
+         "lantern": {5: .0065, 15: .0021, 45: .0021}}
+MASK = {"lantern": ["--mask", "110,190,70,160"]}
+
+
+def cpu_seconds():
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def render(keyhole, scene, settings, picture):
+    before = cpu_seconds()
+    subprocess.run([keyhole, "render", scene, "-q", "-t", "1", "--no-png", "-o", picture]
+                   + [word for s in settings for word in ("-D", s)], check=True)
+    return cpu_seconds() - before
+
+
+def error(shared, name, picture):
+    references = [f"{shared}/references/mps/{name}.{x}.exr" for x in "ab"]
+    out = subprocess.run([sys.executable, f"{shared}/tools/picture_error.py", picture, *references, *MASK.get(name, [])],
+                         check=True, capture_output=True, text=True).stdout
+    return json.loads(out)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("keyhole")
+    parser.add_argument("shared")
+    parser.add_argument("--scenes", default="box,rooms,lantern")
+    parser.add_argument("--budgets", default="5,15,45")
+    parser.add_argument("--set", nargs="*", default=[], metavar="KEY=VALUE")
+    parser.add_argument("--keep", metavar="FOLDER", help="where pictures stay")
+    args = parser.parse_args()
+    print(f"{'scene':<10}{'budget':>7}{'CPU s':>8}{'cross_trim':>12}{'bound':>8}{'block':>8}{'ratio':>8}")
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = args.keep or scratch
+        for name in args.scenes.split(","):
+            for budget in map(int, args.budgets.split(",")):
+                picture = os.path.join(folder, f"{name}-{budget}.exr")
+                settings = BUDGETS[budget].split() + args.set
+                seconds = render(args.keyhole, f"{args.shared}/scenes/mps/{name}.pbrt", settings, picture)
+                e = error(args.shared, name, picture)
+                print(f"{name:<10}{budget:>7}{seconds:>8.1f}{e['cross_trim']:>12.5f}{BOUND[name][budget]:>8}"
+                      f"{e['block']:>8.3f}{e['ratio']:>8.3f}", flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,72 @@
+#include "gather/gather_rays.h"
+
+#include "gather/direct_light.h"
+#include "sampling/direct_light.h"
+
+namespace keyhole {
+
+GatherRays::Arrival GatherRays::trace(const Vertex& from, const Vec3& w, double pdf, int scatterings,
+                                      SampleSource& source) const {
+    return trace(from, w, pdf, scatterings, false, source);
+}
+
+GatherRays::Arrival GatherRays::trace(const Vertex& from, const Vec3& w0, double pdf, int scatterings, bool secondary,
+                                      SampleSource& source) const {
+    Arrival arrival;
+    Vertex v = from;
+    Vec3 w = w0;
+    Rgb throughput(1.0);
+    for (int n = scatterings; n <= max_scatterings_; ++n) {
+        const auto hit = next_vertex(scene_, v, w);
+        if (!hit) break;
+        throughput *= scene_.transmittance(v.point, hit->point);
+        const float length = hit->point.site == Site::infinite ? std::numeric_limits<float>::infinity()
+                                                               : (hit->point.p - v.point.p).length();
+        // An emitter seen straight is direct light; seen through specular vertices the caustic map has it.
+        if (n == scatterings) {
+            arrival.emitted = throughput * emission_with_mis(scene_, v, *hit, w, pdf);
+            arrival.distance = length;
+        }
+        v = *hit;
+        if (n == max_scatterings_) break;
+        if (v.bsdf.traits().finite) arrival.indirect += throughput * reflected(v, -w, {length, n, secondary}, source);
+        if (!v.bsdf.traits().delta) break;
+        const auto next = continue_walk(v, -w, From::eye, source);
+        if (!next || !is_specular(next->event)) break;
+        throughput *= next->weight;
+        w = next->w;
+    }
+    return arrival;
+}
+
+Rgb GatherRays::reflected(const Vertex& v, const Vec3& back, const Leg& leg, SampleSource& source) const {
+    if (maps_.irradiance == nullptr || !v.bsdf.traits().near_lambertian) {
+        const Rgb direct = direct_light(scene_, v, back, source);
+        return maps_.global != nullptr ? direct + estimate(*maps_.global, options_.max_radius, v, back) : direct;
+    }
+    const auto known = maps_.irradiance->irradiance(v.point.p, side(v.point, back));
+    const Rgb f = v.bsdf.eval(back, back);
+    const auto near = known.known ? maps_.sites->direct(known.place, v.point.p) : std::nullopt;
+    const Rgb direct = near ? f * *near : direct_light(scene_, v, back, source);
+    // The estimate is a mean over its radius. Seen from nearer than that, as in corners, the mean is not good enough.
+    if (leg.secondary || !known.known || leg.distance >= maps_.sites->radius(known.place))
+        return direct + f * known.irradiance;
+    const auto next = continue_walk(v, back, From::eye, source);
+    if (!next || is_specular(next->event)) return direct;
+    return direct + next->weight * trace(v, next->w, next->pdf, leg.scatterings + 1, true, source).indirect;
+}
+
+Rgb GatherRays::caustic(const Vertex& v, const Vec3& back) const {
+    return maps_.caustic != nullptr ? estimate(*maps_.caustic, options_.caustic_radius, v, back) : Rgb(0.0);
+}
+
+Rgb GatherRays::estimate(const PhotonMap& map, float radius, const Vertex& v, const Vec3& back) const {
+    const PhotonQuery query{{v.point.p, side(v.point, back)}, radius, options_.nearest, options_.shrink};
+    return estimate_density(map, query, Unbiased::density, maps_.patches,
+                            [&](const Photon& photon) {
+                                return scatter(v.point, v.bsdf, Event::finite, photon.direction(), back).value;
+                            })
+        .value;
+}
+
+} // namespace keyhole

@@ -1,0 +1,69 @@
+// Gather rays: what arrives at a point along a ray, asked from the photon maps where the ray ends.
+#pragma once
+
+#include "gather/sites.h"
+#include "sampling/walk.h"
+
+namespace keyhole {
+
+/// What stage three asks. Maps may be null: nothing of that kind was found.
+struct GatherMaps {
+    const PhotonMap* global = nullptr;
+    const IrradianceMap* irradiance = nullptr; ///< of the global map
+    const Sites* sites = nullptr;              ///< direct light where `irradiance` is known; null only if that is
+    const PhotonMap* caustic = nullptr;
+    const SurfacePatches* patches = nullptr;
+};
+
+struct LookupOptions {
+    int nearest = 60;     ///< photons in a radiance estimate
+    float max_radius;     ///< of a lookup in the global map [m]
+    float caustic_radius; ///< of a lookup in the caustic map [m]
+    float shrink = 1;     ///< of lookup regions, as in PhotonQuery
+};
+
+/// Immutable and thread-safe.
+class GatherRays {
+  public:
+    GatherRays(const Scene& scene, const GatherMaps& maps, const LookupOptions& options, int max_scatterings)
+        : scene_(scene), maps_(maps), options_(options), max_scatterings_(max_scatterings) {}
+
+    /// What comes along a ray [W/(m^2 sr)].
+    struct Arrival {
+        Rgb indirect{0.0}; ///< reflected by what the ray met
+        Rgb emitted{0.0};  ///< emitted by what it met first, weighted against next_event() at the ray's origin
+        float distance = std::numeric_limits<float>::infinity(); ///< to what it met first [m]
+    };
+    /// Follows the ray from `from` along `w`, which was drawn with density `pdf` per solid angle. `scatterings` counts
+    /// those between the eye and the ray.
+    Arrival trace(const Vertex& from, const Vec3& w, double pdf, int scatterings, SampleSource& source) const;
+
+    /// Radiance towards `back` that the caustic map gives at a visible point.
+    Rgb caustic(const Vertex& v, const Vec3& back) const;
+
+    const Scene& scene() const { return scene_; }
+    int max_scatterings() const { return max_scatterings_; }
+
+  private:
+    /// Where a ray comes from, as far as what it meets depends on that.
+    struct Leg {
+        float distance;  ///< from the vertex before [m]
+        int scatterings; ///< between the eye and the vertex it led to, that one included
+        bool secondary;  ///< a ray that was traced on from a near one
+    };
+    Arrival trace(const Vertex& from, const Vec3& w, double pdf, int scatterings, bool secondary,
+                  SampleSource& source) const;
+    /// Radiance towards `back` that `v` reflects by its finite part.
+    Rgb reflected(const Vertex& v, const Vec3& back, const Leg& leg, SampleSource& source) const;
+    Rgb estimate(const PhotonMap& map, float radius, const Vertex& v, const Vec3& back) const;
+
+    const Scene& scene_;
+    GatherMaps maps_;
+    LookupOptions options_;
+    int max_scatterings_;
+};
+
+/// The side of a surface that `w` points to.
+inline Vec3 side(const SurfacePoint& point, const Vec3& w) { return point.ng.dot(w) < 0 ? -point.ng : point.ng; }
+
+} // namespace keyhole

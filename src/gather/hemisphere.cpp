@@ -1,0 +1,81 @@
+#include "gather/hemisphere.h"
+
+#include "scene/warp.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace keyhole {
+namespace {
+
+/// sum += v times each channel.
+void add(RgbGradient& sum, const Rgb& c, const Vec3& v) {
+    sum[0] += v * static_cast<float>(c.x);
+    sum[1] += v * static_cast<float>(c.y);
+    sum[2] += v * static_cast<float>(c.z);
+}
+
+/// Unit vector of the tangent plane at azimuth `phi`.
+Vec3 tangent(const Frame& frame, double phi) {
+    return frame.s * static_cast<float>(std::cos(phi)) + frame.t * static_cast<float>(std::sin(phi));
+}
+
+} // namespace
+
+HemisphereGrid::HemisphereGrid(int rays)
+    : rows_(std::max(2, static_cast<int>(std::lround(std::sqrt(rays / kPi))))),
+      columns_(std::max(4, static_cast<int>(std::lround(static_cast<double>(rays) / rows_)))) {}
+
+Vec3 HemisphereGrid::direction(int cell, double u0, double u1) const {
+    const double sin2 = (cell / columns_ + u0) / rows_;
+    return spherical(std::sqrt(1 - sin2), 2 * kPi * (cell % columns_ + u1) / columns_);
+}
+
+/// Of the polar angle over a row's cells: that of single directions has infinite variance at the horizon.
+double HemisphereGrid::mean_tangent(int row) const {
+    const auto integral = [](double sin2) { return std::asin(std::sqrt(sin2)) - std::sqrt(sin2 * (1 - sin2)); };
+    return rows_ * (integral(static_cast<double>(row + 1) / rows_) - integral(static_cast<double>(row) / rows_));
+}
+
+HemisphereEstimate HemisphereGrid::estimate(std::span<const HemisphereRay> rays, const Frame& frame) const {
+    assert(rays.size() == static_cast<std::size_t>(size()));
+    HemisphereEstimate e;
+    double inverse_distance = 0;
+    for (int i = 0; i < size(); ++i) {
+        const HemisphereRay& ray = rays[static_cast<std::size_t>(i)];
+        e.irradiance += ray.radiance;
+        add(e.rotation, ray.radiance * mean_tangent(i / columns_),
+            tangent(frame, 2 * kPi * (i % columns_ + 0.5) / columns_));
+        if (ray.distance > 0) inverse_distance += 1 / static_cast<double>(ray.distance);
+    }
+    const double share = kPi / size();
+    e.irradiance *= share;
+    for (Vec3& v : e.rotation) v *= static_cast<float>(share);
+    add_translation(rays, frame, e.translation);
+    e.distance = size() / inverse_distance;
+    return e;
+}
+
+/// Ward and Heckbert's sum over the borders between cells: as the point moves, each border moves past it by the angle
+/// that its distance gives, and what one cell gains the other loses.
+void HemisphereGrid::add_translation(std::span<const HemisphereRay> rays, const Frame& frame, RgbGradient& sum) const {
+    const auto at = [&](int row, int column) -> const HemisphereRay& {
+        return rays[static_cast<std::size_t>(row * columns_ + column)];
+    };
+    const auto cross = [&](const HemisphereRay& a, const HemisphereRay& b, double length, const Vec3& towards) {
+        add(sum, (b.radiance - a.radiance) * (length / std::min(a.distance, b.distance)), towards);
+    };
+    const double width = 2 * kPi / columns_;
+    for (int k = 0; k < columns_; ++k) {
+        const int before = (k + columns_ - 1) % columns_;
+        const Vec3 u = tangent(frame, width * (k + 0.5)), v = tangent(frame, width * k + kPi / 2);
+        for (int j = 0; j < rows_; ++j) {
+            const double inner2 = static_cast<double>(j) / rows_, outer2 = static_cast<double>(j + 1) / rows_;
+            if (j > 0) cross(at(j - 1, k), at(j, k), width * std::sqrt(inner2) * (1 - inner2), u);
+            cross(at(j, before), at(j, k), std::sqrt(outer2) - std::sqrt(inner2), v);
+        }
+    }
+}
+
+} // namespace keyhole

@@ -1,0 +1,130 @@
+#include "gather/irradiance_cache.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace keyhole {
+namespace {
+
+/// Records whose normals differ by more than this (1 - cos) have no say: about 20 degrees.
+constexpr float kNormalReach = 0.06f;
+/// How much more a distance along the normal counts than one across it, squared: steps and shelves keep to themselves.
+constexpr float kHeight2 = 15;
+
+Vec3 to_vec(const Rgb& c) { return {static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z)}; }
+
+int level_of(float radius) { return static_cast<int>(std::ceil(std::log2(2 * radius))); }
+
+struct CellIndex {
+    std::int64_t x, y, z;
+};
+
+CellIndex cell_at(const Vec3& p, int level) {
+    const float scale = std::ldexp(1.0f, -level);
+    const auto floor = [&](float v) { return static_cast<std::int64_t>(std::floor(v * scale)); };
+    return {floor(p.x), floor(p.y), floor(p.z)};
+}
+
+/// 19 bits an axis and 7 for the level. Cells further apart than that share a key, which costs time only.
+std::uint64_t key(const CellIndex& c, int level) {
+    const auto bits = [](std::int64_t v) { return static_cast<std::uint64_t>(v) & 0x7FFFF; };
+    return bits(c.x) | bits(c.y) << 19 | bits(c.z) << 38 | (static_cast<std::uint64_t>(level) & 0x7F) << 57;
+}
+
+/// Falls from 1 at 0 to 0 at 1, smoothly at both, so that no border of a record shows.
+float kernel(float x2) { return x2 < 1 ? (1 - x2) * (1 - x2) : 0.0f; }
+
+} // namespace
+
+template <class Visit> void IrradianceCache::visit_near(const Vec3& position, Visit&& visit) const {
+    for (int level = lowest_level_; level <= highest_level_; ++level) {
+        const auto cell = cells_.find(key(cell_at(position, level), level));
+        if (cell == cells_.end()) continue;
+        for (const std::uint32_t i : cell->second) visit(i);
+    }
+}
+
+IrradianceCache::Answer IrradianceCache::irradiance(const Vec3& position, const Vec3& normal) const {
+    Vec3 sum(0.0f);
+    float weights = 0;
+    visit_near(position, [&](std::uint32_t i) {
+        const Stored& r = records_[i];
+        const Vec3 d = position - r.position, turn = normal - r.normal;
+        const float across = d.dot(r.normal), apart2 = d.length2() + kHeight2 * across * across;
+        // What lies behind the record may be in the dark behind an edge.
+        if (d.dot(normal + r.normal) < -0.1f * r.radius) return;
+        const float w = kernel(std::max(apart2 / (r.radius * r.radius), turn.length2() / (2 * kNormalReach)));
+        if (!(w > 0)) return;
+        Vec3 e = r.irradiance;
+        for (int c = 0; c < 3; ++c) {
+            const auto k = static_cast<std::size_t>(c);
+            e[c] = std::max(0.0f, e[c] + r.rotation[k].dot(turn) + r.translation[k].dot(d));
+        }
+        sum += e * w;
+        weights += w;
+    });
+    if (!(weights > 0)) return {};
+    sum /= weights;
+    return {Rgb(sum.x, sum.y, sum.z), weights};
+}
+
+void IrradianceCache::insert(const IrradianceRecord& record) {
+    const HemisphereEstimate& e = record.light;
+    Stored r{record.position,
+             record.normal,
+             to_vec(e.irradiance),
+             e.rotation,
+             e.translation,
+             static_cast<float>(std::min(e.distance, 1e30)),
+             0,
+             record.min_radius,
+             record.max_radius};
+    // Where irradiance changes by its own size within that distance, first order says nothing beyond (Ward, Heckbert).
+    const float y = static_cast<float>(luminance(e.irradiance));
+    const Vec3 slope = r.translation[0] * 0.2126f + r.translation[1] * 0.7152f + r.translation[2] * 0.0722f;
+    if (y < slope.length() * r.distance) r.distance = y / slope.length();
+    update_radius(r);
+    clamp_with_neighbours(r);
+    // A radius held up by its lower bound would stretch the gradient beyond where it holds.
+    const float reach = error_ * r.distance / r.radius;
+    if (reach < 1)
+        for (Vec3& g : r.translation) g *= reach;
+    records_.push_back(r);
+    index(static_cast<std::uint32_t>(records_.size() - 1));
+}
+
+void IrradianceCache::update_radius(Stored& r) const {
+    r.radius = std::clamp(error_ * r.distance, r.min_radius, r.max_radius);
+}
+
+void IrradianceCache::clamp_with_neighbours(Stored& r) {
+    visit_near(r.position, [&](std::uint32_t i) {
+        const Stored& other = records_[i];
+        r.distance = std::min(r.distance, other.distance + (other.position - r.position).length());
+    });
+    update_radius(r);
+    visit_near(r.position, [&](std::uint32_t i) {
+        Stored& other = records_[i];
+        other.distance = std::min(other.distance, r.distance + (other.position - r.position).length());
+        update_radius(other);
+    });
+}
+
+void IrradianceCache::index(std::uint32_t i) {
+    const Stored& r = records_[i];
+    const int level = level_of(r.radius);
+    lowest_level_ = records_.size() == 1 ? level : std::min(lowest_level_, level);
+    highest_level_ = std::max(records_.size() == 1 ? level : highest_level_, level);
+    const CellIndex lo = cell_at(r.position - Vec3(r.radius), level), hi = cell_at(r.position + Vec3(r.radius), level);
+    for (auto x = lo.x; x <= hi.x; ++x)
+        for (auto y = lo.y; y <= hi.y; ++y)
+            for (auto z = lo.z; z <= hi.z; ++z) cells_[key({x, y, z}, level)].push_back(i);
+}
+
+std::size_t IrradianceCache::bytes() const {
+    std::size_t sum = records_.capacity() * sizeof(Stored) + cells_.bucket_count() * sizeof(void*);
+    for (const auto& [k, cell] : cells_) sum += cell.capacity() * sizeof(std::uint32_t) + 48;
+    return sum;
+}
+
+} // namespace keyhole

@@ -1,0 +1,67 @@
+// Irradiance at few places, interpolated between them (Ward, Rubinstein and Clear 1988; gradients: Ward and Heckbert
+// 1992; neighbour clamping: Krivanek, Bouatouch, Pattanaik and Zara 2006).
+#pragma once
+
+#include "gather/hemisphere.h"
+
+#include <cstdint>
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+namespace keyhole {
+
+/// A place whose irradiance is known.
+struct IrradianceRecord {
+    Vec3 position; ///< world space
+    Vec3 normal;   ///< unit, on the side that light arrives at
+    HemisphereEstimate light;
+    float min_radius, max_radius; ///< bounds on how far it is used [m], 0 < min <= max
+};
+
+/// Records with an index. Filled by one thread; then immutable and thread-safe. The same records in the same order give
+/// the same answers.
+class IrradianceCache {
+  public:
+    /// `error` is the share of the distance to surrounding surfaces over which a record is used (Ward's a).
+    explicit IrradianceCache(float error) : error_(error) {}
+
+    /// Clamps the record's radius by its neighbours' and theirs by its: what one of them sees close by is close to the
+    /// others, too, even where their rays missed it.
+    void insert(const IrradianceRecord& record);
+
+    struct Answer {
+        Rgb irradiance{0.0}; ///< [W/m^2]
+        double weight = 0;   ///< sum over the records that had a say; 1 at a record, 0: nothing is known here
+    };
+    Answer irradiance(const Vec3& position, const Vec3& normal) const;
+
+    std::size_t size() const { return records_.size(); }
+    std::size_t bytes() const;
+    /// How far record `i` is used [m].
+    float radius(std::size_t i) const { return records_[i].radius; }
+
+  private:
+    struct Stored {
+        Vec3 position, normal, irradiance;
+        RgbGradient rotation, translation;
+        float distance; ///< to surrounding surfaces, clamped by neighbours' [m]
+        float radius;   ///< how far it is used [m]
+        float min_radius, max_radius;
+    };
+    using Cell = std::vector<std::uint32_t>;
+
+    void update_radius(Stored& r) const;
+    void clamp_with_neighbours(Stored& r);
+    void index(std::uint32_t i);
+    /// Calls visit(record) for all whose reach may include `position`.
+    template <class Visit> void visit_near(const Vec3& position, Visit&& visit) const;
+
+    float error_;
+    std::vector<Stored> records_;
+    // A hashed grid for each power of two of the radius: a record stands in all cells that its reach overlaps.
+    std::unordered_map<std::uint64_t, Cell> cells_;
+    int lowest_level_ = 0, highest_level_ = -1;
+};
+
+} // namespace keyhole

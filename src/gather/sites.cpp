@@ -1,0 +1,64 @@
+#include "gather/sites.h"
+
+#include "core/parallel.h"
+#include "gather/site_light.h"
+
+namespace keyhole {
+namespace {
+
+/// The surface that `place` lies on, found again by a short ray from above. None where something lies in between.
+std::optional<SurfacePoint> surface_at(const Scene& scene, const Photon& place) {
+    const Vec3 n = place.normal().decode();
+    const float above = 1e-4f * scene.bounding_sphere().radius;
+    SurfacePoint start;
+    start.p = place.position() + n * above;
+    start.site = Site::point;
+    const auto hit = scene.trace(start, -n);
+    if (!hit || hit->site != Site::surface || !((hit->p - place.position()).length() < 0.1f * above) ||
+        std::abs(hit->ng.dot(n)) < SurfaceRegion::kMinCosine)
+        return std::nullopt;
+    return hit;
+}
+
+} // namespace
+
+Sites::Sites(const Scene& scene, const PhotonMap& photons, std::span<const Photon> places, const SiteOptions& options,
+             const RunContext& context)
+    : places_(places), sites_(places.size()) {
+    constexpr std::int64_t kBlock = 256;
+    const auto count = static_cast<std::int64_t>(places.size());
+    context.begin("direct light of sites", places.size(), "sites");
+    parallel_for((count + kBlock - 1) / kBlock, [&](std::int64_t b) {
+        for (std::int64_t i = b * kBlock; i < std::min(count, (b + 1) * kBlock); ++i)
+            sites_[static_cast<std::size_t>(i)] = at(scene, photons, static_cast<std::uint32_t>(i), options);
+        context.advance(kBlock);
+    });
+    context.end();
+}
+
+Sites::Entry Sites::at(const Scene& scene, const PhotonMap& photons, std::uint32_t i,
+                       const SiteOptions& options) const {
+    const Photon& place = places_[i];
+    const Vec3 n = place.normal().decode();
+    Entry site;
+    if (!scene.traits().delta) {
+        const PhotonQuery query{{place.position(), n}, options.max_radius, options.k};
+        site.radius = std::sqrt(photons.nearest(query).radius2);
+    }
+    if (const auto point = surface_at(scene, place)) {
+        Rng rng(options.seed, StreamPurpose::irradiance, i);
+        const Vec3 side = point->ng.dot(n) < 0 ? -point->ng : point->ng;
+        const SiteLight light = direct_irradiance(scene, *point, side, options.direct_samples, rng);
+        site.direct = SharedExponentRgb(light.irradiance);
+        site.reach = light.reach;
+    }
+    return site;
+}
+
+std::optional<Rgb> Sites::direct(std::uint32_t i, const Vec3& position) const {
+    const Entry& site = sites_[i];
+    if ((places_[i].position() - position).length2() > site.reach * site.reach) return std::nullopt;
+    return site.direct.decode();
+}
+
+} // namespace keyhole

@@ -1,0 +1,32 @@
+// Cached irradiance makes the picture that gather rays from every sample make.
+#include "support/agreement.h"
+#include "support/test_scenes.h"
+
+#include <gtest/gtest.h>
+
+namespace keyhole {
+namespace {
+
+void expect_agreement(Scene& scene) {
+    Settings settings;
+    settings.spp = 8;
+    settings.brightness_samples = 100'000;
+    settings.importons = 50'000;
+    settings.mutations = 100'000;
+    settings.photons = 30'000;
+    constexpr int kRuns = 5;
+    const test::Blocks cached = test::render_blocks(scene, settings, kRuns, "indirect");
+    settings.irradiance_cache = false;
+    settings.seed = 100;
+    const test::Disagreement d = test::compare(cached, test::render_blocks(scene, settings, kRuns, "indirect"), 0.02);
+    EXPECT_EQ(d.rejected, 0) << d.report << "mean brightness ratio " << d.ratio;
+    EXPECT_NEAR(d.ratio, 1, 0.03);
+    EXPECT_LT(d.largest_error, 0.06) << "too noisy to tell";
+}
+
+TEST(IrradianceCache, AgreesWithGatherRays) { expect_agreement(*test::diffuse_box()); }
+
+TEST(IrradianceCache, AgreesThroughMirrorsGlassAndALens) { expect_agreement(*test::mirror_glass_box(0.05f)); }
+
+} // namespace
+} // namespace keyhole

@@ -1,0 +1,124 @@
+// The classic artefacts of photon maps and irradiance caches, each a tiny scene with a number that must stay small.
+#include "render/render.h"
+#include "scene/emitters/point.h"
+#include "support/test_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace keyhole {
+namespace {
+
+Settings small_settings() {
+    Settings s;
+    s.spp = 8;
+    s.brightness_samples = 50'000;
+    s.importons = 50'000;
+    s.mutations = 200'000;
+    s.photons = 40'000;
+    return s;
+}
+
+/// Luminance of one layer.
+struct Grey {
+    int width, height;
+    std::vector<double> data;
+
+    double at(int x, int y) const { return data[static_cast<std::size_t>(y * width + x)]; }
+    double mean(int x0, int x1) const {
+        double sum = 0;
+        for (int y = 0; y < height; ++y)
+            for (int x = x0; x < x1; ++x) sum += at(x, y);
+        return sum / (height * (x1 - x0));
+    }
+};
+
+Grey render_layer(Scene& scene, const Settings& settings, const std::string& layer) {
+    const Picture picture = render(scene, settings, {}).picture;
+    const Image& image = picture.layers.at(layer);
+    Grey grey{image.width, image.height, {}};
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) {
+            const float* p = image.at(x, y);
+            grey.data.push_back(luminance(Rgb(p[0], p[1], p[2])));
+        }
+    return grey;
+}
+
+TEST(Gallery, NoLightLeaksUnderAThinWall) {
+    // A floor with a wall across it, seen from above. The lamp stands left of the wall, and lower than its top: nothing
+    // reaches the right half. All of it is one floor to a density estimate.
+    const auto white = make_diffuse(Rgb(0.8));
+    test::SceneMaker m;
+    m.rectangle({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, white)
+        .rectangle({0, 0, -1}, {0, 0, 2}, {0, 1, 0}, white)
+        .emitter(make_point_emitter({-0.5f, 0.3f, 0}, Rgb(5.0)))
+        .camera({0, 4, 0.01f}, {0, 0, 0}, 24)
+        .window(40, 40);
+    const auto scene = m.build();
+    const Grey grey = render_layer(*scene, small_settings(), "indirect");
+    const double lit = grey.mean(4, 17), dark = grey.mean(23, 36);
+    EXPECT_GT(lit, 0.01);
+    EXPECT_LT(dark / lit, 2e-3);
+}
+
+TEST(Gallery, CornersAreNotDarkened) {
+    // A closed box of uniform emission has the same radiance everywhere, corners included.
+    const auto scene_of = [] {
+        test::SceneMaker m;
+        m.room({-1, -1, -1}, {1, 1, 1}, make_diffuse(Rgb(0.5)), Rgb(1.0));
+        m.camera({0.5f, 0.5f, 0.5f}, {-1, -1, -1}, 20).window(32, 32);
+        return m.build();
+    };
+    const auto scene = scene_of();
+    const Grey grey = render_layer(*scene, small_settings(), "indirect");
+    double worst = 0;
+    constexpr int kBlock = 4;
+    for (int y = 0; y < grey.height; y += kBlock)
+        for (int x = 0; x < grey.width; x += kBlock) {
+            double sum = 0;
+            for (int i = 0; i < kBlock * kBlock; ++i) sum += grey.at(x + i % kBlock, y + i / kBlock);
+            worst = std::max(worst, std::abs(sum / (kBlock * kBlock) / 0.5 - 1));
+        }
+    EXPECT_LT(worst, 0.06);
+}
+
+TEST(Gallery, LowQualityShowsNoDiscs) {
+    // A plain wall. Records are few and noisy, but their borders make no step from pixel to pixel.
+    test::SceneMaker m;
+    m.room({-1, 0, -1}, {1, 2, 3}, make_diffuse(Rgb(0.7)));
+    m.rectangle({-0.1f, 1.95f, -0.1f}, {0.2f, 0, 0}, {0, 0, 0.2f}, make_diffuse(Rgb(0.0)), Rgb(60.0));
+    m.camera({0, 1, 2}, {0, 1, -1}, 30).window(64, 64);
+    const auto scene = m.build();
+    Settings settings = small_settings();
+    settings.cache_rays = 64;
+    settings.cache_error = 0.5;
+    const Grey grey = render_layer(*scene, settings, "indirect");
+    std::vector<double> steps;
+    for (int y = 0; y < grey.height; ++y)
+        for (int x = 0; x + 1 < grey.width; ++x) steps.push_back(std::abs(grey.at(x + 1, y) - grey.at(x, y)));
+    EXPECT_LT(*std::max_element(steps.begin(), steps.end()) / grey.mean(0, grey.width), 0.05);
+}
+
+TEST(Gallery, CloseGatherHitsLeaveNoSpeckles) {
+    // A lamp close to a corner: what gather rays find there is a thousand times brighter than the rest.
+    test::SceneMaker m;
+    m.room({-1, 0, -1}, {1, 2, 3}, make_diffuse(Rgb(0.7)));
+    m.rectangle({-0.95f, 0.1f, -0.95f}, {0, 0, 0.1f}, {0.1f, 0, 0}, make_diffuse(Rgb(0.0)), Rgb(200.0));
+    m.camera({0.3f, 0.8f, 0.8f}, {-0.8f, 0.2f, -0.8f}, 40).window(48, 48);
+    const auto scene = m.build();
+    const Grey grey = render_layer(*scene, small_settings(), "indirect");
+    double worst = 0;
+    for (int y = 2; y + 2 < grey.height; ++y)
+        for (int x = 2; x + 2 < grey.width; ++x) {
+            std::vector<double> around;
+            for (int i = 0; i < 25; ++i) around.push_back(grey.at(x - 2 + i % 5, y - 2 + i / 5));
+            std::nth_element(around.begin(), around.begin() + 20, around.end());
+            worst = std::max(worst, grey.at(x, y) / around[20]);
+        }
+    EXPECT_LT(worst, 1.3);
+}
+
+} // namespace
+} // namespace keyhole
