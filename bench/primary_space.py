@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Measures the methods of primary sample space on the scenes of their papers: docs/primary-sample-space.md has the tables.
 
-    primary_space.py [--keyhole build/keyhole] [--scenes glossy,egg] [--runs 32] large-steps | kelemen | failures | speed
+      primary_space.py [--keyhole build/keyhole] [--scenes glossy,egg] [--runs 32] large-steps | kelemen | failures | speed
 
 Pictures are small (see SIZE), so that many independent runs fit; references are long bidirectional renders, kept in --work.
 Needs numpy and OpenImageIO for Python."""
@@ -31,7 +31,7 @@ class Bench:
         """Luminance of the picture, and the run's statistics."""
         out, stats = self.work / f'{name}.exr', self.work / f'{name}.json'
         command = [self.arguments.keyhole, 'render', ROOT / 'scenes' / f'{scene}.yaml', '-q', '-t', '1', '--no-png', '-o', out,
-                   '--stats', stats, '--resolution', SIZE, '--seed', seed]
+                   '--stats', stats, '--resolution', SIZE, '--seed', seed, '-D', 'brightness_samples=50k', '-D', 'chains=200']
         for key, value in settings.items():
             command += ['-D', f'{key}={value}']
         subprocess.run([str(c) for c in command], check=True)

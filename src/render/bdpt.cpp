@@ -27,8 +27,9 @@ struct BidirectionalSink {
 
 PixelSample sample_pixel(const Scene& scene, const Vec2& image, int depth, MisHeuristic heuristic, SplatFilm& splats,
                          SampleSource& source) {
-    const auto eye = trace_eye_subpath(scene, image, most_eye_vertices(depth), source, &source);
-    const auto light = trace_light_subpath(scene, most_light_vertices(depth), source, &source);
+    auto& [eye, light] = SubPathPair::scratch();
+    trace_eye_subpath(scene, image, most_eye_vertices(depth), source, &source, eye);
+    trace_light_subpath(scene, most_light_vertices(depth), source, &source, light);
     PixelSink pixel;
     for (std::size_t i = 1; i < eye.vertices.size() && !pixel.saw_surface(); ++i)
         pixel.see(eye.vertices[i], eye.vertices[i - 1], i == 1);

@@ -19,6 +19,10 @@ struct TracedSubPath {
                                                        ///< scattering there left out, roulette included
 
     int size() const { return static_cast<int>(vertices.size()); }
+    void clear() {
+        vertices.clear();
+        throughput.clear();
+    }
     void push_back(const Vertex& v, const Rgb& arriving) {
         vertices.push_back(v);
         throughput.push_back(arriving);

@@ -49,36 +49,42 @@ void extend(const Scene& scene, TracedSubPath& walk, From from, Departure ray, s
 
 } // namespace
 
-TracedSubPath trace_eye_subpath(const Scene& scene, const Vec2& image, int most_vertices, SampleSource& source,
-                                SampleSource* roulette) {
-    TracedSubPath walk;
+void trace_eye_subpath(const Scene& scene, const Vec2& image, int most_vertices, SampleSource& source,
+                       SampleSource* roulette, TracedSubPath& walk) {
+    walk.clear();
     Vertex eye = sample_eye(scene, source);
     eye.pdf_from_eye = scene.camera().eye_pdf();
     walk.push_back(eye, Rgb(1.0));
-    const Vec3 w = scene.camera().ray_direction(eye.point, image);
-    extend(scene, walk, From::eye, {eye.point, w, scene.camera().direction_pdf(w), Rgb(1.0)},
-           static_cast<std::size_t>(most_vertices), source, roulette);
+    if (most_vertices > 1) {
+        const Vec3 w = scene.camera().ray_direction(eye.point, image);
+        extend(scene, walk, From::eye, {eye.point, w, scene.camera().direction_pdf(w), Rgb(1.0)},
+               static_cast<std::size_t>(most_vertices), source, roulette);
+    }
     walk.vertices[0].pdf_from_light = 0; // light never hits the lens by chance
-    return walk;
 }
 
-TracedSubPath trace_light_subpath(const Scene& scene, int most_vertices, SampleSource& source, SampleSource* roulette) {
-    TracedSubPath walk;
-    if (most_vertices < 1) return walk;
+void trace_light_subpath(const Scene& scene, int most_vertices, SampleSource& source, SampleSource* roulette,
+                         TracedSubPath& walk) {
+    walk.clear();
+    if (most_vertices < 1) return;
     auto x0 = sample_emitter(scene, source);
-    if (!x0 || !(x0->pdf > 0)) return walk;
+    if (!x0 || !(x0->pdf > 0)) return;
     x0->vertex.pdf_from_light = x0->pdf;
     walk.push_back(x0->vertex, Rgb(1 / x0->pdf));
-    if (most_vertices == 1) return walk;
+    if (most_vertices == 1) return;
     const SurfacePoint& point = x0->vertex.point;
     const Emitter& emitter = scene.emitter(point.emitter);
     const EmitterRay ray = emitter.sample_ray(point, source);
     const Rgb leaving = emitter.radiance(point, ray.w) * (point.abs_cos(ray.w) / (x0->pdf * ray.pdf));
-    if (!(ray.pdf > 0) || is_black(leaving)) return walk;
+    if (!(ray.pdf > 0) || is_black(leaving)) return;
     extend(scene, walk, From::light, {ray.origin, ray.w, ray.pdf, leaving}, static_cast<std::size_t>(most_vertices),
            source, roulette);
     if (emitter.is_delta()) walk.vertices[0].pdf_from_eye = 0;
-    return walk;
+}
+
+SubPathPair& SubPathPair::scratch() {
+    thread_local SubPathPair pair;
+    return pair;
 }
 
 } // namespace keyhole

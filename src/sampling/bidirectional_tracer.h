@@ -10,13 +10,20 @@ namespace keyhole {
 inline int most_eye_vertices(int max_scatterings) { return std::min(max_scatterings, kMaxScatterings) + 2; }
 inline int most_light_vertices(int max_scatterings) { return std::min(max_scatterings, kMaxScatterings) + 1; }
 
-/// The eye's sub-path through window point `image`, [0] the eye, with at most `most_vertices`. Longer walks are ended
-/// by numbers from `roulette`; null: they are not.
-TracedSubPath trace_eye_subpath(const Scene& scene, const Vec2& image, int most_vertices, SampleSource& source,
-                                SampleSource* roulette);
+/// The eye's sub-path through window point `image` into `walk`, [0] the eye, with at most `most_vertices`. Longer walks
+/// are ended by numbers from `roulette`; null: they are not.
+void trace_eye_subpath(const Scene& scene, const Vec2& image, int most_vertices, SampleSource& source,
+                       SampleSource* roulette, TracedSubPath& walk);
 
-/// A light sub-path, [0] on an emitter, with at most `most_vertices`; empty if nothing emits.
-TracedSubPath trace_light_subpath(const Scene& scene, int most_vertices, SampleSource& source, SampleSource* roulette);
+/// A light sub-path into `walk`, [0] on an emitter, with at most `most_vertices`; empty if nothing emits.
+void trace_light_subpath(const Scene& scene, int most_vertices, SampleSource& source, SampleSource* roulette,
+                         TracedSubPath& walk);
+
+/// Room for two sub-paths, one for each thread: to make such a thing anew costs as much as to trace a ray.
+struct SubPathPair {
+    TracedSubPath eye, light;
+    static SubPathPair& scratch();
+};
 
 /// Joins every pair of vertices of two sub-paths and tells sink.contribution(connection, value, light_class) about
 /// every path of `set` among them with at most `max_scatterings`: `connection` is a Joint at connection.image() (window

@@ -21,8 +21,9 @@ template <class Sink>
 void trace_independent(Technique technique, const Scene& scene, const Vec2& image, int max_scatterings, PathSet set,
                        SampleSource& source, Sink& sink) {
     if (technique == Technique::bidirectional) {
-        const TracedSubPath eye = trace_eye_subpath(scene, image, most_eye_vertices(max_scatterings), source, &source);
-        const TracedSubPath light = trace_light_subpath(scene, most_light_vertices(max_scatterings), source, &source);
+        auto& [eye, light] = SubPathPair::scratch();
+        trace_eye_subpath(scene, image, most_eye_vertices(max_scatterings), source, &source, eye);
+        trace_light_subpath(scene, most_light_vertices(max_scatterings), source, &source, light);
         int finite = 0;
         for (std::size_t i = 1; i < eye.vertices.size(); ++i) {
             const Vertex& v = eye.vertices[i];

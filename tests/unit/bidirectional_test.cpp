@@ -63,8 +63,9 @@ TEST(Joint, CarriesWhatItsPathMeasures) {
         for (std::uint64_t i = 0; i < 600; ++i) {
             Rng rng(1, StreamPurpose::test, i);
             const Vec2 image(static_cast<float>(rng.next()), static_cast<float>(rng.next()));
-            const auto eye = trace_eye_subpath(*scene, image, 7, rng, nullptr);
-            const auto light = trace_light_subpath(*scene, 6, rng, nullptr);
+            auto& [eye, light] = SubPathPair::scratch();
+            trace_eye_subpath(*scene, image, 7, rng, nullptr, eye);
+            trace_light_subpath(*scene, 6, rng, nullptr, light);
             for (int t = 1; t <= eye.size(); ++t)
                 for (int s = t == 1 ? 1 : 0; s <= light.size(); ++s) {
                     const Joint joint(*scene, light, s, eye, t, image);

@@ -44,15 +44,9 @@ std::unique_ptr<PathBuilder> make_bidirectional_builder(const BuilderContext& co
 /// (Hachisuka, Kaplanyan and Dachsbacher 2014).
 std::unique_ptr<PathBuilder> make_multiplexed_builder(const BuilderContext& context, int scatterings);
 
-/// What the numbers of a multiplexed builder make: sub-paths to be joined.
-struct MultiplexedTrace {
-    TracedSubPath eye, light;
-    int s, t;
-    Vec2 image; ///< of the eye sub-path
-};
-
-/// None if a sub-path ends too early.
-std::optional<MultiplexedTrace> trace_multiplexed(const Scene& scene, int scatterings, PrimarySources sources);
+/// The joint of what the numbers of a multiplexed builder make. None if a sub-path ends too early. Refers to the
+/// thread's SubPathPair::scratch().
+std::optional<Joint> multiplexed_joint(const Scene& scene, int scatterings, PrimarySources sources);
 
 /// Of a multiplexed builder: the number of techniques, and that which a number in [0,1) chooses, by its s.
 inline int technique_count(int scatterings) { return scatterings + 2; }

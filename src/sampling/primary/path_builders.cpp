@@ -42,9 +42,10 @@ class EndpointBuilder final : public PathBuilder {
         const int t = 1 + geometric(sources.choice.next()), s = geometric(sources.choice.next());
         if (s + t < 2 || s + t - 2 > c_.max_scatterings) return;
         const Vec2 image = window_point(sources.eye);
-        const TracedSubPath eye = trace_eye_subpath(*c_.scene, image, t, sources.eye, nullptr);
+        auto& [eye, light] = SubPathPair::scratch();
+        trace_eye_subpath(*c_.scene, image, t, sources.eye, nullptr, eye);
         if (eye.size() < t) return;
-        const TracedSubPath light = trace_light_subpath(*c_.scene, s, sources.light, nullptr);
+        trace_light_subpath(*c_.scene, s, sources.light, nullptr, light);
         if (light.size() < s) return;
         Joint joint(*c_.scene, light, s, eye, t, image);
         add_joint(joint, c_.heuristic, probability(t - 1) * probability(s), sample);
@@ -65,10 +66,9 @@ class BidirectionalBuilder final : public PathBuilder {
 
     void build(PrimarySources sources, PathSample& sample) const override {
         const Vec2 image = window_point(sources.eye);
-        const TracedSubPath eye =
-            trace_eye_subpath(*c_.scene, image, most_eye_vertices(c_.max_scatterings), sources.eye, &sources.eye);
-        const TracedSubPath light =
-            trace_light_subpath(*c_.scene, most_light_vertices(c_.max_scatterings), sources.light, &sources.light);
+        auto& [eye, light] = SubPathPair::scratch();
+        trace_eye_subpath(*c_.scene, image, most_eye_vertices(c_.max_scatterings), sources.eye, &sources.eye, eye);
+        trace_light_subpath(*c_.scene, most_light_vertices(c_.max_scatterings), sources.light, &sources.light, light);
         struct {
             PathSample& sample;
             void contribution(const Joint& joint, const Rgb& value, LightClass kind) {
@@ -88,10 +88,8 @@ class MultiplexedBuilder final : public PathBuilder {
     std::string_view name() const override { return "multiplexed"; }
 
     void build(PrimarySources sources, PathSample& sample) const override {
-        const auto trace = trace_multiplexed(*c_.scene, scatterings_, sources);
-        if (!trace) return;
-        Joint joint(*c_.scene, trace->light, trace->s, trace->eye, trace->t, trace->image);
-        add_joint(joint, c_.heuristic, 1.0 / technique_count(scatterings_), sample);
+        auto joint = multiplexed_joint(*c_.scene, scatterings_, sources);
+        if (joint) add_joint(*joint, c_.heuristic, 1.0 / technique_count(scatterings_), sample);
     }
 
   private:
@@ -101,16 +99,16 @@ class MultiplexedBuilder final : public PathBuilder {
 
 } // namespace
 
-std::optional<MultiplexedTrace> trace_multiplexed(const Scene& scene, int scatterings, PrimarySources sources) {
-    MultiplexedTrace m;
-    m.s = chosen_technique(sources.choice.next(), scatterings);
-    m.t = technique_count(scatterings) - m.s; // never 0: nothing meets the lens by chance
-    m.image = window_point(sources.eye);
-    m.eye = trace_eye_subpath(scene, m.image, m.t, sources.eye, nullptr);
-    if (m.eye.size() < m.t) return std::nullopt;
-    m.light = trace_light_subpath(scene, m.s, sources.light, nullptr);
-    if (m.light.size() < m.s) return std::nullopt;
-    return m;
+std::optional<Joint> multiplexed_joint(const Scene& scene, int scatterings, PrimarySources sources) {
+    const int s = chosen_technique(sources.choice.next(), scatterings);
+    const int t = technique_count(scatterings) - s; // never 0: nothing meets the lens by chance
+    const Vec2 image = window_point(sources.eye);
+    auto& [eye, light] = SubPathPair::scratch();
+    trace_eye_subpath(scene, image, t, sources.eye, nullptr, eye);
+    if (eye.size() < t) return std::nullopt;
+    trace_light_subpath(scene, s, sources.light, nullptr, light);
+    if (light.size() < s) return std::nullopt;
+    return Joint(scene, light, s, eye, t, image);
 }
 
 std::unique_ptr<PathBuilder> make_path_builder(const BuilderContext& context) {

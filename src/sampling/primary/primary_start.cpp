@@ -123,8 +123,9 @@ std::vector<PrimaryStratum> start_by_length(const BuilderContext& builders, cons
     const int most = builders.max_scatterings;
     const auto sample = [&](std::int64_t i, PrimaryRandom& random, std::vector<Find>& found) {
         const Vec2 image = window_point(random.eye);
-        const auto eye = trace_eye_subpath(scene, image, most_eye_vertices(most), random.eye, &random.choice);
-        const auto light = trace_light_subpath(scene, most_light_vertices(most), random.light, &random.choice);
+        auto& [eye, light] = SubPathPair::scratch();
+        trace_eye_subpath(scene, image, most_eye_vertices(most), random.eye, &random.choice, eye);
+        trace_light_subpath(scene, most_light_vertices(most), random.light, &random.choice, light);
         struct {
             std::int64_t i;
             std::vector<Find>& found;

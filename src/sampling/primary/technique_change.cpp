@@ -113,12 +113,10 @@ bool TechniqueChange::edit(const Path& path, int from, int to, Rng& rng, Edits& 
 
 bool TechniqueChange::move(PrimaryState& state, Rng& rng, ChangeCounts& counts) const {
     ++counts.proposed;
-    const auto trace = trace_multiplexed(*c_.scene, scatterings_, state.replay());
-    if (!trace) return false;
-    const Joint joint(*c_.scene, trace->light, trace->s, trace->eye, trace->t, trace->image);
-    if (!joint.possible()) return false;
-    const Path path = joint.path();
-    const int s = trace->s,
+    const auto joint = multiplexed_joint(*c_.scene, scatterings_, state.replay());
+    if (!joint || !joint->possible()) return false;
+    const Path path = joint->path();
+    const int s = joint->s(),
               other = static_cast<int>(rng.below(static_cast<std::uint32_t>(technique_count(scatterings_))));
     if (other == s) return false;
     const double density = technique_density(path, s), new_density = technique_density(path, other);
