@@ -3,6 +3,7 @@
 
 #include <pcg_random.hpp>
 
+#include <array>
 #include <cstdint>
 
 namespace keyhole {
@@ -31,16 +32,24 @@ enum class StreamPurpose : std::uint64_t {
     cache,
     irradiance,
     lattice,
+    chain_points,
 };
 
 /// PCG32 (O'Neill 2014). One for each chain and each pixel, never for each thread, so that a picture does not
 /// depend on how work was divided.
-class Rng final : public SampleSource {
+class Rng : public SampleSource {
   public:
     Rng(std::uint64_t seed, StreamPurpose purpose, std::uint64_t index)
         : engine_(mix(seed, index), mix(index, static_cast<std::uint64_t>(purpose))) {}
 
-    double next() override { return static_cast<double>(engine_()) * 0x1p-32; }
+    double next() final { return static_cast<double>(engine_()) * 0x1p-32; }
+
+    /// A point of the unit square, uniform and independent of all that this stream gave before. Streams that run side
+    /// by side may spread theirs evenly among each other.
+    virtual std::array<double, 2> next_point() {
+        const double x = next();
+        return {x, next()};
+    }
 
     /// Uniform integer in [0, n); n > 0.
     std::uint32_t below(std::uint32_t n) { return engine_(n); }

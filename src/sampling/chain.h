@@ -10,11 +10,11 @@
 namespace keyhole {
 
 /// A Metropolis-Hastings chain (Metropolis et al. 1953, Hastings 1970) over `State`, which has a member
-/// `double target`. Invariant: state().target > 0. Not thread-safe; each chain has a random stream of its own.
-template <class State> class Chain {
+/// `double target`. Invariant: state().target > 0. Not thread-safe; each chain has a random stream of its own, an Rng.
+template <class State, class Stream = Rng> class Chain {
   public:
     /// `mixture` must outlive the chain. `initial.target` must be positive.
-    Chain(State initial, const Mixture<State>& mixture, Rng rng)
+    Chain(State initial, const Mixture<State>& mixture, Stream rng)
         : state_(std::move(initial)), mixture_(&mixture), rng_(rng), ledger_(mixture.size()) {}
 
     const State& state() const { return state_; }
@@ -84,7 +84,7 @@ template <class State> class Chain {
 
     State state_;
     const Mixture<State>* mixture_;
-    Rng rng_;
+    Stream rng_;
     Ledger ledger_;
     std::optional<std::size_t> maker_; ///< the kind that made the state; none for the initial one
     std::uint64_t stay_ = 0, longest_stay_ = 0;

@@ -5,6 +5,7 @@
 #include "core/progress.h"
 #include "sampling/agreement.h"
 #include "sampling/chain.h"
+#include "sampling/chain_stream.h"
 #include "sampling/guidance.h"
 #include "sampling/path.h"
 
@@ -38,9 +39,9 @@ class ChainSet {
         if (control != nullptr) tally_.emplace(size());
         parallel_for(size(), [&](std::int64_t c) {
             const auto i = static_cast<std::size_t>(c);
-            chains_[i] =
-                std::make_unique<Chain<Path>>(seeds[i], control != nullptr && is_control(c) ? *control : mixture,
-                                              Rng(seed, StreamPurpose::chain, 2 * static_cast<std::uint64_t>(c)));
+            chains_[i] = std::make_unique<Chain<Path, ChainStream>>(
+                seeds[i], control != nullptr && is_control(c) ? *control : mixture,
+                ChainStream(seed, static_cast<std::uint64_t>(c)));
         });
     }
 
@@ -51,7 +52,7 @@ class ChainSet {
     /// Advances every chain by `steps` steps. Calls deposit(chain, path, weight), for different chains at once.
     template <class Deposit> void advance(std::int64_t steps, const RunContext& context, Deposit&& deposit) {
         parallel_for(size(), [&](std::int64_t c) {
-            Chain<Path>& chain = *chains_[static_cast<std::size_t>(c)];
+            Chain<Path, ChainStream>& chain = *chains_[static_cast<std::size_t>(c)];
             for (std::int64_t i = 0; i < steps; ++i)
                 chain.step([&](const Path& path, double weight) {
                     monitor_.add(c, path.image, weight);
@@ -79,7 +80,7 @@ class ChainSet {
     }
 
   private:
-    std::vector<std::unique_ptr<Chain<Path>>> chains_;
+    std::vector<std::unique_ptr<Chain<Path, ChainStream>>> chains_;
     AgreementMonitor monitor_;
     std::optional<GuidanceTally> tally_;
     std::int64_t steps_ = 0;

@@ -1,4 +1,5 @@
 // Every kind of proposal alone, on scenes that differ in what paths they have.
+#include "scene/load/scene_yaml.h"
 #include "support/invariance.h"
 #include "support/test_scenes.h"
 
@@ -18,6 +19,10 @@ const SceneCase kScenes[] = {
     {"ThinLens", [] { return test::mirror_glass_box(0.1f); }},
     {"PointLight", test::point_light_box},
     {"TwoRooms", [] { return test::two_rooms(0.5f); }},
+    {"RoomsLow",
+     [] {
+         return std::make_unique<Scene>(load_scene(KEYHOLE_SOURCE_DIR "/tests/data/rooms_low/rooms.yaml").description);
+     }},
     {"Furnace", [] { return test::furnace(0.6); }},
     {"Haze", test::hazy_box},
     {"Sky", test::sky_box},
@@ -34,7 +39,7 @@ TEST_P(Proposal_LeavesTheTargetAlone, Alone) {
     Mixture<Path> mixture;
     mixture.add(proposal_kinds()[kind].make(context), 1);
     const test::Invariance result = test::measure_invariance(*scene, mixture, PathSet::stored, 120'000, 11);
-    if (result.ledger.at(0).proposed == 0) GTEST_SKIP() << "nothing here that this kind can move";
+    if (result.ledger.at(0).proposed < 100) GTEST_SKIP() << "next to nothing here that this kind can move";
     EXPECT_GT(result.ledger.at(0).accepted, 50u);
     // Rounding of positions may put a step outside its support: seldom.
     EXPECT_LE(result.ledger.at(0).nan * 10'000, result.ledger.at(0).proposed);

@@ -47,7 +47,8 @@ std::optional<Path> LensSubpath::propose(const Path& x, Rng& rng, Failure& why) 
     const int d1 = lens_subpath_start(x);
     SubPath light, eye;
     for (int i = 0; i < d1; ++i) light.push_back(x.x[static_cast<std::size_t>(i)]);
-    const Vec2 image(static_cast<float>(rng.next()), static_cast<float>(rng.next()));
+    const auto [u, v] = rng.next_point();
+    const Vec2 image(static_cast<float>(u), static_cast<float>(v));
     if (!trace_eye(eye, image, max_vertices_ - d1, rng, why)) return std::nullopt;
     return join(scene_, set_, light, eye, image, why);
 }
