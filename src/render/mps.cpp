@@ -88,7 +88,7 @@ RenderResult render_mps(const Scene& scene, const Settings& settings, const User
     SampledPhotons photons;
     if (one.brightness.mean() > 0) photons = run_stage_two(scene, settings, first, paths, one, patches, stats, context);
 
-    Film film(scene.camera().window().width, scene.camera().window().height);
+    Film film(scene.camera().window().width, scene.camera().window().height, PixelFilter(settings));
     {
         const StageClock clock(stats, "gather");
         const PhotonMap global(std::move(photons.global)), caustic(std::move(photons.caustic));
