@@ -34,10 +34,10 @@ struct Exception {
 
 /// A picture to be held against. Bounds are relative; the README of ../shared says how far each can be trusted.
 struct Reference {
-    const char *name, *scene;
-    std::vector<const char*> files; ///< independent pictures: their mean counts
-    int shrink;                     ///< the short test renders at 1 / shrink of the picture's size
-    int spp;                        ///< of a run of the short test
+    std::string name, scene;
+    std::vector<std::string> files{}; ///< independent pictures: their mean counts
+    int shrink = 1;                   ///< the short test renders at 1 / shrink of the picture's size
+    int spp = 8;                      ///< of a run of the short test
     double ratio, block;
     Area mask{0, 0, 0, 0}; ///< pixels of the short test's picture that don't count
     std::vector<Exception> exceptions{};
@@ -88,6 +88,39 @@ bool long_form() {
     return form != nullptr && std::strcmp(form, "long") == 0;
 }
 
+/// Block means of the reference, at 1 / shrink of its size, and that size.
+struct Expected {
+    std::vector<double> means;
+    int width = 0, height = 0;
+};
+Expected expectation(const Reference& r, const fs::path& root, int shrink, const Area& mask) {
+    Expected e;
+    for (const std::string& file : r.files) {
+        const Image picture = shrunk(read_exr((root / file).string()).layers.at("beauty"), shrink);
+        const auto means = block_means(picture, kBlock, mask);
+        e.means.resize(means.size(), 0);
+        for (std::size_t b = 0; b < means.size(); ++b) e.means[b] += means[b] / static_cast<double>(r.files.size());
+        e.width = picture.width;
+        e.height = picture.height;
+    }
+    return e;
+}
+
+/// Block means of independent pictures by `path`.
+std::vector<RunningStats> rendered(LoadedScene loaded, int spp, const Area& mask) {
+    Settings settings = loaded.settings;
+    settings.method = "path";
+    settings.spp = spp;
+    Scene scene(std::move(loaded.description));
+    std::vector<RunningStats> found;
+    for (int run = 0; run < kRuns; ++run, ++settings.seed) {
+        const auto means = block_means(render(scene, settings, {}).picture.layers.at("beauty"), kBlock, mask);
+        found.resize(means.size());
+        for (std::size_t b = 0; b < means.size(); ++b) found[b].add(means[b]);
+    }
+    return found;
+}
+
 class References_Agree : public testing::TestWithParam<Reference> {};
 
 } // namespace
@@ -96,116 +129,90 @@ TEST_P(References_Agree, InBrightnessAndBlocks) {
     const Reference& r = GetParam();
     const fs::path root = fs::path(KEYHOLE_SOURCE_DIR) / "../shared";
     if (!fs::exists(root / r.scene)) GTEST_SKIP() << "no " << (root / r.scene);
-    const int shrink = long_form() ? 1 : r.shrink, grow = r.shrink / shrink;
+    const int grow = long_form() ? r.shrink : 1, shrink = r.shrink / grow;
     const Area mask{r.mask.x0 * grow, r.mask.y0 * grow, r.mask.x1 * grow, r.mask.y1 * grow};
-    std::vector<double> expected;
-    Image size;
-    for (const char* file : r.files) {
-        const Image reference = shrunk(read_exr((root / file).string()).layers.at("beauty"), shrink);
-        const auto means = block_means(reference, kBlock, mask);
-        expected.resize(means.size(), 0);
-        for (std::size_t b = 0; b < means.size(); ++b) expected[b] += means[b] / static_cast<double>(r.files.size());
-        size = reference;
-    }
-
+    const Expected expected = expectation(r, root, shrink, mask);
     LoadedScene loaded = load((root / r.scene).string());
-    loaded.description.window = {size.width, size.height, 0};
-    Settings settings = loaded.settings;
-    settings.method = "path";
-    settings.spp = long_form() ? r.spp * 16 / (grow * grow) + 1 : r.spp;
-    if (shrink > 1) settings.filter = "box", settings.filter_radius = 0.5;
-    Scene scene(std::move(loaded.description));
-    std::vector<RunningStats> found(expected.size());
-    for (int run = 0; run < kRuns; ++run, ++settings.seed) {
-        const Picture picture = render(scene, settings, {}).picture;
-        const auto means = block_means(picture.layers.at("beauty"), kBlock, mask);
-        for (std::size_t b = 0; b < means.size(); ++b) found[b].add(means[b]);
+    loaded.description.window = {expected.width, expected.height, 0};
+    if (shrink > 1) { // as the reference is shrunk
+        loaded.settings.filter = "box";
+        loaded.settings.filter_radius = 0.5;
     }
+    const auto found = rendered(std::move(loaded), long_form() ? 1 + r.spp * 16 / (grow * grow) : r.spp, mask);
 
-    const double whole = expected.back();
-    const int across = (size.width + kBlock - 1) / kBlock;
+    const double whole = expected.means.back();
+    const int across = (expected.width + kBlock - 1) / kBlock;
     double worst = 0;
-    int wrong = 0;
-    std::string report;
-    for (std::size_t b = 0; b + 1 < expected.size(); ++b) {
+    std::string wrong;
+    for (std::size_t b = 0; b + 1 < found.size(); ++b) {
         const int x = static_cast<int>(b) % across, y = static_cast<int>(b) / across;
         double bound = r.block;
         for (const Exception& e : r.exceptions)
-            if (e.blocks.holds(x * shrink / r.shrink, y * shrink / r.shrink)) bound = std::max(bound, e.bound);
+            if (e.blocks.holds(x / grow, y / grow)) bound = std::max(bound, e.bound);
         // What is nearly black may be off by as much as a hundredth of the picture's mean would.
-        const double difference = found[b].mean() - expected[b], scale = std::max(expected[b], 0.01 * whole);
-        worst = std::max(worst, std::abs(difference) / scale);
-        if (std::abs(difference) <= bound * scale + 4 * found[b].standard_error()) continue;
-        ++wrong;
-        report += fmt::format("block ({}, {}): {:+.1f} %, standard error {:.1f} %\n", x, y, 100 * difference / scale,
-                              100 * found[b].standard_error() / scale);
+        const double scale = std::max(expected.means[b], 0.01 * whole);
+        const double difference = (found[b].mean() - expected.means[b]) / scale,
+                     error = found[b].standard_error() / scale;
+        worst = std::max(worst, std::abs(difference));
+        if (std::abs(difference) > bound + 4 * error)
+            wrong += fmt::format("block ({}, {}): {:+.1f} %, standard error {:.1f} %\n", x, y, 100 * difference,
+                                 100 * error);
     }
     const double ratio = found.back().mean() / whole, error = found.back().standard_error() / whole;
     const std::string figures =
         fmt::format("brightness ratio {:.4f}, standard error {:.4f}; largest difference of a block {:.1f} %", ratio,
                     error, 100 * worst);
-    RecordProperty("figures", figures);
-    std::printf("%s: %s\n", r.name, figures.c_str());
+    std::printf("%s: %s\n", r.name.c_str(), figures.c_str());
     EXPECT_LE(std::abs(ratio - 1), r.ratio + 4 * error) << figures;
-    EXPECT_EQ(wrong, 0) << report;
+    EXPECT_EQ(wrong, "") << figures;
 }
 
 namespace {
 
-const char* const kFlat = "pbrt's coateddiffuse ends walks within the coat after ten events, five of them at the base";
+/// Made with Tungsten at 1024 x 1024, in RGB as we are: exact but for noise.
+Reference exact(const char* name, const std::string& folder) {
+    return {.name = name,
+            .scene = "scenes/" + folder + "/scene.pbrt",
+            .files = {"scenes/" + folder + "/TungstenRender.exr"},
+            .shrink = 8,
+            .ratio = 0.01,
+            .block = 0.03};
+}
 
-INSTANTIATE_TEST_SUITE_P(
-    Shared, References_Agree,
-    testing::Values(
-        Reference{"cornell_box",
-                  "scenes/cornell-box/scene.pbrt",
-                  {"scenes/cornell-box/TungstenRender.exr"},
-                  8,
-                  32,
-                  0.01,
-                  0.03},
-        Reference{"veach_bidir",
-                  "scenes/veach-bidir/scene.pbrt",
-                  {"scenes/veach-bidir/TungstenRender.exr"},
-                  8,
-                  32,
-                  0.01,
-                  0.03},
-        Reference{"water_caustic",
-                  "scenes/water-caustic/scene.pbrt",
-                  {"scenes/water-caustic/TungstenRender.exr"},
-                  8,
-                  32,
-                  0.01,
-                  0.03},
-        Reference{
-            "box", "scenes/mps/box.pbrt", {"references/mps/box.a.exr", "references/mps/box.b.exr"}, 2, 16, 0.02, 0.03},
-        Reference{"rooms",
-                  "scenes/mps/rooms.pbrt",
-                  {"references/mps/rooms.a.exr", "references/mps/rooms.b.exr"},
-                  2,
-                  16,
-                  0.01,
-                  0.03},
-        Reference{"lantern",
-                  "scenes/mps/lantern.pbrt",
-                  {"references/mps/lantern.a.exr", "references/mps/lantern.b.exr"},
-                  2,
-                  16,
-                  0.01,
-                  0.03,
-                  {55, 35, 95, 80}},
-        Reference{"veach_ajar",
-                  "scenes/veach-ajar/scene.pbrt",
-                  {"references/veach-ajar.a.exr", "references/veach-ajar.b.exr"},
-                  1,
-                  16,
-                  0.02,
-                  0.1},
-        Reference{"coffee", "scenes/coffee/scene.pbrt", {"references/coffee.exr"}, 1, 16, 0.1, 0.1},
-        Reference{"dining_room", "scenes/dining-room/scene.pbrt", {"references/dining-room.exr"}, 1, 16, 0.02, 0.1},
-        Reference{"bathroom", "scenes/bathroom/scene.pbrt", {"references/bathroom.exr"}, 1, 16, 0.02, 0.1}),
-    [](const auto& info) { return std::string(info.param.name); });
+/// By pbrt-v4, which is spectral, and Mitsuba at 320 x 240.
+Reference peers(const std::string& name) {
+    return {.name = name,
+            .scene = "scenes/mps/" + name + ".pbrt",
+            .files = {"references/mps/" + name + ".a.exr", "references/mps/" + name + ".b.exr"},
+            .shrink = 2,
+            .ratio = 0.01,
+            .block = 0.03};
+}
+
+/// By pbrt-v4 at about 128 x 128: within 2 % on grey surfaces and 10 % beside saturated ones and on coateddiffuse.
+Reference approximate(const char* name, const std::string& folder, const std::vector<std::string>& files) {
+    Reference r{.name = name, .scene = "scenes/" + folder + "/scene.pbrt", .ratio = 0.02, .block = 0.1};
+    for (const std::string& file : files) r.files.push_back("references/" + file + ".exr");
+    return r;
+}
+
+std::vector<Reference> references() {
+    std::vector<Reference> list{exact("cornell_box", "cornell-box"),
+                                exact("veach_bidir", "veach-bidir"),
+                                exact("water_caustic", "water-caustic"),
+                                peers("box"),
+                                peers("rooms"),
+                                peers("lantern"),
+                                approximate("veach_ajar", "veach-ajar", {"veach-ajar.a", "veach-ajar.b"}),
+                                approximate("coffee", "coffee", {"coffee"}),
+                                approximate("dining_room", "dining-room", {"dining-room"}),
+                                approximate("bathroom", "bathroom", {"bathroom"})};
+    list[5].mask = {55, 35, 95, 80}; // the lantern itself
+    return list;
+}
+
+INSTANTIATE_TEST_SUITE_P(Shared, References_Agree, testing::ValuesIn(references()),
+                         [](const auto& info) { return info.param.name; });
 
 } // namespace
 } // namespace keyhole
