@@ -45,7 +45,6 @@ int run(int argc, char** argv) {
     add_diff_command(app, action);
     add_paths_command(app, action);
     add_experiment_command(app, action);
-    add_paths_command(app, action);
     add_info_command(app, action);
     try {
         app.parse(argc, argv);
