@@ -20,5 +20,6 @@ void add_render_command(CLI::App& app, Action& action, const std::string& comman
 void add_diff_command(CLI::App& app, Action& action);
 void add_paths_command(CLI::App& app, Action& action);
 void add_experiment_command(CLI::App& app, Action& action);
+void add_info_command(CLI::App& app, Action& action);
 
 } // namespace keyhole

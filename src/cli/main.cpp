@@ -45,6 +45,7 @@ int run(int argc, char** argv) {
     add_diff_command(app, action);
     add_paths_command(app, action);
     add_experiment_command(app, action);
+    add_info_command(app, action);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {

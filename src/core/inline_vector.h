@@ -1,21 +1,24 @@
 // A vector with a fixed capacity and no allocation: paths are copied in the innermost loop of a chain.
 #pragma once
 
-#include <array>
 #include <cassert>
 #include <cstddef>
+#include <memory>
+#include <type_traits>
 
 namespace keyhole {
 
-/// Copies only the elements in use. Invariant: size() <= N. Elements past size() are unspecified.
+/// Makes and copies only the elements in use: capacity costs nothing. Invariant: size() <= N.
 template <class T, std::size_t N> class InlineVector {
+    static_assert(std::is_trivially_destructible_v<T>);
+
   public:
-    InlineVector() = default;
-    InlineVector(const InlineVector& o) { *this = o; }
+    InlineVector() {}
+    InlineVector(const InlineVector& o) : size_(o.size_) { std::uninitialized_copy_n(o.items_, size_, items_); }
     InlineVector& operator=(const InlineVector& o) {
         if (this != &o) {
             size_ = o.size_;
-            for (std::size_t i = 0; i < size_; ++i) items_[i] = o.items_[i];
+            std::uninitialized_copy_n(o.items_, size_, items_);
         }
         return *this;
     }
@@ -36,14 +39,14 @@ template <class T, std::size_t N> class InlineVector {
     }
     T& back() { return (*this)[size_ - 1]; }
     const T& back() const { return (*this)[size_ - 1]; }
-    T* begin() { return items_.data(); }
-    T* end() { return items_.data() + size_; }
-    const T* begin() const { return items_.data(); }
-    const T* end() const { return items_.data() + size_; }
+    T* begin() { return items_; }
+    T* end() { return items_ + size_; }
+    const T* begin() const { return items_; }
+    const T* end() const { return items_ + size_; }
 
     void push_back(const T& v) {
         assert(!full());
-        items_[size_++] = v;
+        std::construct_at(items_ + size_++, v);
     }
     void pop_back() {
         assert(!empty());
@@ -52,12 +55,15 @@ template <class T, std::size_t N> class InlineVector {
     void clear() { size_ = 0; }
     void resize(std::size_t n) {
         assert(n <= N);
+        if (n > size_) std::uninitialized_value_construct_n(items_ + size_, n - size_);
         size_ = n;
     }
 
   private:
-    std::array<T, N> items_;
     std::size_t size_ = 0;
+    union {
+        T items_[N]; // alive below size_
+    };
 };
 
 } // namespace keyhole

@@ -30,6 +30,9 @@ struct Settings {
     std::int64_t spp = 16;
     std::int64_t seed = 1;
     std::int64_t max_depth = 24;
+    std::string filter = "gaussian";
+    double filter_radius = 0;
+    double filter_sigma = 0;
     std::int64_t brightness_samples = 400'000;
     std::int64_t importons = 600'000;
     std::int64_t chains = 1000;
@@ -71,7 +74,10 @@ template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
           "rendering method");
     visit("spp", s.spp, I{1}, I{1} << 24, "samples per pixel");
     visit("seed", s.seed, I{0}, I{1} << 53, "seed of all random streams");
-    visit("max_depth", s.max_depth, I{1}, I{30}, "most scatterings between light and eye");
+    visit("max_depth", s.max_depth, I{1}, I{126}, "most scatterings between light and eye");
+    visit("filter", s.filter, std::vector<std::string_view>{"gaussian", "box", "triangle"}, "reconstruction filter");
+    visit("filter_radius", s.filter_radius, 0.0, 16.0, "its reach in pixels; 0: 0.5 of a box, 1 of the others");
+    visit("filter_sigma", s.filter_sigma, 0.0, 16.0, "of a Gaussian, in pixels; 0: its radius");
     visit("brightness_samples", s.brightness_samples, I{1000}, I{1} << 40, "path samples of stage one");
     visit("importons", s.importons, I{1000}, I{1} << 30, "eye paths traced for the importance map");
     visit("chains", s.chains, I{1}, I{1} << 20, "Markov chains; their number never follows the threads");

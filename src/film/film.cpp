@@ -8,8 +8,9 @@
 
 namespace keyhole {
 
-Film::Film(int width, int height)
-    : width_(width), height_(height), pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
+Film::Film(int width, int height, const PixelFilter& filter)
+    : width_(width), height_(height), filter_(filter),
+      pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
     assert(width > 0 && height > 0);
 }
 

@@ -3,6 +3,7 @@
 
 #include "core/pixel_sample.h"
 #include "core/render_stats.h"
+#include "film/filter.h"
 #include "film/picture.h"
 
 #include <array>
@@ -13,7 +14,7 @@
 
 namespace keyhole {
 
-/// Pixels are means of their samples, each of weight 1 (see GaussianFilter).
+/// Pixels are means of their samples, each of weight 1 (see PixelFilter).
 /// Thread safety: add() for different pixels may run at once; a pixel belongs to one thread at a time.
 class Film {
   public:
@@ -32,10 +33,12 @@ class Film {
                                                    {"photon_density", 1, false}}};
 
     /// @param width,height in pixels, at least 1.
-    Film(int width, int height);
+    Film(int width, int height, const PixelFilter& filter = PixelFilter());
 
     int width() const { return width_; }
     int height() const { return height_; }
+    /// What samples are to be distributed as around their pixels' centres.
+    const PixelFilter& filter() const { return filter_; }
 
     /// Adds a sample to pixel (x, y). A sample with a number that is not finite, or negative where it can't be, is
     /// dropped as a whole, so that the layers stay means over the same samples; it is counted for each layer at fault.
@@ -71,6 +74,7 @@ class Film {
     std::size_t index(int x, int y) const;
 
     int width_, height_;
+    PixelFilter filter_;
     std::vector<Pixel> pixels_;
     std::array<std::atomic<std::uint64_t>, kLayers.size()> dropped_{};
 };

@@ -1,36 +1,51 @@
 #include "film/filter.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace keyhole {
-namespace {
 
-constexpr double kScale = 1.0 / (GaussianFilter::kSigma * std::numbers::sqrt2);
-
-/// Share of the untruncated Gaussian within the support, along one axis.
-const double kMass = std::erf(GaussianFilter::kRadius * kScale);
-
-double density_1d(double x) {
-    if (!(std::abs(x) <= GaussianFilter::kRadius)) return 0.0;
-    const double t = x * kScale;
-    return kScale * std::numbers::inv_sqrtpi * std::exp(-t * t) / kMass;
+PixelFilter::PixelFilter(const Settings& settings)
+    : shape_(settings.filter == "box"        ? Shape::box
+             : settings.filter == "triangle" ? Shape::triangle
+                                             : Shape::gaussian),
+      radius_(settings.filter_radius) {
+    if (radius_ == 0) radius_ = shape_ == Shape::box ? 0.5 : 1.0;
+    if (shape_ != Shape::gaussian) return;
+    const double sigma = settings.filter_sigma > 0 ? settings.filter_sigma : radius_;
+    scale_ = 1 / (sigma * std::numbers::sqrt2);
+    mass_ = std::erf(radius_ * scale_);
 }
 
-/// Inverse of the distribution function. On [0, radius] that function is concave, so Newton's method falls below the
-/// root in its first step from the chord and then rises to it; the third step is exact to 1e-14.
-double sample_1d(double u) {
-    const double target = std::abs(2.0 * u - 1.0);
-    double x = target * GaussianFilter::kRadius;
-    for (int step = 0; step < 4; ++step) x -= (std::erf(x * kScale) / kMass - target) / (2.0 * density_1d(x));
+double PixelFilter::density_1d(double x) const {
+    const double r = std::abs(x);
+    if (!(r <= radius_)) return 0;
+    if (shape_ == Shape::box) return 0.5 / radius_;
+    if (shape_ == Shape::triangle) return (1 - r / radius_) / radius_;
+    return scale_ * std::numbers::inv_sqrtpi * std::exp(-r * r * scale_ * scale_) / mass_;
+}
+
+/// Inverse of the distribution function.
+double PixelFilter::sample_1d(double u) const {
+    const double target = std::abs(2 * u - 1); // of the mass up to |x|
+    if (shape_ == Shape::box) return std::copysign(target * radius_, u - 0.5);
+    if (shape_ == Shape::triangle) return std::copysign((1 - std::sqrt(1 - target)) * radius_, u - 0.5);
+    // The distribution function is concave on [0, radius], so that Newton's method rises from 0 to the root and never
+    // passes it but by rounding.
+    double x = 0;
+    for (int step = 0; step < 60; ++step) {
+        const double move = (target - std::erf(x * scale_) / mass_) / (2 * density_1d(x));
+        if (!(move > 1e-9 * radius_)) break;
+        x = std::min(x + move, radius_);
+    }
     return std::copysign(x, u - 0.5);
 }
 
-} // namespace
-
-Vec2 GaussianFilter::sample_offset(double u0, double u1) const {
+Vec2 PixelFilter::sample_offset(double u0, double u1) const {
     return {static_cast<float>(sample_1d(u0)), static_cast<float>(sample_1d(u1))};
 }
 
-double GaussianFilter::density(const Vec2& offset) const { return density_1d(offset.x) * density_1d(offset.y); }
+double PixelFilter::density(const Vec2& offset) const { return density_1d(offset.x) * density_1d(offset.y); }
 
 } // namespace keyhole

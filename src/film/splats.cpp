@@ -11,15 +11,16 @@ constexpr std::size_t kChannels = 3, kPerPixel = 3 * kChannels;
 
 } // namespace
 
-SplatFilm::SplatFilm(int width, int height)
-    : width_(width), height_(height),
+SplatFilm::SplatFilm(int width, int height, const PixelFilter& filter)
+    : width_(width), height_(height), filter_(filter),
       sums_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * kPerPixel) {
     assert(width > 0 && height > 0);
 }
 
 void SplatFilm::add(const Vec2& position, Layer layer, const Rgb& value) {
-    const auto first = [](float x) { return static_cast<int>(std::ceil(x - 0.5 - GaussianFilter::kRadius)); };
-    const auto last = [](float x) { return static_cast<int>(std::floor(x - 0.5 + GaussianFilter::kRadius)); };
+    const double reach = filter_.radius();
+    const auto first = [reach](float x) { return static_cast<int>(std::ceil(x - 0.5 - reach)); };
+    const auto last = [reach](float x) { return static_cast<int>(std::floor(x - 0.5 + reach)); };
     for (int y = std::max(0, first(position.y)); y <= std::min(height_ - 1, last(position.y)); ++y) {
         for (int x = std::max(0, first(position.x)); x <= std::min(width_ - 1, last(position.x)); ++x) {
             const Vec2 centre(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);

@@ -32,7 +32,7 @@ class SplatFilm {
     }
 
     /// @param width,height in pixels, at least 1.
-    SplatFilm(int width, int height);
+    SplatFilm(int width, int height, const PixelFilter& filter = PixelFilter());
 
     /// Adds `value` at `position` [pixels] to all pixels whose filter reaches it. Positions may lie outside the film.
     void add(const Vec2& position, Layer layer, const Rgb& value);
@@ -42,7 +42,7 @@ class SplatFilm {
 
   private:
     int width_, height_;
-    GaussianFilter filter_;
+    PixelFilter filter_;
     std::vector<FixedSum> sums_; ///< by pixel, layer and channel
 };
 

@@ -43,8 +43,8 @@ PixelSample sample_pixel(const Scene& scene, const Vec2& image, int depth, MisHe
 RenderResult render_bdpt(const Scene& scene, const Settings& settings, const RunContext& context) {
     RenderResult result;
     const ImageWindow& window = scene.camera().window();
-    Film film(window.width, window.height);
-    SplatFilm splats(window.width, window.height);
+    Film film(window.width, window.height, PixelFilter(settings));
+    SplatFilm splats(window.width, window.height, PixelFilter(settings));
     std::int64_t rounds = 0;
     {
         const StageClock clock(result.stats, "bidirectional path tracing");

@@ -17,7 +17,7 @@ namespace {
 /// Samples everything that the chains leave out.
 Picture sample_direct(const Scene& scene, const Settings& settings, RenderStats& stats, const RunContext& context) {
     const StageClock clock(stats, "direct light");
-    Film film(scene.camera().window().width, scene.camera().window().height);
+    Film film(scene.camera().window().width, scene.camera().window().height, PixelFilter(settings));
     const auto depth = static_cast<int>(settings.max_depth);
     const auto rounds =
         sample_pixels(scene, film, settings.spp, static_cast<std::uint64_t>(settings.seed), StreamPurpose::path_tracing,
@@ -45,7 +45,7 @@ void draw_chains(const Scene& scene, const Settings& settings, const UserPaths& 
     ChainSet chains(choose_seeds(scene, first, one, settings.chains), mixtures.mixture, first.seed,
                     mixtures.control_or_null());
     const ImageWindow& window = scene.camera().window();
-    SplatFilm splats(picture.width, picture.height);
+    SplatFilm splats(picture.width, picture.height, PixelFilter(settings));
 
     // In rounds, so that a stop finds all chains equally long.
     constexpr std::int64_t kRound = 64;

@@ -8,7 +8,7 @@ namespace keyhole {
 
 RenderResult render_path(const Scene& scene, const Settings& settings, const RunContext& context) {
     RenderResult result;
-    Film film(scene.camera().window().width, scene.camera().window().height);
+    Film film(scene.camera().window().width, scene.camera().window().height, PixelFilter(settings));
     {
         const StageClock clock(result.stats, "path tracing");
         const auto depth = static_cast<int>(settings.max_depth);

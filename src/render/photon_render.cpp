@@ -102,7 +102,7 @@ RenderResult render_photons(const Scene& scene, const Settings& settings, const 
     const SurfacePatches patches(scene.shapes());
     const SamplerContext c{scene, settings, patches, paths};
     const auto sampler = make_sampler(c, stats, context);
-    Film film(scene.camera().window().width, scene.camera().window().height);
+    Film film(scene.camera().window().width, scene.camera().window().height, PixelFilter(settings));
     PassError error;
     std::int64_t pass = 0;
     for (bool done = false; !done;) {

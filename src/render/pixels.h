@@ -7,7 +7,6 @@
 #include "core/progress.h"
 #include "core/rng.h"
 #include "film/film.h"
-#include "film/filter.h"
 #include "scene/scene.h"
 
 #include <algorithm>
@@ -27,7 +26,6 @@ std::int64_t sample_pixels(const Scene& scene, Film& film, std::int64_t spp, std
     constexpr int kTile = 16;
     const int across = (window.width + kTile - 1) / kTile, down = (window.height + kTile - 1) / kTile;
     const auto pixels = static_cast<std::uint64_t>(window.width) * static_cast<std::uint64_t>(window.height);
-    const GaussianFilter filter;
     context.begin(stage, pixels * static_cast<std::uint64_t>(spp), "samples");
     std::int64_t round = 0;
     for (; round < spp && !context.stopped(); ++round) {
@@ -44,7 +42,7 @@ std::int64_t sample_pixels(const Scene& scene, Film& film, std::int64_t spp, std
                                          Rng(seed, purpose, pixel + pixels * sample_number));
                     const double u0 = source.next(), u1 = source.next();
                     const Vec2 centre(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-                    film.add(x, y, sample(window.to_window(centre + filter.sample_offset(u0, u1)), source));
+                    film.add(x, y, sample(window.to_window(centre + film.filter().sample_offset(u0, u1)), source));
                 }
             }
             context.advance(static_cast<std::uint64_t>((x1 - x0) * (y1 - y0)));

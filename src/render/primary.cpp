@@ -103,7 +103,7 @@ void draw(PrimaryChains& chains, const Scene& scene, const Settings& settings, P
           const RunContext& context) {
     const StageClock clock(stats, "chains");
     const ImageWindow& window = scene.camera().window();
-    SplatFilm film(picture.width, picture.height);
+    SplatFilm film(picture.width, picture.height, PixelFilter(settings));
     // Deposits are of the size of the brightness; the film's sums want numbers about 1.
     const double unit = std::exp2(std::round(std::log2(chains.brightness())));
     const auto deposit = [&](const Splat& s, double factor) {

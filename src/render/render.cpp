@@ -1,6 +1,7 @@
 #include "render/render.h"
 
 #include "core/error.h"
+#include "film/filter.h"
 #include "render/methods.h"
 
 #include <algorithm>
@@ -10,7 +11,8 @@ namespace keyhole {
 RenderResult render(Scene& scene, const Settings& settings, const RunContext& context, const UserPathFile& user_paths) {
     ImageWindow window = scene.camera().window();
     // Room for the filter, and for photon lookups at the border of the picture.
-    window.margin = std::max(2.0f, 0.03f * static_cast<float>(std::max(window.width, window.height)));
+    window.margin = std::max({2.0f, 0.03f * static_cast<float>(std::max(window.width, window.height)),
+                              static_cast<float>(PixelFilter(settings).radius())});
     scene.set_window(window);
     const UserPaths paths = bind_user_paths(scene, user_paths);
     if (settings.method == "path") return render_path(scene, settings, context);

@@ -8,7 +8,7 @@
 namespace keyhole {
 
 /// Most scattering vertices a path may have between the light and the eye.
-constexpr int kMaxScatterings = 30;
+constexpr int kMaxScatterings = 126;
 
 /// One vertex with all that is known of it. The fields below the line are filled in by measure().
 struct Vertex {

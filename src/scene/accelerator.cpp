@@ -5,6 +5,8 @@
 
 #include <embree3/rtcore.h>
 
+#include <atomic>
+#include <cstddef>
 #include <limits>
 #include <stdexcept>
 
@@ -62,9 +64,15 @@ SurfacePoint hit_point(const Shape& shape, const RayHit& hit, const Vec3& origin
 struct Accelerator::Embree {
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
+    std::atomic<std::ptrdiff_t> bytes{0};
 
     Embree() : device(rtcNewDevice(device_config())) {
         if (device == nullptr) throw std::runtime_error("Embree gave no device");
+        const auto count = [](void* self, ssize_t change, bool /*before or after*/) {
+            static_cast<Embree*>(self)->bytes.fetch_add(change, std::memory_order_relaxed);
+            return true;
+        };
+        rtcSetDeviceMemoryMonitorFunction(device, count, this);
         scene = rtcNewScene(device);
         rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
     }
@@ -150,5 +158,7 @@ Vec3 Accelerator::upper() const {
     const RTCBounds b = embree_->bounds();
     return {b.upper_x, b.upper_y, b.upper_z};
 }
+
+std::size_t Accelerator::bytes() const { return static_cast<std::size_t>(embree_->bytes.load()); }
 
 } // namespace keyhole

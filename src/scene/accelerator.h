@@ -42,6 +42,9 @@ class Accelerator {
     Vec3 lower() const;
     Vec3 upper() const;
 
+    /// Memory that Embree holds for this.
+    std::size_t bytes() const;
+
   private:
     struct Embree;
     std::unique_ptr<Embree> embree_;

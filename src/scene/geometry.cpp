@@ -83,6 +83,13 @@ double surface_area(const Shape& shape) {
     return area;
 }
 
+std::size_t geometry_bytes(const Shape& shape) {
+    const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
+    if (mesh == nullptr) return sizeof(Sphere);
+    const auto bytes = [](const auto& list) { return list.size() * sizeof(list[0]); };
+    return bytes(mesh->positions) + bytes(mesh->normals) + bytes(mesh->uvs) + bytes(mesh->triangles);
+}
+
 bool is_interface(const Shape& shape) {
     if (shape.emission) return false;
     return shape.material ? std::string_view(shape.material->kind()) == "interface" : bounds_media(shape);

@@ -18,4 +18,7 @@ double triangle_area(const TriangleMesh& mesh, std::uint32_t triangle);
 /// Area of a shape [m^2].
 double surface_area(const Shape& shape);
 
+/// Memory that its positions, normals, texture coordinates and indices take.
+std::size_t geometry_bytes(const Shape& shape);
+
 } // namespace keyhole

@@ -23,7 +23,7 @@ class Material {
 using MaterialPtr = std::shared_ptr<const Material>;
 
 // In all factories: reflectances and transmittances are clamped to [0,1] and amounts, too; `alpha` is the GGX roughness
-// along the tangent (x) and across it (y), not remapped, and smooth below kSmoothAlpha; `eta` of an interface is the
+// along the tangent (x) and across it (y), not remapped, and smooth up to kSmoothAlpha; `eta` of an interface is the
 // refractive index inside, below the surface's outside, over that outside; complex indices (eta, k) of metals are
 // relative to the medium outside, for the three primaries. Textures must not be null.
 // @throws InputError for an index that is not positive.

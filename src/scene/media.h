@@ -18,6 +18,7 @@ class Media {
     Media(const std::vector<Shape>& shapes, std::shared_ptr<const Medium> outermost);
 
     bool empty() const { return accelerator_ == nullptr && outermost_ == nullptr; }
+    std::size_t accelerator_bytes() const { return accelerator_ ? accelerator_->bytes() : 0; }
 
     /// Share of light that an edge between two points lets through. At most one of them is infinite.
     Rgb transmittance(const SurfacePoint& a, const SurfacePoint& b) const;

@@ -67,6 +67,8 @@ class Scene {
     BoundingSphere bounding_sphere() const { return {(lower_ + upper_) / 2, 1.001f * (upper_ - lower_).length() / 2}; }
 
     std::size_t triangle_count() const;
+    /// Memory of the structures that rays are traced with.
+    std::size_t accelerator_bytes() const { return accelerator_.bytes() + media_.accelerator_bytes(); }
 
   private:
     void attach_shapes();

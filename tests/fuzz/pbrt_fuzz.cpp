@@ -1,5 +1,5 @@
-// Feeds the importer of pbrt's format with junk (libFuzzer): it may throw InputError and nothing else. Build with clang
-// and -DKEYHOLE_FUZZ=ON, run `pbrt_fuzz tests/data/pbrt -max_total_time=60`.
+// Feeds the importer of pbrt's format with junk (libFuzzer): it may throw InputError and nothing else.
+// cmake --preset fuzz && cmake --build --preset fuzz && build-fuzz/tests/pbrt_fuzz CORPUS tests/data/pbrt
 #include "core/error.h"
 #include "scene/pbrt/importer.h"
 

@@ -160,3 +160,58 @@ TEST_F(Program, VersionAndHelpAreNoErrors) {
     EXPECT_EQ(run("render --help"), 0);
     EXPECT_THAT(read("out"), testing::AllOf(HasSubstr("--mutations"), HasSubstr("samples per pixel")));
 }
+
+TEST_F(Program, InfoTellsWhatASceneConsistsOf) {
+    scratch.write("info.yaml",
+                  "film: {resolution: [24, 16]}\n"
+                  "camera: {from: [0, 0, 9], to: [0, 0, 0], fov: 30}\n"
+                  "materials: {white: {type: diffuse}, ball: {type: glass}, picture: {type: diffuse, reflectance: "
+                  "{type: image, file: wall.pfm}}}\n"
+                  "groups: {pair: [{type: sphere, material: white, radius: 0.1}, {type: sphere, material: ball, "
+                  "radius: 0.1, center: [0.5, 0, 0]}]}\n"
+                  "shapes:\n"
+                  "  - {type: rectangle, material: picture}\n"
+                  "  - {type: instance, group: pair, transform: {translate: [0, 0, 1]}}\n"
+                  "  - {type: instance, group: pair, transform: {translate: [0, 1, 1]}}\n"
+                  "  - {type: rectangle, corner: [-1, 3, -1], u: [2, 0, 0], v: [0, 0, 2], emission: {power: 60}}\n"
+                  "emitters: [{type: point, position: [0, 2, 2], power: 5}]\n");
+    std::string floats = "PF\n2 2\n-1.0\n";
+    floats.append(2 * 2 * 3 * sizeof(float), '\0');
+    scratch.write("wall.pfm", floats);
+    ASSERT_EQ(run("info info.yaml --json"), 0) << read("err");
+    const auto info = nlohmann::json::parse(read("out"));
+    EXPECT_EQ(info["triangles"], 4);
+    EXPECT_EQ(info["spheres"], 4);
+    EXPECT_EQ(info["shapes"], 6);
+    EXPECT_EQ(info["instances"], 2);
+    EXPECT_EQ(info["materials"], (nlohmann::json{{"diffuse", 3}, {"glass", 1}}));
+    ASSERT_EQ(info["emitters"].size(), 2u);
+    double powers = 0;
+    for (const auto& e : info["emitters"]) powers += e["power"].get<double>();
+    EXPECT_NEAR(powers, 65, 1e-3);
+    EXPECT_NEAR(info["power"].get<double>(), 65, 1e-3);
+    ASSERT_EQ(info["textures"].size(), 1u);
+    EXPECT_EQ(info["textures"][0]["bytes"], 2 * 2 * 3 * 4);
+    EXPECT_EQ(info["memory"]["textures"], 2 * 2 * 3 * 4);
+    EXPECT_GT(info["memory"]["embree"].get<double>(), info["memory"]["geometry"].get<double>());
+    EXPECT_EQ(info["bounds"]["upper"], nlohmann::json({1, 3, 1.1f}));
+    EXPECT_NEAR(info["camera"]["fov"].get<double>(), 30, 1e-5);
+
+    ASSERT_EQ(run("info info.yaml"), 0);
+    EXPECT_THAT(read("out"), testing::AllOf(HasSubstr("4 triangles"), HasSubstr("1 glass"), HasSubstr("area: 60 W"),
+                                            HasSubstr("wall.pfm"), HasSubstr("2 instances")));
+}
+
+TEST_F(Program, InfoReadsPbrtAndPassesItsWarningsOn) {
+    scratch.write("scene.pbrt", "WorldBegin\nObjectBegin \"one\" Shape \"sphere\" ObjectEnd\n"
+                                "ObjectInstance \"one\" Material \"hair\"\n");
+    EXPECT_EQ(run("info scene.pbrt"), 2);
+    scratch.write("scene.pbrt", "Film \"spectral\"\nWorldBegin\nObjectBegin \"one\" Shape \"sphere\" ObjectEnd\n"
+                                "ObjectInstance \"one\" ObjectInstance \"one\"\n");
+    ASSERT_EQ(run("info scene.pbrt --json"), 0) << read("err");
+    const auto info = nlohmann::json::parse(read("out"));
+    EXPECT_EQ(info["instances"], 2);
+    EXPECT_EQ(info["resolution"], nlohmann::json({1280, 720}));
+    ASSERT_EQ(info["warnings"].size(), 1u);
+    EXPECT_THAT(info["warnings"][0].get<std::string>(), HasSubstr("Film \"spectral\""));
+}

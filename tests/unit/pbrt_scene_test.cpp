@@ -94,20 +94,37 @@ TEST(PbrtCamera, ScreenWindowNarrowsTheView) {
 }
 
 TEST(PbrtOptions, BecomeSettings) {
-    const PbrtScene s(
-        kTriangle,
-        "Integrator \"volpath\" \"integer maxdepth\" 7 Sampler \"halton\" \"integer pixelsamples\" 33 "
-        "PixelFilter \"box\" PixelFilter \"box\" Accelerator \"bvh\" Option \"bool disablepixeljitter\" true");
+    const PbrtScene s(kTriangle,
+                      "Integrator \"volpath\" \"integer maxdepth\" 7 Sampler \"halton\" \"integer pixelsamples\" 33 "
+                      "PixelFilter \"mitchell\" PixelFilter \"mitchell\" Accelerator \"bvh\" Option \"bool "
+                      "disablepixeljitter\" true");
     EXPECT_EQ(s.scene.settings.max_depth, 7);
     EXPECT_EQ(s.scene.settings.spp, 33);
     EXPECT_EQ(s.scene.description.window.width, 8);
     EXPECT_EQ(s.scene.description.window.height, 6);
     ASSERT_EQ(s.warnings.size(), 1u);
-    EXPECT_THAT(s.warnings[0], HasSubstr("PixelFilter \"box\": the picture is filtered by a Gaussian"));
+    EXPECT_THAT(s.warnings[0], HasSubstr("PixelFilter \"mitchell\": the picture is filtered by a Gaussian"));
     EXPECT_EQ(PbrtScene(kTriangle).scene.settings.max_depth, 5) << "pbrt's default";
-    const PbrtScene deep(kTriangle, "Integrator \"path\" \"integer maxdepth\" 65");
-    EXPECT_LT(deep.scene.settings.max_depth, 65);
-    EXPECT_THAT(deep.warnings.at(0), HasSubstr("65 becomes max_depth = "));
+    EXPECT_EQ(PbrtScene(kTriangle, "Integrator \"path\" \"integer maxdepth\" 100").scene.settings.max_depth, 100);
+    const PbrtScene deep(kTriangle, "Integrator \"path\" \"integer maxdepth\" 1000");
+    EXPECT_LT(deep.scene.settings.max_depth, 1000);
+    EXPECT_THAT(deep.warnings.at(0), HasSubstr("1000 becomes max_depth = "));
+}
+
+TEST(PbrtOptions, FiltersKeepTheirKindAndReach) {
+    const auto settings = [](const std::string& filter) { return PbrtScene(kTriangle, filter).scene.settings; };
+    const Settings usual = settings("");
+    EXPECT_EQ(usual.filter, "gaussian");
+    EXPECT_EQ(usual.filter_radius, 1.5);
+    EXPECT_EQ(usual.filter_sigma, 0.5);
+    EXPECT_EQ(settings("PixelFilter \"box\"").filter_radius, 0.5);
+    const Settings wide = settings("PixelFilter \"triangle\" \"float xradius\" 3 \"float yradius\" 3");
+    EXPECT_EQ(wide.filter, "triangle");
+    EXPECT_EQ(wide.filter_radius, 3);
+    EXPECT_EQ(settings("PixelFilter \"gaussian\" \"float alpha\" 2 \"float xwidth\" 2 \"float ywidth\" 2").filter_sigma,
+              0.5)
+        << "v3's names";
+    EXPECT_THROW(settings("PixelFilter \"box\" \"float xradius\" 100"), InputError);
 }
 
 TEST(PbrtShapes, TrianglesFaceTheirNormals) {

@@ -156,12 +156,12 @@ TEST(MixMaterial, ChoosesByShareAndNestedOnesApart) {
     EXPECT_TRUE(outer->traits().finite && outer->traits().delta);
 }
 
-TEST(Materials_Roughness, BelowAThousandthIsSmooth) {
+TEST(Materials_Roughness, UpToAThousandthIsSmooth) {
     const auto traits = [](double alpha) {
         return make_conductor(Rgb(0.2), Rgb(3.0), constant_texture(alpha), constant_texture(alpha))->traits();
     };
-    EXPECT_TRUE(traits(0.0009).delta);
-    EXPECT_FALSE(traits(0.0009).finite);
+    EXPECT_TRUE(traits(0.001).delta);
+    EXPECT_FALSE(traits(0.001).finite);
     EXPECT_TRUE(traits(0.0011).finite);
     EXPECT_FALSE(traits(0.0011).delta);
 }

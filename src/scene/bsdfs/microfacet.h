@@ -10,7 +10,7 @@ namespace keyhole {
 /// Directions in double: a half vector of two floats would not resolve narrow lobes.
 using LocalVec = Imath::V3d;
 
-/// Below this roughness a surface counts as smooth.
+/// Up to this roughness a surface counts as smooth.
 constexpr double kSmoothAlpha = 1e-3;
 
 /// Anisotropic GGX with Smith's masking, around +z (Heitz 2014, "Understanding the Masking-Shadowing Function"). All

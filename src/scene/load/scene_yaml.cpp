@@ -48,8 +48,10 @@ class SceneReader {
         scene.description.window = camera_.window();
         scene.description.shapes = shapes_.take_shapes();
         scene.description.emitters = std::move(emitters_);
+        scene.description.medium = std::move(outermost_);
         scene.settings = settings_;
         scene.user_paths = std::move(user_paths_);
+        scene.instances = instances_ + shapes_.instances();
         for (const auto& o : overrides) apply_override(scene.settings, o);
         return scene;
     }
@@ -72,19 +74,23 @@ class SceneReader {
             fail(includer, e.what());
         }
         settings_ = part.settings;
+        outermost_ = part.description.medium;
+        instances_ += part.instances;
         camera_.set_base(part.description.camera, part.description.window);
         shapes_.append(std::move(part.description.shapes));
         for (auto& emitter : part.description.emitters) emitters_.push_back(std::move(emitter));
     }
 
     void read_sections(const YamlNode& root) {
-        const MapReader map(
-            root, "a scene",
-            {"include", "film", "camera", "materials", "groups", "shapes", "emitters", "render", "user_paths"});
+        const MapReader map(root, "a scene",
+                            {"include", "film", "camera", "materials", "media", "medium", "groups", "shapes",
+                             "emitters", "render", "user_paths"});
         if (const YamlNode* include = map.find("include")) read_includes(*include);
         if (const YamlNode* film = map.find("film")) camera_.read_film(*film);
         if (const YamlNode* camera = map.find("camera")) camera_.read_camera(*camera);
         if (const YamlNode* materials = map.find("materials")) materials_.read(*materials);
+        if (const YamlNode* media = map.find("media")) media_.read(*media);
+        if (const YamlNode* medium = map.find("medium")) outermost_ = media_.resolve(*medium);
         if (const YamlNode* groups = map.find("groups")) shapes_.read_groups(*groups);
         if (const YamlNode* shapes = map.find("shapes")) shapes_.read_shapes(*shapes);
         if (const YamlNode* emitters = map.find("emitters")) read_emitters(*emitters);
@@ -121,10 +127,13 @@ class SceneReader {
     std::set<std::string> seen_;
     CameraReader camera_;
     MaterialTable materials_;
-    ShapeReader shapes_{materials_};
+    MediumTable media_;
+    std::shared_ptr<const Medium> outermost_;
+    ShapeReader shapes_{materials_, media_};
     std::vector<std::unique_ptr<Emitter>> emitters_;
     Settings settings_;
     UserPathFile user_paths_;
+    std::size_t instances_ = 0; // in included pbrt files
 };
 
 } // namespace

@@ -15,7 +15,8 @@ namespace keyhole {
 struct LoadedScene {
     SceneDescription description;
     Settings settings;
-    UserPathFile user_paths; ///< of the file that the scene names; none otherwise
+    UserPathFile user_paths;   ///< of the file that the scene names; none otherwise
+    std::size_t instances = 0; ///< groups or objects placed, counted as often as they are
 };
 
 /// Reads a scene file, the files it includes and its meshes.

@@ -3,6 +3,7 @@
 #include "scene/geometry.h"
 #include "scene/load/suggest.h"
 #include "scene/load/yaml_reader.h"
+#include "scene/load/yaml_textures.h"
 #include "scene/load/yaml_transform.h"
 
 #include <fmt/format.h>
@@ -68,10 +69,11 @@ void ShapeReader::append(std::vector<Shape> shapes) {
 }
 
 void ShapeReader::check_unused_groups() {
-    const std::size_t count = shapes_.size();
+    const std::size_t shapes = shapes_.size(), instances = instances_;
     for (auto& [name, group] : groups_)
         if (!group.used) read_named_group(group, *group.key, {});
-    shapes_.resize(count);
+    shapes_.resize(shapes);
+    instances_ = instances;
 }
 
 void ShapeReader::read_list_of_shapes(const YamlNode& list, const Placement& placement) {
@@ -105,6 +107,10 @@ void ShapeReader::read_shape(const YamlNode& node, const Placement& placement) {
         if (emission == nullptr) fail(node, fmt::format("found a {} without 'material', expected that key", type));
         shape.material = make_diffuse(Rgb(0.0)); // a lamp that reflects nothing
     }
+    constexpr NumberRange kOpacity{"an opacity", 0, 1};
+    if (const YamlNode* alpha = map.find("alpha")) shape.alpha = read_float_texture(*alpha, kOpacity);
+    if (const YamlNode* inside = map.find("inside")) shape.inside = media_.resolve(*inside);
+    if (const YamlNode* outside = map.find("outside")) shape.outside = media_.resolve(*outside);
     triangles_ += count_triangles(shape.geometry);
     shapes_.push_back(std::move(shape));
     check_limits(node);
@@ -125,6 +131,7 @@ void ShapeReader::read_instance(const YamlNode& node, const Placement& placement
         for (const auto& [other, group] : groups_) names.push_back(other);
         fail(reference, fmt::format("found the unknown group '{}', {}", name, expected_one_of(name, names)));
     }
+    ++instances_;
     read_named_group(found->second, reference, inherit(map, placement));
 }
 

@@ -3,6 +3,7 @@
 
 #include "scene/load/geometry_transform.h"
 #include "scene/load/yaml_materials.h"
+#include "scene/load/yaml_media.h"
 #include "scene/load/yaml_primitives.h"
 #include "scene/shape.h"
 
@@ -22,7 +23,7 @@ constexpr std::size_t kMaxTriangles = std::size_t{1} << 27;
 /// Reads lists of shapes and puts them into world space. Holds the named groups and the meshes already imported.
 class ShapeReader {
   public:
-    explicit ShapeReader(const MaterialTable& materials) : materials_(materials) {}
+    ShapeReader(const MaterialTable& materials, const MediumTable& media) : materials_(materials), media_(media) {}
 
     /// Notes the groups of a `groups:` section. @throws InputError for names already taken.
     void read_groups(const YamlNode& section);
@@ -38,6 +39,8 @@ class ShapeReader {
 
     std::vector<Shape> take_shapes() { return std::move(shapes_); }
     bool empty() const { return shapes_.empty(); }
+    /// Groups placed by name, as often as they are.
+    std::size_t instances() const { return instances_; }
 
   private:
     /// What the shapes in a group inherit.
@@ -61,10 +64,11 @@ class ShapeReader {
     void check_limits(const YamlNode& node) const;
 
     const MaterialTable& materials_;
+    const MediumTable& media_;
     std::map<std::string, Group> groups_;
     MeshCache meshes_;
     std::vector<Shape> shapes_;
-    std::size_t triangles_ = 0;
+    std::size_t triangles_ = 0, instances_ = 0;
 };
 
 } // namespace keyhole

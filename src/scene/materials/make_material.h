@@ -47,7 +47,7 @@ struct Alpha {
 inline std::optional<Alpha> rough_at(const FloatTexture& alpha_x, const FloatTexture& alpha_y,
                                      const SurfacePoint& point) {
     const double x = alpha_x->value(point), y = alpha_y->value(point);
-    if (!(std::max(x, y) >= kSmoothAlpha)) return std::nullopt;
+    if (!(std::max(x, y) > kSmoothAlpha)) return std::nullopt;
     // A lobe without width in one direction only would have no finite density.
     return Alpha{static_cast<float>(std::clamp(x, kSmoothAlpha / 10, 1.0)),
                  static_cast<float>(std::clamp(y, kSmoothAlpha / 10, 1.0))};

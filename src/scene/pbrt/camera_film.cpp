@@ -146,9 +146,27 @@ void read_integrator(Parameters& p, Settings& settings) {
     p.warn_of_the_rest();
 }
 
-void read_filter(Parameters& p) {
+void read_filter(Parameters& p, Settings& settings) {
     const std::string& kind = p.directive().words[0];
-    if (kind != "gaussian") p.warn("filter " + kind, "the picture is filtered by a Gaussian that reaches one pixel");
+    const auto radius = [&](std::string_view v4, std::string_view v3, double usual) {
+        const double r = p.number(v4, p.number(v3, usual, kPositive), kPositive);
+        if (r > 16) p.fail(fmt::format("found a radius of {} pixels, expected 16 at most", r));
+        return r;
+    };
+    if (kind != "gaussian" && kind != "box" && kind != "triangle") {
+        p.warn("filter " + kind, "the picture is filtered by a Gaussian that reaches one pixel");
+        return;
+    }
+    const double usual = kind == "box" ? 0.5 : kind == "triangle" ? 2 : 1.5;
+    settings.filter = kind;
+    settings.filter_radius = radius("xradius", "xwidth", usual);
+    if (radius("yradius", "ywidth", usual) != settings.filter_radius)
+        p.warn("oblong filter", "the filter reaches as far vertically as horizontally");
+    if (kind != "gaussian") return p.warn_of_the_rest();
+    settings.filter_sigma = p.number("sigma", 0.5, {1e-3, 16});
+    // v3 gives 1 / (2 sigma^2).
+    if (p.has("alpha")) settings.filter_sigma = std::sqrt(0.5 / p.number("alpha", 2, {1e-3, 1e5}));
+    p.warn_of_the_rest();
 }
 
 } // namespace keyhole::pbrt

@@ -29,7 +29,7 @@ void read_camera(Parameters& parameters, const Transform& camera_to_world, View&
 void read_sampler(Parameters& parameters, Settings& settings);
 /// The most scatterings of a path; pbrt counts them as we do.
 void read_integrator(Parameters& parameters, Settings& settings);
-/// Warns where the filter is unlike ours.
-void read_filter(Parameters& parameters);
+/// Warns of filters with negative lobes, which the Gaussian stands in for.
+void read_filter(Parameters& parameters, Settings& settings);
 
 } // namespace keyhole::pbrt

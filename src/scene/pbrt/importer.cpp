@@ -155,7 +155,7 @@ void Importer::begin_world(const Directive& d) {
     read_integrator(integrator_parameters, settings_);
     read_sampler(sampler_parameters, settings_);
     Parameters filter_parameters = parameters(filter);
-    read_filter(filter_parameters);
+    read_filter(filter_parameters, settings_);
     state_.to_world = Transform();
     coordinate_systems_["world"] = Transform();
 }

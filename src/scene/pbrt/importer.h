@@ -26,6 +26,8 @@ class Importer {
 
     SceneDescription take_description();
     const Settings& settings() const { return settings_; }
+    /// Objects placed, as often as they are.
+    std::size_t instances() const { return instances_; }
 
   private:
     using Handler = void (Importer::*)(const Directive&);
@@ -94,6 +96,7 @@ class Importer {
     MediumTable media_;
     std::vector<ShapeRecord> records_;
     std::vector<Placement> placements_;
+    std::size_t instances_ = 0;
     std::map<std::string, std::vector<std::size_t>> objects_; ///< records by the name of their object
     std::vector<std::size_t>* open_object_ = nullptr;         ///< the one that shapes go to now
     std::vector<std::unique_ptr<Emitter>> emitters_, environments_;

@@ -23,6 +23,7 @@ void Importer::place_object(const Directive& d) {
     }
     if (placements_.size() + found->second.size() > kMaxShapes)
         d.fail(fmt::format("found more than {} shapes, expected fewer", kMaxShapes));
+    ++instances_;
     for (const std::size_t record : found->second) placements_.push_back({record, state_.to_world});
 }
 

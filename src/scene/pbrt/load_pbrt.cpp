@@ -12,6 +12,7 @@ LoadedScene load_pbrt(const std::string& path, std::vector<std::string>* warning
     LoadedScene scene;
     scene.description = importer.take_description();
     scene.settings = importer.settings();
+    scene.instances = importer.instances();
     return scene;
 }
 

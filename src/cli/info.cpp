@@ -1,0 +1,97 @@
+// keyhole info: what a scene consists of, as text or JSON.
+#include "cli/command.h"
+#include "cli/scene_info.h"
+#include "cli/units.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace keyhole {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Lists longer than this end in a summary; --json has all of it.
+constexpr std::size_t kMostLines = 12;
+
+void line(const char* name, const std::string& text) { fmt::print("{:<12}{}\n", name, text); }
+
+std::string vector(const Json& v) {
+    return fmt::format("{:.5g} {:.5g} {:.5g}", v[0].get<double>(), v[1].get<double>(), v[2].get<double>());
+}
+
+std::string bytes(const Json& n) { return with_prefix(n.get<double>()) + "B"; }
+
+void print_emitters(const Json& emitters) {
+    std::vector<const Json*> sorted;
+    for (const Json& e : emitters) sorted.push_back(&e);
+    std::ranges::stable_sort(
+        sorted, [](const Json* a, const Json* b) { return (*a)["power"].get<double>() > (*b)["power"].get<double>(); });
+    for (std::size_t i = 0; i < std::min(sorted.size(), kMostLines); ++i) {
+        const Json& e = *sorted[i];
+        const std::string place = e.contains("center") ? "at " + vector(e["center"]) : "far away";
+        line("",
+             fmt::format("{}: {}W, {}", e["kind"].get<std::string>(), with_prefix(e["power"].get<double>()), place));
+    }
+    if (sorted.size() > kMostLines) line("", fmt::format("and {} of less power", sorted.size() - kMostLines));
+}
+
+void print_textures(const Json& textures) {
+    for (std::size_t i = 0; i < std::min(textures.size(), kMostLines); ++i) {
+        const Json& t = textures[i];
+        line("", fmt::format("{}: {} x {}, {} channels, {}", t["file"].get<std::string>(), t["width"].get<int>(),
+                             t["height"].get<int>(), t["channels"].get<int>(), bytes(t["bytes"])));
+    }
+    if (textures.size() > kMostLines) line("", fmt::format("and {} more", textures.size() - kMostLines));
+}
+
+void print_text(const Json& info) {
+    const Json &camera = info["camera"], &memory = info["memory"];
+    line("film", fmt::format("{} x {} pixels", info["resolution"][0].get<int>(), info["resolution"][1].get<int>()));
+    line("camera", fmt::format("at {}, looking along {}, field of view {:.4g} degrees{}", vector(camera["position"]),
+                               vector(camera["direction"]), camera["fov"].get<double>(),
+                               camera["lens_radius"].get<double>() > 0 ? ", thin lens" : ""));
+    line("bounds", fmt::format("{} to {}", vector(info["bounds"]["lower"]), vector(info["bounds"]["upper"])));
+    line("shapes", fmt::format("{}: {} triangles, {} spheres, {} lights; {} instances", info["shapes"].get<int>(),
+                               info["triangles"].get<std::size_t>(), info["spheres"].get<int>(),
+                               info["emitting_shapes"].get<int>(), info["instances"].get<std::size_t>()));
+    std::string materials;
+    for (const auto& [kind, count] : info["materials"].items())
+        materials += fmt::format("{}{} {}", materials.empty() ? "" : ", ", count.get<int>(), kind);
+    line("materials", materials);
+    line("emitters", fmt::format("{}, {}W", info["emitters"].size(), with_prefix(info["power"].get<double>())));
+    print_emitters(info["emitters"]);
+    line("textures", fmt::format("{}, {}", info["textures"].size(), bytes(memory["textures"])));
+    print_textures(info["textures"]);
+    line("memory", fmt::format("geometry {}, Embree {}, textures {}; peak of the program {}", bytes(memory["geometry"]),
+                               bytes(memory["embree"]), bytes(memory["textures"]), bytes(memory["peak"])));
+    line("time", fmt::format("{} to read, {} to build", duration(info["seconds"]["read"].get<double>()),
+                             duration(info["seconds"]["build"].get<double>())));
+    for (const Json& warning : info["warnings"]) line("warning", warning.get<std::string>());
+}
+
+} // namespace
+
+void add_info_command(CLI::App& app, Action& action) {
+    struct Options {
+        std::string scene;
+        bool json = false;
+    };
+    CLI::App* command = app.add_subcommand("info", "Print what a scene consists of");
+    auto o = std::make_shared<Options>();
+    command->add_option("SCENE", o->scene, "scene file (YAML, or .pbrt)")->required();
+    command->add_flag("--json", o->json, "print one JSON object");
+    command->callback([&action, o] {
+        action = [o] {
+            const Json info = scene_info(o->scene);
+            if (o->json)
+                fmt::print("{}\n", info.dump(2));
+            else
+                print_text(info);
+            return kSuccess;
+        };
+    });
+}
+
+} // namespace keyhole

@@ -1,0 +1,38 @@
+// Which technique stage one chooses.
+#include "sampling/brightness.h"
+#include "scene/load/scene_yaml.h"
+#include "support/scratch_directory.h"
+
+#include <gtest/gtest.h>
+
+namespace keyhole {
+namespace {
+
+/// A closed white room with a lamp of 2 mm under its ceiling, and `more` in it.
+StageOne measure(const std::string& more) {
+    const ScratchDirectory directory;
+    const Scene scene(
+        load_scene(directory.write("s.yaml", "film: {resolution: [32, 32]}\n"
+                                             "camera: {from: [0, 0, 0.9], to: [0, -0.4, 0], fov: 70}\n"
+                                             "materials: {white: {type: diffuse}, glass: {type: glass}}\n"
+                                             "shapes:\n"
+                                             "  - {type: box, material: white}\n"
+                                             "  - {type: rectangle, corner: [0, 0.99, 0], u: [0.002, 0, 0], "
+                                             "v: [0, 0, 0.002], emission: {power: 10}}\n" +
+                                                 more))
+            .description);
+    return run_stage_one(scene, {.samples = 40'000}, {});
+}
+
+/// Behind glass no eye path meets the lamp but by luck, so that a trial finds little light, and that without noise.
+TEST(StageOneTechnique, IsNotTheOneThatMissesTheLight) {
+    const StageOne behind_glass =
+        measure("  - {type: box, material: glass, min: [-0.999, 0.8, -0.999], max: [0.999, 0.9, 0.999]}\n");
+    EXPECT_EQ(behind_glass.technique, Technique::bidirectional);
+    EXPECT_GT(behind_glass.caustic.mean(), 10 * behind_glass.caustic.standard_error());
+}
+
+TEST(StageOneTechnique, IsTheCheaperOneWhereBothFindTheLight) { EXPECT_EQ(measure("").technique, Technique::path); }
+
+} // namespace
+} // namespace keyhole
