@@ -2,6 +2,7 @@
 #pragma once
 
 #include "gather/sites.h"
+#include "photonmap/irradiance_map.h"
 #include "sampling/walk.h"
 
 namespace keyhole {

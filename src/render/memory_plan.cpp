@@ -10,7 +10,7 @@ namespace {
 // Bytes. An index takes 8 to 9 on top of a photon's 24, by how its places cluster.
 constexpr double kFixed = 64 * 1024; // first blocks of small indices
 constexpr double kIndexed = sizeof(Photon) + 10.0;
-constexpr double kInStageThree = kIndexed + kIndexed / 4;                // irradiance at every fourth
+constexpr double kInStageThree = kIndexed + (kIndexed + 16) / 4;         // irradiance and direct light at every fourth
 constexpr double kInStageTwo = PhotonStore::bytes_per_photon() * 1.0625; // buffers on their way to the stores
 
 } // namespace

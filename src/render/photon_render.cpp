@@ -64,8 +64,6 @@ bool gather_pass(const SamplerContext& c, std::int64_t pass, Photons photons, Fi
         beforehand ? std::optional<IrradianceMap>(std::in_place, global, estimates, context) : std::nullopt;
     stats.photons_global = global.photons().size();
     stats.photons_caustic = caustic.photons().size();
-    stats.photon_bytes = std::max<std::uint64_t>(stats.photon_bytes, global.bytes() + caustic.bytes() +
-                                                                         (irradiance ? irradiance->bytes() : 0));
     if (irradiance) stats.values["photons per lookup"] = irradiance->mean_photons();
 
     std::optional<Sites> sites;
@@ -73,6 +71,8 @@ bool gather_pass(const SamplerContext& c, std::int64_t pass, Photons photons, Fi
         const SiteOptions at{.k = estimates.k, .max_radius = estimates.max_radius, .seed = seed};
         sites.emplace(c.scene, global, irradiance->places(), at, context);
     }
+    stats.photon_bytes = std::max<std::uint64_t>(
+        stats.photon_bytes, global.bytes() + caustic.bytes() + (irradiance ? irradiance->bytes() + sites->bytes() : 0));
     const GatherMaps maps{.global = global.photons().empty() ? nullptr : &global,
                           .irradiance = irradiance ? &*irradiance : nullptr,
                           .sites = sites ? &*sites : nullptr,
