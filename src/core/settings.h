@@ -57,7 +57,7 @@ struct Settings {
     std::int64_t cache_rays = 400;
     double p_bidirectional = 0.4;
     double p_lens_subpath = 0.1;
-    double p_lens_perturbation = 0.2;
+    double p_lens_perturbation = 0.4;
     double p_multi_chain_perturbation = 0.2;
     double p_caustic_perturbation = 0.2;
     double p_photon_map = 0.2;
