@@ -41,7 +41,7 @@ void PathDepositor::deposit(const Path& path, double weight) {
     if (at.kind == PhotonKind::caustic) return;
     const double literal = weight * literal_factor(path, at.vertex, recent_.flux);
     recent_.literal += literal;
-    recent_.density += literal * eye_side_density(path, at.vertex);
+    recent_.density += literal * eye_side_density(*options_.scene, path, at.vertex);
 }
 
 void PathDepositor::flush() {

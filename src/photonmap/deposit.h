@@ -24,7 +24,7 @@ struct DepositOptions {
     const ImportanceMap* global = nullptr;  ///< at d2; null under `reciprocal`
     const ImportanceMap* caustic = nullptr; ///< at d1
     PowerRule rule = PowerRule::marginal;
-    const Scene* scene = nullptr; ///< for drawing eye sides
+    const Scene* scene = nullptr; ///< that eye sides are drawn in; must be given
     int max_scatterings = 24;     ///< of a whole path
 };
 
