@@ -41,7 +41,7 @@ void PathDepositor::deposit(const Path& path, double weight) {
     if (at.kind == PhotonKind::caustic) return;
     const double literal = weight * literal_factor(path, at.vertex, recent_.flux);
     recent_.literal += literal;
-    recent_.density += literal * eye_side_density(path, at.vertex);
+    recent_.density += literal * eye_side_density(*options_.scene, path, at.vertex);
 }
 
 void PathDepositor::flush() {
@@ -74,8 +74,9 @@ void PathDepositor::store(Pending& pending) {
 PathDepositor::Marginal PathDepositor::marginal_power(const Pending& pending, const ImportanceMap& map) {
     const auto e = map.importance(pending.vertex.point, pending.vertex.bsdf, pending.to_light);
     const double visible = luminance(pending.flux * e.value);
-    constexpr int enough = 16;
-    return {visible > 0 ? pending.flux / visible : Rgb(0.0), e.importons >= enough && !e.obstructed};
+    // A glossy lobe sees few of the importons, however many there are.
+    const bool trusted = e.importons >= 16 && !e.obstructed && pending.vertex.bsdf.traits().near_lambertian;
+    return {visible > 0 ? pending.flux / visible : Rgb(0.0), trusted};
 }
 
 Rgb PathDepositor::global_power(const Pending& pending, double given, double weight) {

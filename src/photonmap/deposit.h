@@ -24,7 +24,7 @@ struct DepositOptions {
     const ImportanceMap* global = nullptr;  ///< at d2; null under `reciprocal`
     const ImportanceMap* caustic = nullptr; ///< at d1
     PowerRule rule = PowerRule::marginal;
-    const Scene* scene = nullptr; ///< for drawing eye sides
+    const Scene* scene = nullptr; ///< that eye sides are drawn in; must be given
     int max_scatterings = 24;     ///< of a whole path
 };
 
@@ -84,7 +84,7 @@ class PathDepositor {
     void store(Pending& pending);
     struct Marginal {
         Rgb power;
-        bool trusted; ///< enough importons say so, and none that a wall may hide
+        bool trusted; ///< enough importons say so, on a surface where they can tell, and none that a wall may hide
     };
     // Power for weight 1; black where it is lost. `given` is the weight that the sums of `pending` are over.
     Rgb global_power(const Pending& pending, double given, double weight);

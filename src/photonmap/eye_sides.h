@@ -15,12 +15,12 @@ namespace keyhole {
 double literal_factor(const Path& path, int d2, const Rgb& flux);
 
 /// Density with which sample_eye_side() draws the eye's side of a measured path from vertex d2 on, in the coordinates
-/// of the path. 0 where it never does: the eye sees d1 through specular vertices.
-double eye_side_density(const Path& path, int d2);
+/// of the path. 0 where it never does: where specular vertices stand on both sides of d1.
+double eye_side_density(const Scene& scene, const Path& path, int d2);
 
-/// Draws an eye side from `d2`, which light reaches from `to_light`: scattering and specular vertices as far as d1, and
-/// a straight edge to the eye. Whether that is a path that carries light, with at most `max_scatterings` vertices
-/// between d2 and the eye.
+/// Draws an eye side for `d2`, which light reaches from `to_light`: by scattering there and a straight edge from d1 to
+/// the eye, or, where the scene has specular surfaces, from the eye through some of them to d1 and a straight edge to
+/// d2. Whether that is a path that carries light, with at most `max_scatterings` vertices between d2 and the eye.
 bool sample_eye_side(const Scene& scene, const Vertex& d2, const Vec3& to_light, int max_scatterings,
                      SampleSource& source);
 

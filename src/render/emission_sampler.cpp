@@ -55,8 +55,11 @@ class EmissionSampler final : public PhotonSampler {
         const float radius = Radii(c_.scene).importance;
         const auto make = [&](std::vector<Photon>&& from) {
             const PhotonMap map(std::move(from));
+            auto guide = std::make_unique<ImportanceGuide>(map, radius, c_.patches, context);
             stats.importons += map.photons().size();
-            return std::make_unique<ImportanceGuide>(map, radius, c_.patches, context);
+            const std::size_t waiting = importons.first.capacity() * sizeof(Photon);
+            stats.photon_bytes = std::max<std::uint64_t>(stats.photon_bytes, map.bytes() + guide->bytes() + waiting);
+            return guide;
         };
         stats.importons = 0;
         global = make(std::move(importons.second));
