@@ -61,7 +61,7 @@ struct Settings {
     double p_multi_chain_perturbation = 0.2;
     double p_caustic_perturbation = 0.2;
     double p_photon_map = 0.2;
-    double p_user_path = 0.2;
+    double p_user_path = 0.05;
 };
 
 /// One line of the table. `Visitor` is called as visitor(key, member, minimum, maximum, help) for numbers,

@@ -14,11 +14,11 @@ const Sphere* sphere_of(const Scene& scene, const SurfacePoint& point) {
 
 } // namespace
 
-EmitterPatch::EmitterPatch(const Scene& scene, const SurfacePoint& center, double radius)
-    : scene_(&scene), center_(center) {
-    if (center.site != Site::surface) return;
+EmitterPatch::EmitterPatch(const Scene& scene, const SurfacePoint& center, std::optional<double> radius)
+    : scene_(&scene), center_(center), whole_(!radius) {
+    if (is_whole()) return;
     if (const Sphere* sphere = sphere_of(scene, center)) {
-        const double angle = std::min(kPi, radius / sphere->radius), s = std::sin(angle / 2);
+        const double angle = std::min(kPi, *radius / sphere->radius), s = std::sin(angle / 2);
         cosine_ = std::cos(angle);
         area_ = 4 * kPi * sphere->radius * sphere->radius * s * s;
         return;
@@ -27,7 +27,7 @@ EmitterPatch::EmitterPatch(const Scene& scene, const SurfacePoint& center, doubl
     double farthest = 0;
     for (const auto corner : mesh.triangles[center.primitive])
         farthest = std::max<double>(farthest, (mesh.positions[corner] - center.p).length());
-    scale_ = std::min(1.0, radius / farthest);
+    scale_ = std::min(1.0, *radius / farthest);
     area_ = scale_ * scale_ * triangle_area(mesh, center.primitive);
     center_barycentric_ = barycentric(center.p);
 }
@@ -43,8 +43,8 @@ Vec2 EmitterPatch::barycentric(const Vec3& p) const {
 
 SurfacePoint EmitterPatch::sample(SampleSource& source) const {
     SurfacePoint point;
-    if (center_.site != Site::surface) {
-        point = center_;
+    if (is_whole()) {
+        point = scene_->emitter(center_.emitter).sample_point(source).point;
     } else if (const Sphere* sphere = sphere_of(*scene_, center_)) {
         const double u0 = source.next(), u1 = source.next();
         const Vec3 axis = (center_.p - sphere->center).normalized();
@@ -63,8 +63,9 @@ SurfacePoint EmitterPatch::sample(SampleSource& source) const {
 }
 
 double EmitterPatch::pdf(const SurfacePoint& point) const {
-    if (point.emitter != center_.emitter || point.primitive != center_.primitive) return 0;
-    if (center_.site != Site::surface) return 1;
+    if (point.emitter != center_.emitter) return 0;
+    if (is_whole()) return scene_->emitter(center_.emitter).point_pdf(point);
+    if (point.primitive != center_.primitive) return 0;
     if (const Sphere* sphere = sphere_of(*scene_, center_)) {
         const Vec3 axis = (center_.p - sphere->center).normalized();
         return (point.p - sphere->center).normalized().dot(axis) >= cosine_ ? 1 / area_ : 0.0;

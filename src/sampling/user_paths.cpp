@@ -7,8 +7,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 namespace keyhole {
 namespace {
 
@@ -28,7 +26,7 @@ class Binder {
         if (found_.back().specular())
             fail(last(), "found a specular vertex at its end, expected a surface that scatters in all directions");
         const bool seen = is_seen();
-        UserPath path{spec_.name, spec_.weight, {scene_, light, patch_radius(light)}, {}, seen};
+        UserPath path{spec_.name, spec_.weight, {scene_, light, spec_.patch}, {}, seen};
         for (std::size_t i = 1; i < found_.size(); ++i)
             path.vertices.push_back({found_[i].point.p, found_[i].event, spec_.beta[i - 1]});
         return path;
@@ -44,7 +42,6 @@ class Binder {
     }
 
     SurfacePoint find_light();
-    double patch_radius(const SurfacePoint& light) const;
     void aim(std::size_t i);
     void follow(std::size_t i);
     void add(std::size_t i, const Vertex& vertex);
@@ -65,11 +62,6 @@ SurfacePoint Binder::find_light() {
                             text(nearest->point.p), text(tolerance_)));
     found_.push_back(make_vertex(nearest->point));
     return nearest->point;
-}
-
-double Binder::patch_radius(const SurfacePoint& light) const {
-    if (spec_.patch) return *spec_.patch;
-    return light.site == Site::surface ? 0.5 / std::sqrt(scene_.emitter(light.emitter).point_pdf(light)) : 1.0;
 }
 
 /// Goes straight from the point before, which scatters or emits in all directions.

@@ -1,7 +1,9 @@
 // Metropolis light transport and path tracing make the same picture.
+#include "sampling/proposals/registry.h"
 #include "scene/load/scene_yaml.h"
 #include "support/agreement.h"
 #include "support/test_scenes.h"
+#include "support/user_paths.h"
 
 #include <gtest/gtest.h>
 
@@ -17,6 +19,7 @@ struct MltCase {
     std::unique_ptr<Scene> (*make)();
     int path_spp;
     double tolerance; ///< relative; what path tracing misses of a caustic, or has not seen yet
+    UserPathFile (*user_paths)(const Scene&) = nullptr; ///< then half of all proposals go along them
 };
 
 class Mlt_AgreesWithPathTracing : public testing::TestWithParam<MltCase> {};
@@ -34,8 +37,15 @@ TEST_P(Mlt_AgreesWithPathTracing, BlockByBlock) {
     mlt.brightness_samples = 50'000;
     mlt.chains = 400;
     mlt.mutations = 80'000;
+    UserPathFile user_paths;
+    if (GetParam().user_paths != nullptr) {
+        user_paths = GetParam().user_paths(*scene);
+        mlt.p_user_path = 1;
+        for (const ProposalKind& kind : proposal_kinds()) mlt.*kind.weight /= 1.3; // their sum is 1.3
+    }
     const test::Blocks reference = test::render_blocks(*scene, path, 4);
-    const test::Disagreement d = test::compare(test::render_blocks(*scene, mlt, 4), reference, GetParam().tolerance);
+    const test::Disagreement d =
+        test::compare(test::render_blocks(*scene, mlt, 4, "beauty", user_paths), reference, GetParam().tolerance);
     RecordProperty("ratio", std::to_string(d.ratio));
     EXPECT_EQ(d.rejected, 0) << d.report << "mean brightness ratio " << d.ratio;
     EXPECT_LT(d.largest_error, 0.5) << "the test couldn't see a difference";
@@ -48,7 +58,11 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Mlt_AgreesWithPathTracing,
                                          MltCase{"TwoRooms", [] { return test::two_rooms(0.5f); }, 20, 0.01},
                                          MltCase{"Haze", test::hazy_box, 20, 0.01},
                                          MltCase{"Sky", test::sky_box, 20, 0.01},
-                                         MltCase{"RoomsLow", rooms_low, 20, 0.01}),
+                                         MltCase{"RoomsLow", rooms_low, 20, 0.01},
+                                         MltCase{"GuidedMirrorGlassBox", [] { return test::mirror_glass_box(); }, 20,
+                                                 0.01, test::mirror_glass_box_paths},
+                                         MltCase{"GuidedTwoRooms", [] { return test::two_rooms(0.5f); }, 20, 0.01,
+                                                 [](const Scene& s) { return test::two_rooms_paths(s, 0.5f); }}),
                          [](const auto& info) { return std::string(info.param.name); });
 
 } // namespace

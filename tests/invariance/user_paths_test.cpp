@@ -17,7 +17,7 @@ constexpr float kSlit = 1.0f;
 struct GuidedScene {
     const char* name;
     std::unique_ptr<Scene> (*make)();
-    UserPaths (*paths)(const Scene&);
+    UserPathFile (*paths)(const Scene&);
 };
 
 const GuidedScene kScenes[] = {
@@ -50,7 +50,7 @@ class UserPaths_LeaveTheTargetAlone : public testing::TestWithParam<std::tuple<s
 TEST_P(UserPaths_LeaveTheTargetAlone, AtShare) {
     const auto [index, share] = GetParam();
     const auto scene = kScenes[index].make();
-    const UserPaths paths = kScenes[index].paths(*scene);
+    const UserPaths paths = bind_user_paths(*scene, kScenes[index].paths(*scene));
     const auto mixture = guided({scene.get(), PathSet::stored, 8}, paths, share);
     const test::Invariance result = test::measure_invariance(*scene, mixture, PathSet::stored, 120'000, 23);
     EXPECT_GT(accepted(result.ledger, share < 1 ? 1 : 0), 10u) << result.report();
@@ -118,7 +118,7 @@ class UserPaths_NoticeAMistake : public testing::Test {
     int family = 0;
     std::unique_ptr<Scene> scene = test::diffuse_box();
     ProposalContext context{scene.get(), PathSet::stored, 8};
-    UserPaths paths = with_beta(test::diffuse_box_paths(*scene), 1.2);
+    UserPaths paths = with_beta(bind_user_paths(*scene, test::diffuse_box_paths(*scene)), 1.2);
 };
 
 /// Densities of each of `paths`.

@@ -38,10 +38,11 @@ double incomplete_beta(double a, double b, double x) {
 
 double student_p_value(double t, double dof) { return incomplete_beta(dof / 2, 0.5, dof / (dof + t * t)); }
 
-Blocks render_blocks(Scene& scene, Settings settings, int runs, const std::string& layer) {
+Blocks render_blocks(Scene& scene, Settings settings, int runs, const std::string& layer,
+                     const UserPathFile& user_paths) {
     Blocks blocks;
     for (int run = 0; run < runs; ++run, ++settings.seed) {
-        const Picture picture = render(scene, settings, {}).picture;
+        const Picture picture = render(scene, settings, {}, user_paths).picture;
         const Image& image = picture.layers.at(layer);
         const int across = image.width / kBlock, down = image.height / kBlock;
         blocks.resize(static_cast<std::size_t>(across * down));

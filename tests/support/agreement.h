@@ -14,7 +14,8 @@ namespace keyhole::test {
 using Blocks = std::vector<RunningStats>;
 
 /// Renders `runs` pictures of `scene` with consecutive seeds and collects the blocks of `layer`.
-Blocks render_blocks(Scene& scene, Settings settings, int runs, const std::string& layer = "beauty");
+Blocks render_blocks(Scene& scene, Settings settings, int runs, const std::string& layer = "beauty",
+                     const UserPathFile& user_paths = {});
 
 struct Disagreement {
     int rejected = 0;         ///< blocks whose difference can't be chance, after Holm's correction

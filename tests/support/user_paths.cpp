@@ -4,12 +4,6 @@
 #include "sampling/nearest_emitter.h"
 
 namespace keyhole::test {
-namespace {
-
-UserPaths bind(const Scene& scene, const std::vector<UserPathSpec>& specs) { return bind_user_paths(scene, {specs}); }
-
-} // namespace
-
 UserPathSpec user_path(const std::string& name, const std::vector<Vec3>& points, double beta) {
     UserPathSpec spec;
     spec.name = name;
@@ -32,16 +26,16 @@ UserPathSpec specular_user_path(const Scene& scene, const std::string& name, con
     return user_path(name, points, beta);
 }
 
-UserPaths diffuse_box_paths(const Scene& scene) {
+UserPathFile diffuse_box_paths(const Scene& /*scene*/) {
     std::vector<UserPathSpec> specs{
         user_path("floor, right wall", {{0, 1.95f, 0}, {0.4f, 0, 0.3f}, {1, 0.9f, 0.4f}}, 0.9),
         user_path("floor, red wall", {{0.05f, 1.95f, 0.05f}, {0.2f, 0, 0.4f}, {-1, 1, 0.5f}}, 0.8),
         user_path("floor, right wall too", {{0, 1.95f, 0}, {0.6f, 0, 0.1f}, {1, 1.1f, 0.2f}}, 0.6)};
     specs[1].weight = 2;
-    return bind(scene, specs);
+    return {specs};
 }
 
-UserPaths mirror_glass_box_paths(const Scene& scene) {
+UserPathFile mirror_glass_box_paths(const Scene& scene) {
     const Vec3 light(0, 1.95f, 0), ball(0.35f, 0.4f, 0.5f);
     std::vector<UserPathSpec> specs{
         specular_user_path(scene, "glass", {light}, ball, {}, 0.4),
@@ -50,22 +44,24 @@ UserPaths mirror_glass_box_paths(const Scene& scene) {
         specular_user_path(scene, "mirror wall", {light}, {1, 0.9f, -0.6f}, {{-1, 1.6f, 0.6f}}, 0.5),
         user_path("floor", {light, {0, 0, 0.3f}, {-1, 1, 0.4f}}, 0.7)};
     specs[0].patch = 0.03;
-    return bind(scene, specs);
+    return {specs};
 }
 
-UserPaths point_light_box_paths(const Scene& scene) {
+UserPathFile point_light_box_paths(const Scene& scene) {
     const Vec3 light(0.2f, 1.7f, 0.3f);
     return bind(scene,
-                {user_path("floor, right wall", {light, {0.4f, 0, 0.3f}, {1, 0.9f, 0.4f}}, 0.9),
-                 user_path("floor, red wall", {light, {0.2f, 0, 0.4f}, {-1, 1, 0.5f}}, 0.8),
-                 specular_user_path(scene, "mirror ball", {light, {-0.3f, 0, 0.6f}}, {-0.4f, 0.5f, 0}, {}, 0.5)});
+                {
+        user_path("floor, right wall", {light, {0.4f, 0, 0.3f}, {1, 0.9f, 0.4f}}, 0.9),
+            user_path("floor, red wall", {light, {0.2f, 0, 0.4f}, {-1, 1, 0.5f}}, 0.8),
+            specular_user_path(scene, "mirror ball", {light, {-0.3f, 0, 0.6f}}, {-0.4f, 0.5f, 0}, {}, 0.5)}
+};
 }
 
-UserPaths two_rooms_paths(const Scene& scene, float slit) {
+UserPathFile two_rooms_paths(const Scene& /*scene*/, float slit) {
     const Vec3 light(-1.2f, 2.45f, -2.2f), door(1.2f + slit / 2, 1, -0.05f);
     const Vec3 floor(0.5f, 0, -2), beyond = floor + (door - floor) * ((2 - floor.x) / (door.x - floor.x));
-    return bind(scene, {user_path("floor, through the slit", {light, floor, beyond}, 0.9),
-                        user_path("wall, through the slit", {light, {-2, 1, -2}, {2, 1.2f, 0.27f}}, 0.8)});
+    return {{user_path("floor, through the slit", {light, floor, beyond}, 0.9),
+             user_path("wall, through the slit", {light, {-2, 1, -2}, {2, 1.2f, 0.27f}}, 0.8)}};
 }
 
 } // namespace keyhole::test

@@ -19,10 +19,10 @@ UserPathSpec specular_user_path(const Scene& scene, const std::string& name, con
 
 /// Paths for the scenes of test_scenes.h: they overlap, some go through specular vertices, some end where the eye sees
 /// them.
-UserPaths diffuse_box_paths(const Scene& scene);
-UserPaths mirror_glass_box_paths(const Scene& scene);
-UserPaths point_light_box_paths(const Scene& scene);
+UserPathFile diffuse_box_paths(const Scene& scene);
+UserPathFile mirror_glass_box_paths(const Scene& scene);
+UserPathFile point_light_box_paths(const Scene& scene);
 /// For two_rooms(): through the slit.
-UserPaths two_rooms_paths(const Scene& scene, float slit);
+UserPathFile two_rooms_paths(const Scene& scene, float slit);
 
 } // namespace keyhole::test

@@ -91,6 +91,8 @@ TEST_F(Program, OptionsAndSettingsMeanTheSameAndTheLastSettingWins) {
 
 TEST_F(Program, BadInputExitsWithTwoAndOneLine) {
     scratch.write("bad.exr", "no picture");
+    scratch.write("broken.yaml", "paths: [{points: 3}]\n");
+    scratch.write("blocked.yaml", "paths: [{points: [[0, 3, 0], [0, -1, 0]]}]\n");
     for (const char* arguments : {"",
                                   "render",
                                   "frobnicate",
@@ -113,6 +115,18 @@ TEST_F(Program, BadInputExitsWithTwoAndOneLine) {
                                   "render scene.yaml -t -1",
                                   "render scene.yaml --timeout -1",
                                   "render scene.yaml --timeout 0",
+                                  "render scene.yaml --user-paths none.yaml",
+                                  "render scene.yaml --user-paths broken.yaml",
+                                  "render scene.yaml --method mlt --user-paths blocked.yaml",
+                                  "paths",
+                                  "paths check scene.yaml",
+                                  "paths check scene.yaml broken.yaml",
+                                  "paths check scene.yaml blocked.yaml",
+                                  "paths show scene.yaml blocked.yaml",
+                                  "paths suggest none.yaml",
+                                  "paths suggest scene.yaml -n 0",
+                                  "paths trace scene.yaml --from 0 3 0 --dir 0 0 0",
+                                  "paths trace scene.yaml --from 0 3 --dir 0 1 0",
                                   "diff bad.exr bad.exr",
                                   "diff none.exr none.exr",
                                   "diff bad.exr"}) {

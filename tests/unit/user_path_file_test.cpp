@@ -184,7 +184,7 @@ TEST(UserPaths, PointsSnapToTheSurfacesThatLightMeets) {
 
 TEST(UserPaths, EventsAtSpecularVerticesFollowFromThePointAfter) {
     const auto scene = test::mirror_glass_box();
-    const UserPaths paths = test::mirror_glass_box_paths(*scene);
+    const UserPaths paths = bind_user_paths(*scene, test::mirror_glass_box_paths(*scene));
     EXPECT_EQ(paths.at(0).signature(), "L S S D");
     EXPECT_EQ(paths[0].vertices[0].event, Event::transmit);
     EXPECT_EQ(paths[0].vertices[1].event, Event::transmit);
@@ -193,7 +193,7 @@ TEST(UserPaths, EventsAtSpecularVerticesFollowFromThePointAfter) {
 
 TEST(EmitterPatch, SamplesLieInsideWithTheDensityThatIsTold) {
     const auto scene = test::diffuse_box();
-    const UserPath path = test::diffuse_box_paths(*scene).at(0);
+    const UserPath path = bind_user_paths(*scene, test::diffuse_box_paths(*scene)).at(0);
     const EmitterPatch patch(*scene, path.patch.center(), 0.03);
     Rng rng(1, StreamPurpose::test, 0);
     for (int i = 0; i < 1000; ++i) {

@@ -1,5 +1,6 @@
-// UP, user path: a path built from the light along one that a person gave, to which the eye's side of the current path
-// is joined, from d1 on (Fan, Chenney, Lai 2005, section 5.1); or a new eye, if it sees the end of the user path.
+// UP, user path: a path built from the light along one that a person gave, joined to what the current path has from
+// some vertex to the eye; or to a new eye, if it sees the end of the user path. Fan, Chenney, Lai 2005, section 5.1,
+// join it to d1 alone: then only paths of one length find back.
 //
 // Each direction lies in a cone about the one from the new vertex to the user's next point; specular vertices follow
 // the user path's events. x0 lies in a patch of the emitter around the user's: a fixed x0 would be a point mass against
@@ -8,6 +9,8 @@
 #include "sampling/proposals/edit.h"
 #include "sampling/proposals/registry.h"
 #include "sampling/proposals/steps.h"
+
+#include <cstdlib>
 
 namespace keyhole {
 namespace {
@@ -25,15 +28,37 @@ class UserPathProposal final : public Proposal<Path> {
     }
 
     std::string_view name() const override { return label_; }
-    double suitability(const Path& x) const override { return path_.seen || nth_finite_from_eye(x, 1) > 0 ? 1 : 0; }
+    double suitability(const Path& x) const override { return total_weight(x) > 0 ? 1 : 0; }
     std::optional<Path> propose(const Path& x, Rng& rng, Failure& why) const override;
     double transition_density(const Path& x, const Path& y) const override;
 
   private:
-    /// Probability of joining a new eye rather than d1.
-    double eye_probability(const Path& x) const {
-        if (!path_.seen) return 0;
-        return nth_finite_from_eye(x, 1) > 0 ? 0.5 : 1;
+    /// Relative frequency of joining x[m], and with m = x.vertices() a new eye. Most often about as many vertices are
+    /// replaced as are traced, so that the length of the path stays.
+    double join_weight(const Path& x, int m) const {
+        const bool new_eye = m == x.vertices();
+        if (new_eye ? !path_.seen : x.x[static_cast<std::size_t>(m)].specular()) return 0;
+        return 1.0 / (1 + std::abs((new_eye ? m - 1 : m) - events_.vertices()));
+    }
+    template <class Visit> void for_each_join(const Path& x, Visit&& visit) const {
+        for (int m = 1; m <= x.vertices(); ++m)
+            if (m != x.vertices() - 1) visit(m, join_weight(x, m)); // the eye never stays alone
+    }
+    double total_weight(const Path& x) const {
+        double total = 0;
+        for_each_join(x, [&](int, double w) { total += w; });
+        return total;
+    }
+    /// Index of the first vertex that stays, or x.vertices(). Something must suit x.
+    int choose_join(const Path& x, Rng& rng) const {
+        double left = rng.next() * total_weight(x);
+        int chosen = 0;
+        for_each_join(x, [&](int m, double w) {
+            if (w == 0 || (chosen > 0 && left < 0)) return;
+            chosen = m;
+            left -= w;
+        });
+        return chosen;
     }
     /// Unit direction from a vertex towards user vertex i.
     Vec3 axis(const Vertex& from, int i) const {
@@ -84,15 +109,12 @@ double UserPathProposal::light_density(const Path& y) const {
 }
 
 std::optional<Path> UserPathProposal::propose(const Path& x, Rng& rng, Failure& why) const {
-    const bool new_eye = rng.next() < eye_probability(x);
+    const int kept = choose_join(x, rng);
+    const bool new_eye = kept == x.vertices();
     SubPath light, eye;
     Vec2 image = x.image;
-    if (new_eye) {
-        eye.push_back(sample_eye(scene_, rng));
-    } else {
-        const int d1 = nth_finite_from_eye(x, 1);
-        for (int i = x.vertices() - 1; i >= d1; --i) eye.push_back(x.x[static_cast<std::size_t>(i)]);
-    }
+    if (new_eye) eye.push_back(sample_eye(scene_, rng));
+    for (int i = x.vertices() - 1; i >= kept; --i) eye.push_back(x.x[static_cast<std::size_t>(i)]);
     if (events_.vertices() + static_cast<int>(eye.size()) > max_vertices_) return why = Failure::length, std::nullopt;
     if (!trace(light, rng, why)) return std::nullopt;
     if (new_eye) {
@@ -107,13 +129,13 @@ std::optional<Path> UserPathProposal::propose(const Path& x, Rng& rng, Failure& 
 }
 
 double UserPathProposal::transition_density(const Path& x, const Path& y) const {
-    const int d1 = nth_finite_from_eye(x, 1), n = x.vertices(), traced = events_.vertices();
-    const int kept = y.vertices() - traced; // eye's side of y
+    const int n = x.vertices(), kept = y.vertices() - events_.vertices(); // on y's side of the eye
+    if (kept < 1 || kept > n - 1 || path_.patch.pdf(y.x[0].point) == 0) return 0;
     const bool new_eye = kept == 1;
-    if (!new_eye && (d1 == 0 || kept != n - d1)) return 0;
-    const double side = new_eye ? eye_probability(x) * y.x[y.x.size() - 1].pdf_from_eye : 1 - eye_probability(x);
-    if (side == 0 || path_.patch.pdf(y.x[0].point) == 0) return 0;
-    if (!(cut_between(scene_, x, y) == Cut{-1, new_eye ? n : d1})) return 0;
+    const int join = new_eye ? n : n - kept;
+    const double weight = join_weight(x, join);
+    if (weight == 0 || !(cut_between(scene_, x, y) == Cut{-1, join})) return 0;
+    const double side = weight / total_weight(x) * (new_eye ? y.x[y.x.size() - 1].pdf_from_eye : 1.0);
     return side * light_density(y);
 }
 
