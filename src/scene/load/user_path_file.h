@@ -22,8 +22,8 @@ struct UserPathSpec {
     double weight = 1;
     std::vector<UserPathPoint> points; ///< from the light on; at least two
     std::vector<double> beta;          ///< half-angle of the cone of each segment [rad]; one fewer than points
-    std::optional<double> patch;       ///< radius of the part of the emitter that candidates begin on [m]; none: all of it
-    std::optional<double> tolerance;   ///< how far a point may be from its surface [m]
+    std::optional<double> patch; ///< radius of the part of the emitter that candidates begin on [m]; none: all of it
+    std::optional<double> tolerance; ///< how far a point may be from its surface [m]
     FilePosition where{};
 };
 
