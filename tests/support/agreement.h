@@ -3,6 +3,7 @@
 
 #include "core/settings.h"
 #include "core/statistics.h"
+#include "scene/load/user_path_file.h"
 #include "scene/scene.h"
 
 #include <string>

@@ -49,12 +49,9 @@ UserPathFile mirror_glass_box_paths(const Scene& scene) {
 
 UserPathFile point_light_box_paths(const Scene& scene) {
     const Vec3 light(0.2f, 1.7f, 0.3f);
-    return bind(scene,
-                {
-        user_path("floor, right wall", {light, {0.4f, 0, 0.3f}, {1, 0.9f, 0.4f}}, 0.9),
-            user_path("floor, red wall", {light, {0.2f, 0, 0.4f}, {-1, 1, 0.5f}}, 0.8),
-            specular_user_path(scene, "mirror ball", {light, {-0.3f, 0, 0.6f}}, {-0.4f, 0.5f, 0}, {}, 0.5)}
-};
+    return {{user_path("floor, right wall", {light, {0.4f, 0, 0.3f}, {1, 0.9f, 0.4f}}, 0.9),
+             user_path("floor, red wall", {light, {0.2f, 0, 0.4f}, {-1, 1, 0.5f}}, 0.8),
+             specular_user_path(scene, "mirror ball", {light, {-0.3f, 0, 0.6f}}, {-0.4f, 0.5f, 0}, {}, 0.5)}};
 }
 
 UserPathFile two_rooms_paths(const Scene& /*scene*/, float slit) {
