@@ -1,10 +1,10 @@
 // Numbers that cover the unit square evenly from sample to sample of one pixel.
 #pragma once
 
+#include "core/kronecker.h"
 #include "core/rng.h"
 
 #include <array>
-#include <cmath>
 
 namespace keyhole {
 
@@ -20,14 +20,17 @@ class LatticeSource final : public SampleSource {
 
     double next() override {
         if (dimension_ == kAlpha.size()) return rest_.next();
-        const double x = shift_.next() + sample_ * kAlpha[dimension_++];
-        return x - std::floor(x);
+        return kronecker(shift_.next(), sample_, kAlpha[dimension_++]);
     }
 
   private:
     // R2; square roots of primes, which are independent over the rationals.
-    static constexpr std::array<double, 7> kAlpha{0.7548776662466927, 0.5698402909980532, 0.4142135623730950,
-                                                  0.7320508075688772, 0.6180339887498949, 0.6457513110645906,
+    static constexpr std::array<double, 7> kAlpha{kR2[0],
+                                                  kR2[1],
+                                                  0.4142135623730950,
+                                                  0.7320508075688772,
+                                                  0.6180339887498949,
+                                                  0.6457513110645906,
                                                   0.3166247903553998};
     Rng shift_, rest_;
     double sample_;

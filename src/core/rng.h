@@ -33,6 +33,10 @@ enum class StreamPurpose : std::uint64_t {
     irradiance,
     lattice,
     chain_points,
+    primary_start = 101,
+    primary_chain,
+    failure_study,
+    bidirectional,
 };
 
 /// PCG32 (O'Neill 2014). One for each chain and each pixel, never for each thread, so that a picture does not

@@ -27,6 +27,9 @@ inline bool is_black(const Rgb& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
 
 inline bool is_finite(const Rgb& c) { return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z); }
 
+/// The normal `n` or its opposite: the one on the side that `w` points to.
+inline Vec3 facing(const Vec3& n, const Vec3& w) { return n.dot(w) < 0 ? -n : n; }
+
 /// Right-handed orthonormal frame around a unit normal.
 struct Frame {
     Vec3 s{1, 0, 0}, t{0, 1, 0}, n{0, 0, 1};

@@ -1,7 +1,5 @@
 #include "gather/direct_light.h"
 
-#include "sampling/direct_light.h"
-
 namespace keyhole {
 
 Rgb next_event(const Scene& scene, const Vertex& v, const Vec3& back, SampleSource& source) {
@@ -10,13 +8,10 @@ Rgb next_event(const Scene& scene, const Vertex& v, const Vec3& back, SampleSour
 }
 
 Rgb direct_light(const Scene& scene, const Vertex& v, const Vec3& back, SampleSource& source) {
-    Rgb sum = next_event(scene, v, back, source);
-    const auto next = continue_walk(v, back, From::eye, source);
-    if (!next || is_specular(next->event)) return sum;
-    const auto hit = next_vertex(scene, v, next->w);
-    if (hit && hit->point.is_emitter())
-        sum += next->weight * scene.transmittance(v.point, hit->point) *
-               emission_with_mis(scene, v, *hit, next->w, next->pdf);
+    Rgb sum(0.0);
+    sample_both_techniques(scene, v, back, source, [&](const SurfacePoint& /*emitter*/, const Rgb& value, bool visible) {
+        if (visible) sum += value;
+    });
     return sum;
 }
 

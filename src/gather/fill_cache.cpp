@@ -45,7 +45,7 @@ IrradianceRecord compute_record(const GatherRays& rays, const Candidate& c, cons
     Rng rng(options.seed, StreamPurpose::cache, index);
     const HemisphereGrid grid(options.rays);
     const Frame frame(cache_normal(c.vertex, c.back));
-    const Vec3 outside = side(c.vertex.point, c.back);
+    const Vec3 outside = facing(c.vertex.point.ng, c.back);
     const auto min_radius = static_cast<float>(options.min_radius * c.pixel);
     std::vector<HemisphereRay> found(static_cast<std::size_t>(grid.size()));
     for (int i = 0; i < grid.size(); ++i) {
@@ -130,7 +130,7 @@ CacheOptions cache_options(const Settings& settings, std::uint64_t seed) {
 Vec3 cache_normal(const Vertex& v, const Vec3& back) {
     const Vec3 n = v.bsdf.shading_normal();
     // By the geometric side: a shading normal may turn away from the eye at a silhouette.
-    return n.dot(side(v.point, back)) < 0 ? -n : n;
+    return n.dot(facing(v.point.ng, back)) < 0 ? -n : n;
 }
 
 IrradianceCache fill_cache(const GatherRays& rays, const CacheOptions& options, const RunContext& context) {

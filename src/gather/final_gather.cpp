@@ -13,7 +13,7 @@ constexpr int kSplits = 1;
 /// Hemispherical reflectance where it has a simple form; other finite BSDFs show a typical value.
 Rgb albedo(const Vertex& v, const Vec3& back) {
     const Vec3 n = v.bsdf.shading_normal();
-    return v.bsdf.eval(n.dot(back) < 0 ? -n : n, back) * kPi;
+    return v.bsdf.eval(facing(n, back), back) * kPi;
 }
 
 } // namespace
@@ -39,7 +39,7 @@ void FinalGather::follow(EyeRay ray, int scatterings, int splits, SampleSource& 
         if (scatterings == rays_.max_scatterings()) return;
         if (v.bsdf.traits().finite) {
             out.albedo += ray.throughput * albedo(v, back);
-            if (out.normal.length2() == 0) out.normal = side(v.point, back);
+            if (out.normal.length2() == 0) out.normal = facing(v.point.ng, back);
             shade(v, back, ray.throughput, scatterings + 1, source, out);
         }
         // The finite part is done; only specular events lead on.

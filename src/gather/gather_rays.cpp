@@ -44,7 +44,7 @@ Rgb GatherRays::reflected(const Vertex& v, const Vec3& back, const Leg& leg, Sam
         const Rgb direct = direct_light(scene_, v, back, source);
         return maps_.global != nullptr ? direct + estimate(*maps_.global, options_.max_radius, v, back) : direct;
     }
-    const auto known = maps_.irradiance->irradiance(v.point.p, side(v.point, back));
+    const auto known = maps_.irradiance->irradiance(v.point.p, facing(v.point.ng, back));
     const Rgb f = v.bsdf.eval(back, back);
     const auto near = known.known ? maps_.sites->direct(known.place, v.point.p) : std::nullopt;
     const Rgb direct = near ? f * *near : direct_light(scene_, v, back, source);
@@ -61,7 +61,7 @@ Rgb GatherRays::caustic(const Vertex& v, const Vec3& back) const {
 }
 
 Rgb GatherRays::estimate(const PhotonMap& map, float radius, const Vertex& v, const Vec3& back) const {
-    const PhotonQuery query{{v.point.p, side(v.point, back)}, radius, options_.nearest, options_.shrink};
+    const PhotonQuery query{{v.point.p, facing(v.point.ng, back)}, radius, options_.nearest, options_.shrink};
     return estimate_density(map, query, Unbiased::density, maps_.patches,
                             [&](const Photon& photon) {
                                 return scatter(v.point, v.bsdf, Event::finite, photon.direction(), back).value;

@@ -64,7 +64,4 @@ class GatherRays {
     int max_scatterings_;
 };
 
-/// The side of a surface that `w` points to.
-inline Vec3 side(const SurfacePoint& point, const Vec3& w) { return point.ng.dot(w) < 0 ? -point.ng : point.ng; }
-
 } // namespace keyhole

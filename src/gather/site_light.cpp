@@ -1,6 +1,6 @@
 #include "gather/site_light.h"
 
-#include "sampling/direct_light.h"
+#include "gather/direct_light.h"
 #include "scene/bsdfs/diffuse.h"
 
 #include <limits>
@@ -43,20 +43,12 @@ SiteLight direct_irradiance(const Scene& scene, const SurfacePoint& point, const
     const Vertex v = white_vertex(point, n);
     MeanDistance distance(point.p);
     Rgb sum(0.0);
-    for (int i = 0; i < samples; ++i) {
-        if (const auto light = sample_direct_light(scene, v, n, source)) {
-            distance.add(light->x0.point, light->value);
-            if (scene.visible(v.point, light->x0.point)) sum += light->value;
-        }
-        const auto next = continue_walk(v, n, From::eye, source);
-        if (!next) continue;
-        const auto hit = next_vertex(scene, v, next->w);
-        if (!hit || !hit->point.is_emitter()) continue;
-        const Rgb value = next->weight * scene.transmittance(v.point, hit->point) *
-                          emission_with_mis(scene, v, *hit, next->w, next->pdf);
-        distance.add(hit->point, value);
-        sum += value;
-    }
+    for (int i = 0; i < samples; ++i)
+        sample_both_techniques(scene, v, n, source,
+                               [&](const SurfacePoint& emitter, const Rgb& value, bool visible) {
+                                   distance.add(emitter, value);
+                                   if (visible) sum += value;
+                               });
     return {sum * (kPi / samples), static_cast<float>(kReach * distance.get())};
 }
 

@@ -47,8 +47,8 @@ Sites::Entry Sites::at(const Scene& scene, const PhotonMap& photons, std::uint32
     }
     if (const auto point = surface_at(scene, place)) {
         Rng rng(options.seed, StreamPurpose::irradiance, i);
-        const Vec3 side = point->ng.dot(n) < 0 ? -point->ng : point->ng;
-        const SiteLight light = direct_irradiance(scene, *point, side, options.direct_samples, rng);
+        const SiteLight light =
+            direct_irradiance(scene, *point, facing(point->ng, n), options.direct_samples, rng);
         site.direct = SharedExponentRgb(light.irradiance);
         site.reach = light.reach;
     }

@@ -128,26 +128,27 @@ Block learn_from_pilot(const Scene& scene, const EmissionGuide& guide, const Emi
     return sum;
 }
 
-} // namespace
-
-double caustic_share(const Scene& scene, const EmissionGuide& guide, const EmissionOptions& options) {
+/// How many of the photons are for the caustic map, from the weights that arrive at either.
+std::size_t caustic_part(const Scene& scene, const Block& pilot, std::size_t photons) {
     if (!scene.traits().delta) return 0;
-    const Block pilot = learn_from_pilot(scene, guide, options);
     const double all = pilot.known_global + pilot.known_caustic;
-    return all > 0 ? std::clamp(pilot.known_caustic / all, 0.02, 0.98) : 0.5;
+    const double share = all > 0 ? std::clamp(pilot.known_caustic / all, 0.02, 0.98) : 0.5;
+    return static_cast<std::size_t>(share * static_cast<double>(photons));
 }
+
+} // namespace
 
 EmittedPhotons emit_photons(const Scene& scene, const EmissionGuide& guide, const EmissionOptions& options,
                             const RunContext& context) {
     EmittedPhotons out;
     if (scene.emitter_distribution().empty()) return out;
-    PhotonStore global(options.global_photons, 0, Rng(options.seed, StreamPurpose::thinning, 0));
-    PhotonStore caustic(options.caustic_photons, 0, Rng(options.seed, StreamPurpose::thinning, 1));
     Block learnt = learn_from_pilot(scene, guide, options);
+    const std::size_t for_caustic = caustic_part(scene, learnt, options.photons);
+    PhotonStore global(options.photons - for_caustic, 0, Rng(options.seed, StreamPurpose::thinning, 0));
+    PhotonStore caustic(for_caustic, 0, Rng(options.seed, StreamPurpose::thinning, 1));
 
     // In rounds, so that buffers stay small beside the stores, and thresholds follow what is stored.
-    const auto photons = static_cast<std::int64_t>(options.global_photons + options.caustic_photons);
-    const std::int64_t round = std::clamp<std::int64_t>(photons / 32 / kBlock, 4, 512) * kBlock;
+    const std::int64_t round = std::clamp<std::int64_t>(static_cast<std::int64_t>(options.photons) / 32 / kBlock, 4, 512) * kBlock;
     context.begin("photons", static_cast<std::uint64_t>(options.paths), "light paths");
     while (out.paths < options.paths && !(context.stopped() && out.paths > 0)) {
         const Range range{out.paths, std::min(options.paths, out.paths + round)};

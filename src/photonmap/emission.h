@@ -11,9 +11,8 @@
 namespace keyhole {
 
 struct EmissionOptions {
-    std::int64_t paths;          ///< light paths traced
-    std::size_t global_photons;  ///< ceiling for the global map
-    std::size_t caustic_photons; ///< ceiling for the caustic map
+    std::int64_t paths;  ///< light paths traced
+    std::size_t photons; ///< ceiling for both maps together; they share it as they share the weight of what arrives
     int max_scatterings = 24;
     std::uint64_t seed;
 };
@@ -39,9 +38,5 @@ struct EmittedPhotons : Photons {
 /// Where E is unknown photons share a small part of the store by their power. Reproducible on any number of threads.
 EmittedPhotons emit_photons(const Scene& scene, const EmissionGuide& guide, const EmissionOptions& options,
                             const RunContext& context);
-
-/// The share of the importance of all photons, or of their number without a guide, that the caustic map gets. From the
-/// first few thousand of the same paths.
-double caustic_share(const Scene& scene, const EmissionGuide& guide, const EmissionOptions& options);
 
 } // namespace keyhole

@@ -12,7 +12,7 @@ class Photon {
     /// `ng` is the geometric normal, of either orientation; `direction` is unit and points away from the surface to
     /// where the light came from. `power` [W, or importance] is finite and not negative.
     Photon(const Vec3& position, const Vec3& ng, const Vec3& direction, const Rgb& power)
-        : position_(position), power_(power), direction_(direction), normal_(ng.dot(direction) < 0 ? -ng : ng) {}
+        : position_(position), power_(power), direction_(direction), normal_(facing(ng, direction)) {}
 
     const Vec3& position() const { return position_; }
     /// Geometric normal on the side that the light arrived at, so that the two sides of a sheet are told apart.

@@ -7,7 +7,6 @@
 #include "render/pixels.h"
 #include "render/stage_clock.h"
 #include "sampling/bidirectional_tracer.h"
-#include "sampling/primary/streams.h"
 
 namespace keyhole {
 namespace {
@@ -50,7 +49,7 @@ RenderResult render_bdpt(const Scene& scene, const Settings& settings, const Run
         const StageClock clock(result.stats, "bidirectional path tracing");
         const auto depth = static_cast<int>(settings.max_depth);
         const MisHeuristic heuristic = mis_heuristic(settings.mis);
-        rounds = sample_pixels(scene, film, settings.spp, static_cast<std::uint64_t>(settings.seed), kBidirectional,
+        rounds = sample_pixels(scene, film, settings.spp, static_cast<std::uint64_t>(settings.seed), StreamPurpose::bidirectional,
                                "bidirectional path tracing", context, [&](const Vec2& image, SampleSource& source) {
                                    return sample_pixel(scene, image, depth, heuristic, splats, source);
                                });

@@ -26,15 +26,12 @@ class EmissionSampler final : public PhotonSampler {
         const EmissionGuide guide{global.get(), caustic.get()};
 
         const StageClock clock(stats, "photons");
-        EmissionOptions options{.paths = c_.settings.light_paths,
-                                .global_photons = 0,
-                                .caustic_photons = 0,
-                                .max_scatterings = static_cast<int>(c_.settings.max_depth),
-                                .seed = seed};
-        const double share = caustic_share(c_.scene, guide, options);
-        options.caustic_photons = static_cast<std::size_t>(share * static_cast<double>(plan.photons));
-        options.global_photons = plan.photons - options.caustic_photons;
-        EmittedPhotons photons = emit_photons(c_.scene, guide, options, context);
+        EmittedPhotons photons = emit_photons(c_.scene, guide,
+                                              {.paths = c_.settings.light_paths,
+                                               .photons = plan.photons,
+                                               .max_scatterings = static_cast<int>(c_.settings.max_depth),
+                                               .seed = seed},
+                                              context);
         stats.values["light paths"] = static_cast<double>(photons.paths);
         stats.values["photons before storing"] = static_cast<double>(photons.arrivals);
         stats.photon_bytes = std::max<std::uint64_t>(stats.photon_bytes, photons.bytes + stats.importon_bytes);

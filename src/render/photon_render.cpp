@@ -44,9 +44,8 @@ std::uint64_t seed_of_pass(std::uint64_t seed, std::int64_t pass) {
 }
 
 /// Stage three: what the eye sees, from the photons of a pass. Returns whether it was completed.
-bool gather_pass(const SamplerContext& c, std::int64_t pass, Photons photons, Film& film, RenderStats& stats,
-                 const RunContext& context) {
-    const std::uint64_t seed = seed_of_pass(static_cast<std::uint64_t>(c.settings.seed), pass);
+bool gather_pass(const SamplerContext& c, std::int64_t pass, std::uint64_t seed, Photons photons, Film& film,
+                 RenderStats& stats, const RunContext& context) {
     const StageClock clock(stats, "gather");
     const Settings& s = c.settings;
     const Radii radii(c.scene, pass);
@@ -106,13 +105,13 @@ RenderResult render_photons(const Scene& scene, const Settings& settings, const 
     PassError error;
     std::int64_t pass = 0;
     for (bool done = false; !done;) {
-        Photons photons =
-            sampler->sample(seed_of_pass(static_cast<std::uint64_t>(settings.seed), pass), stats, context);
+        const std::uint64_t seed = seed_of_pass(static_cast<std::uint64_t>(settings.seed), pass);
+        Photons photons = sampler->sample(seed, stats, context);
         if (pass == 0 && !settings.save_map.empty())
             save_photons(settings.save_map, photon_file_key(scene, settings), photons);
         // The photons of a pass that was cut short are good for a first picture, not for one that is there.
         if (pass > 0 && context.stopped()) break;
-        const bool whole = gather_pass(c, pass, std::move(photons), film, stats, context);
+        const bool whole = gather_pass(c, pass, seed, std::move(photons), film, stats, context);
         pass += whole ? 1 : 0;
         error.add(film);
         done = !whole || pass == settings.passes || (pass >= 4 && error.relative() <= settings.target_error);

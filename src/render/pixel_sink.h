@@ -29,7 +29,7 @@ struct PixelSink {
         if (!v.bsdf.traits().finite || saw_surface()) return;
         const Vec3 back = direction(v.point, before.point);
         const Vec3 n = v.bsdf.shading_normal();
-        pixel.normal = n.dot(back) < 0 ? -n : n;
+        pixel.normal = facing(n, back);
         pixel.albedo = v.bsdf.eval(pixel.normal, back) * kPi;
     }
     bool saw_surface() const { return pixel.normal.length2() > 0; }

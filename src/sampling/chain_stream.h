@@ -1,9 +1,8 @@
 // Random numbers of one chain among many.
 #pragma once
 
+#include "core/kronecker.h"
 #include "core/rng.h"
-
-#include <cmath>
 
 namespace keyhole {
 
@@ -19,8 +18,8 @@ class ChainStream final : public Rng {
 
     std::array<double, 2> next_point() override {
         Rng shift(seed_, StreamPurpose::chain_points, round_++);
-        const double x = shift.next() + index_ * 0.7548776662466927, y = shift.next() + index_ * 0.5698402909980532;
-        return {x - std::floor(x), y - std::floor(y)};
+        const double x = kronecker(shift.next(), index_, kR2[0]);
+        return {x, kronecker(shift.next(), index_, kR2[1])};
     }
 
   private:

@@ -92,13 +92,11 @@ Energy by_emission(const Scene& scene, int depth, bool guided, int runs) {
         const ImportanceGuide at_d2 = guide(std::move(importons.second), patches);
         const EmissionGuide both = guided ? EmissionGuide{&at_d2, &at_d1} : EmissionGuide{};
         const EmissionOptions options{.paths = 60'000,
-                                      .global_photons = 20'000,
-                                      .caustic_photons = 5'000,
+                                      .photons = 25'000,
                                       .max_scatterings = depth,
                                       .seed = seed};
         const EmittedPhotons photons = emit_photons(scene, both, options, {});
-        EXPECT_LE(photons.global.size(), options.global_photons);
-        EXPECT_LE(photons.caustic.size(), options.caustic_photons);
+        EXPECT_LE(photons.global.size() + photons.caustic.size(), options.photons);
         add_run(scene, photons, e);
     }
     return e;

@@ -3,6 +3,7 @@
 #include "scene/geometry.h"
 #include "scene/load/scene_yaml.h"
 #include "support/scratch_directory.h"
+#include "support/signed_volume.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -37,16 +38,6 @@ class SceneYaml : public testing::Test {
 };
 
 Vec3 face_normal(const TriangleMesh& mesh, std::uint32_t i) { return triangle_point(mesh, i, 0.3f, 0.3f).ng; }
-
-/// Volume that a closed mesh encloses, positive where the outside is outward (divergence theorem).
-double signed_volume(const TriangleMesh& mesh) {
-    double volume = 0;
-    for (const auto& t : mesh.triangles) {
-        const Imath::V3d a(mesh.positions[t[0]]), b(mesh.positions[t[1]]), c(mesh.positions[t[2]]);
-        volume += a.dot(b.cross(c)) / 6;
-    }
-    return volume;
-}
 
 TEST_F(SceneYaml, DefaultsStandWhereAFileIsSilent) {
     const auto scene = load(kCamera + "shapes: [{type: sphere, material: {type: diffuse}}]\n");
@@ -113,8 +104,8 @@ TEST_F(SceneYaml, RectangleFacesPlusZAndUCrossV) {
 }
 
 TEST_F(SceneYaml, BoxEnclosesItsVolumeOutsideOutward) {
-    EXPECT_NEAR(signed_volume(load_mesh("{type: box, material: white, min: [1, 2, 3], max: [2, 4, 6]}")), 6, 1e-5);
-    EXPECT_NEAR(signed_volume(load_mesh("{type: box, material: white, flip: true}")), -8, 1e-5);
+    EXPECT_NEAR(test::signed_volume(load_mesh("{type: box, material: white, min: [1, 2, 3], max: [2, 4, 6]}")), 6, 1e-5);
+    EXPECT_NEAR(test::signed_volume(load_mesh("{type: box, material: white, flip: true}")), -8, 1e-5);
 }
 
 TEST_F(SceneYaml, TransformsActFirstToLast) {
@@ -135,10 +126,10 @@ TEST_F(SceneYaml, MatrixActsOnColumnsAsInTextbooks) {
 }
 
 TEST_F(SceneYaml, MirroredTransformKeepsTheOutsideOutside) {
-    EXPECT_NEAR(signed_volume(load_mesh("{type: box, material: white, transform: [{scale: [-1, 2, 1]}]}")), 16, 1e-5);
-    EXPECT_NEAR(signed_volume(load_mesh("{type: box, material: white, transform: [{scale: -1}]}")), 8, 1e-5);
+    EXPECT_NEAR(test::signed_volume(load_mesh("{type: box, material: white, transform: [{scale: [-1, 2, 1]}]}")), 16, 1e-5);
+    EXPECT_NEAR(test::signed_volume(load_mesh("{type: box, material: white, transform: [{scale: -1}]}")), 8, 1e-5);
     const auto ball = load_mesh("{type: sphere, material: white, transform: [{scale: [-1, 2, 3]}]}");
-    EXPECT_NEAR(signed_volume(ball), 4 * kPi / 3 * 6, 0.02);
+    EXPECT_NEAR(test::signed_volume(ball), 4 * kPi / 3 * 6, 0.02);
     for (std::uint32_t i = 0; i < ball.triangles.size(); ++i)
         EXPECT_GT(face_normal(ball, i).dot(ball.normals[ball.triangles[i][0]]), 0.9f);
     EXPECT_FALSE(load_sphere("{type: sphere, material: white, transform: [{scale: -2}]}").inward);
@@ -162,7 +153,7 @@ TEST_F(SceneYaml, StretchedSphereBecomesAnEllipsoidWithItsNormals) {
         expect_near(mesh.normals[i], Vec3(p.x, p.y / 4, p.z / 16).normalized(), 1e-4f);
     }
     const auto inward = load_mesh("{type: sphere, material: ball, flip: true, transform: [{scale: [1, 1, 2]}]}");
-    EXPECT_LT(signed_volume(inward), 0);
+    EXPECT_LT(test::signed_volume(inward), 0);
 }
 
 TEST_F(SceneYaml, EmittedPowerFollowsFromAreaAndSides) {
@@ -245,7 +236,7 @@ TEST_F(SceneYaml, IncludeCycleIsReported) {
 TEST_F(SceneYaml, AnchorsMayBeReused) {
     const auto mesh =
         load_mesh("{type: box, material: white, min: &a [0, 0, 0], max: [1, 1, 1], transform: {translate: *a}}");
-    EXPECT_NEAR(signed_volume(mesh), 1, 1e-6);
+    EXPECT_NEAR(test::signed_volume(mesh), 1, 1e-6);
 }
 
 TEST_F(SceneYaml, ObjQuadIsTwoFlatTriangles) {

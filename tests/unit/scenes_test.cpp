@@ -4,6 +4,7 @@
 #include "scene/load/scene_yaml.h"
 #include "scene/warp.h"
 #include "support/scratch_directory.h"
+#include "support/signed_volume.h"
 
 #include <gtest/gtest.h>
 
@@ -76,15 +77,6 @@ std::size_t open_edges(const TriangleMesh& mesh) {
         std::count_if(edges.begin(), edges.end(), [](const auto& e) { return e.second > 0; }));
 }
 
-double signed_volume(const TriangleMesh& mesh) {
-    double volume = 0;
-    for (const auto& t : mesh.triangles) {
-        const Imath::V3d a(mesh.positions[t[0]]), b(mesh.positions[t[1]]), c(mesh.positions[t[2]]);
-        volume += a.dot(b.cross(c)) / 6;
-    }
-    return volume;
-}
-
 struct Expected {
     const char* file;
     int width, height;
@@ -132,7 +124,7 @@ TEST_P(ShippedScene, HasClosedGlassThatFacesOutward) {
         ++glasses;
         if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) {
             EXPECT_EQ(open_edges(*mesh), 0u);
-            EXPECT_GT(signed_volume(*mesh), 0);
+            EXPECT_GT(test::signed_volume(*mesh), 0);
         } else {
             EXPECT_FALSE(std::get<Sphere>(shape.geometry).inward);
         }

@@ -1,7 +1,6 @@
 #include "sampling/primary/failure_study.h"
 
 #include "sampling/primary/primary_kernel.h"
-#include "sampling/primary/streams.h"
 
 #include <algorithm>
 #include <array>
@@ -64,7 +63,7 @@ Histogram exact(FailureStudy::Target target) {
 
 /// The histogram of one chain's states, one for each step; those that are left out are none.
 Histogram run_chain(const FailureStudy& study, std::uint64_t repeat, PrimaryCounts& counts) {
-    Rng rng(study.seed, kFailureStudy, repeat);
+    Rng rng(study.seed, StreamPurpose::failure_study, repeat);
     Line line(study, rng);
     const PrimaryKernel kernel{study.failures, study.p_large};
     Histogram h{};

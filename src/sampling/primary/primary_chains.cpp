@@ -1,7 +1,6 @@
 #include "sampling/primary/primary_chains.h"
 
 #include "core/parallel.h"
-#include "sampling/primary/streams.h"
 
 namespace keyhole {
 namespace {
@@ -70,7 +69,7 @@ PrimaryChains::PrimaryChains(const std::vector<PrimaryStratum>& strata, std::uin
     for (std::size_t k = 0; k < strata.size(); ++k)
         for (const PrimarySeed& s : strata[k].seeds) {
             const auto index = static_cast<std::uint64_t>(chains_.size());
-            auto chain = std::make_unique<Chain>(*strata[k].builder, k, Rng(seed, kPrimaryChain, index));
+            auto chain = std::make_unique<Chain>(*strata[k].builder, k, Rng(seed, StreamPurpose::primary_chain, index));
             PrimaryRandom random(seed, s.sample);
             Fixed prescribed(s.choice);
             SampleSource& choice = s.choice < 0 ? static_cast<SampleSource&>(random.choice) : prescribed;

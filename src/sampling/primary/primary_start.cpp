@@ -1,7 +1,6 @@
 #include "sampling/primary/primary_start.h"
 
 #include "core/parallel.h"
-#include "sampling/primary/streams.h"
 
 #include <algorithm>
 #include <cmath>
@@ -97,9 +96,9 @@ std::vector<std::int64_t> share_out(const std::vector<RunningStats>& brightness,
 } // namespace
 
 PrimaryRandom::PrimaryRandom(std::uint64_t seed, std::int64_t index)
-    : eye(seed, kPrimaryStart, 3 * static_cast<std::uint64_t>(index)),
-      light(seed, kPrimaryStart, 3 * static_cast<std::uint64_t>(index) + 1),
-      choice(seed, kPrimaryStart, 3 * static_cast<std::uint64_t>(index) + 2) {}
+    : eye(seed, StreamPurpose::primary_start, 3 * static_cast<std::uint64_t>(index)),
+      light(seed, StreamPurpose::primary_start, 3 * static_cast<std::uint64_t>(index) + 1),
+      choice(seed, StreamPurpose::primary_start, 3 * static_cast<std::uint64_t>(index) + 2) {}
 
 PrimaryStratum start_whole(std::unique_ptr<PathBuilder> builder, const PrimaryStartOptions& options,
                            const RunContext& context) {
