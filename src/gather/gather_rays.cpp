@@ -39,18 +39,25 @@ GatherRays::Arrival GatherRays::trace(const Vertex& from, const Vec3& w0, double
     return arrival;
 }
 
+bool GatherRays::too_near(const Leg& leg, std::uint32_t place) const {
+    // The estimate is a mean over its radius. Seen from nearer than that, as in corners, the mean is not good enough.
+    // With mirrors or smooth glass it has to be: rays that are traced on would lose the caustics of the place, which
+    // only a ray that happens to run into the emitter could find.
+    return !leg.secondary && !scene_.traits().delta && leg.distance < maps_.irradiance->radius(place);
+}
+
 Rgb GatherRays::reflected(const Vertex& v, const Vec3& back, const Leg& leg, SampleSource& source) const {
-    if (maps_.irradiance == nullptr || !v.bsdf.traits().near_lambertian) {
+    const auto known = maps_.irradiance != nullptr && v.bsdf.traits().near_lambertian
+                           ? maps_.irradiance->irradiance(v.point.p, facing(v.point.ng, back))
+                           : IrradianceMap::Answer{};
+    if (!known.known) {
         const Rgb direct = direct_light(scene_, v, back, source);
         return maps_.global != nullptr ? direct + estimate(*maps_.global, options_.max_radius, v, back) : direct;
     }
-    const auto known = maps_.irradiance->irradiance(v.point.p, facing(v.point.ng, back));
     const Rgb f = v.bsdf.eval(back, back);
-    const auto near = known.known ? maps_.sites->direct(known.place, v.point.p) : std::nullopt;
+    const auto near = maps_.sites->direct(known.place, v.point.p);
     const Rgb direct = near ? f * *near : direct_light(scene_, v, back, source);
-    // The estimate is a mean over its radius. Seen from nearer than that, as in corners, the mean is not good enough.
-    if (leg.secondary || !known.known || leg.distance >= maps_.sites->radius(known.place))
-        return direct + f * known.irradiance;
+    if (!too_near(leg, known.place)) return direct + f * known.irradiance;
     const auto next = continue_walk(v, back, From::eye, source);
     if (!next || is_specular(next->event)) return direct;
     return direct + next->weight * trace(v, next->w, next->pdf, leg.scatterings + 1, true, source).indirect;
@@ -60,9 +67,9 @@ Rgb GatherRays::caustic(const Vertex& v, const Vec3& back) const {
     return maps_.caustic != nullptr ? estimate(*maps_.caustic, options_.caustic_radius, v, back) : Rgb(0.0);
 }
 
-Rgb GatherRays::estimate(const PhotonMap& map, float radius, const Vertex& v, const Vec3& back) const {
+Rgb GatherRays::estimate(const ScoutedMap& map, float radius, const Vertex& v, const Vec3& back) const {
     const PhotonQuery query{{v.point.p, facing(v.point.ng, back)}, radius, options_.nearest, options_.shrink};
-    return estimate_density(map, query, Unbiased::density, maps_.patches,
+    return estimate_density(map, query, maps_.patches,
                             [&](const Photon& photon) {
                                 return scatter(v.point, v.bsdf, Event::finite, photon.direction(), back).value;
                             })

@@ -9,10 +9,10 @@ namespace keyhole {
 
 /// What stage three asks. Maps may be null: nothing of that kind was found.
 struct GatherMaps {
-    const PhotonMap* global = nullptr;
+    const ScoutedMap* global = nullptr;
     const IrradianceMap* irradiance = nullptr; ///< of the global map
     const Sites* sites = nullptr;              ///< direct light where `irradiance` is known; null only if that is
-    const PhotonMap* caustic = nullptr;
+    const ScoutedMap* caustic = nullptr;
     const SurfacePatches* patches = nullptr;
 };
 
@@ -54,9 +54,11 @@ class GatherRays {
     };
     Arrival trace(const Vertex& from, const Vec3& w, double pdf, int scatterings, bool secondary,
                   SampleSource& source) const;
+    /// Whether a ray from `leg.distance` away sees the estimate at a place from too near.
+    bool too_near(const Leg& leg, std::uint32_t place) const;
     /// Radiance towards `back` that `v` reflects by its finite part.
     Rgb reflected(const Vertex& v, const Vec3& back, const Leg& leg, SampleSource& source) const;
-    Rgb estimate(const PhotonMap& map, float radius, const Vertex& v, const Vec3& back) const;
+    Rgb estimate(const ScoutedMap& map, float radius, const Vertex& v, const Vec3& back) const;
 
     const Scene& scene_;
     GatherMaps maps_;

@@ -2,6 +2,7 @@
 
 #include "core/parallel.h"
 #include "gather/site_light.h"
+#include "photonmap/surface_region.h"
 
 namespace keyhole {
 namespace {
@@ -22,33 +23,26 @@ std::optional<SurfacePoint> surface_at(const Scene& scene, const Photon& place) 
 
 } // namespace
 
-Sites::Sites(const Scene& scene, const PhotonMap& photons, std::span<const Photon> places, const SiteOptions& options,
-             const RunContext& context)
+Sites::Sites(const Scene& scene, std::span<const Photon> places, const SiteOptions& options, const RunContext& context)
     : places_(places), sites_(places.size()) {
     constexpr std::int64_t kBlock = 256;
     const auto count = static_cast<std::int64_t>(places.size());
     context.begin("direct light of sites", places.size(), "sites");
     parallel_for((count + kBlock - 1) / kBlock, [&](std::int64_t b) {
         for (std::int64_t i = b * kBlock; i < std::min(count, (b + 1) * kBlock); ++i)
-            sites_[static_cast<std::size_t>(i)] = at(scene, photons, static_cast<std::uint32_t>(i), options);
+            sites_[static_cast<std::size_t>(i)] = at(scene, static_cast<std::uint32_t>(i), options);
         context.advance(kBlock);
     });
     context.end();
 }
 
-Sites::Entry Sites::at(const Scene& scene, const PhotonMap& photons, std::uint32_t i,
-                       const SiteOptions& options) const {
+Sites::Entry Sites::at(const Scene& scene, std::uint32_t i, const SiteOptions& options) const {
     const Photon& place = places_[i];
     const Vec3 n = place.normal().decode();
     Entry site;
-    if (!scene.traits().delta) {
-        const PhotonQuery query{{place.position(), n}, options.max_radius, options.k};
-        site.radius = std::sqrt(photons.nearest(query).radius2);
-    }
     if (const auto point = surface_at(scene, place)) {
         Rng rng(options.seed, StreamPurpose::irradiance, i);
-        const SiteLight light =
-            direct_irradiance(scene, *point, facing(point->ng, n), options.direct_samples, rng);
+        const SiteLight light = direct_irradiance(scene, *point, facing(point->ng, n), options.direct_samples, rng);
         site.direct = SharedExponentRgb(light.irradiance);
         site.reach = light.reach;
     }

@@ -53,4 +53,20 @@ DensityEstimate estimate_density(const PhotonMap& map, const PhotonQuery& query,
     return e;
 }
 
+/// The same over a region of radius `radius` [m] that doesn't follow from the photons of `map`.
+template <class Weight>
+DensityEstimate estimate_density(const PhotonMap& map, const SurfaceRegion& region, float radius,
+                                 const SurfacePatches* patches, Weight&& weight) {
+    DensityEstimate e;
+    e.radius = radius;
+    e.area = patches != nullptr ? patches->area(region, radius) : kPi * static_cast<double>(radius) * radius;
+    if (!(e.area > 0)) return e;
+    map.for_each_within(region, radius, [&](const Photon& photon) {
+        e.value += weight(photon) * photon.power();
+        ++e.photons;
+    });
+    e.value /= e.area;
+    return e;
+}
+
 } // namespace keyhole

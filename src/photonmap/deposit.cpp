@@ -54,21 +54,24 @@ void PathDepositor::store(Pending& pending) {
     pending.kind = PhotonKind::none;
     const double given = std::exchange(pending.weight, 0);
     if (!(given > 0)) return;
-    const double weight = roulette(given, global ? global_threshold_ : caustic_threshold_, rng_);
+    const double weight = roulette(given, global ? thresholds_.global : thresholds_.caustic, rng_);
     if (weight == 0) return;
+    const Rgb power = options_.role == PhotonRole::scout ? Rgb(1.0) : power_of(pending, global, given, weight);
+    if (is_black(power)) return;
+    PhotonBuffer& buffer = global ? buffers_.global : buffers_.caustic;
+    buffer.photons.emplace_back(pending.vertex.point.p, pending.vertex.point.ng, pending.to_light, power);
+    buffer.weights.push_back(static_cast<float>(weight));
+}
 
+Rgb PathDepositor::power_of(const Pending& pending, bool global, double given, double weight) {
     const Rgb power = global ? global_power(pending, given, weight) : marginal_power(pending, *options_.caustic).power;
     if (is_black(power)) {
         tally_.lost += weight;
-        return;
-    }
-    if (global) {
+    } else if (global) {
         tally_.power.add(luminance(power));
         tally_.literal_power.add(luminance(pending.flux) * (pending.literal / given));
     }
-    PhotonBuffer& buffer = global ? global_ : caustic_;
-    buffer.photons.emplace_back(pending.vertex.point.p, pending.vertex.point.ng, pending.to_light, power);
-    buffer.weights.push_back(static_cast<float>(weight));
+    return power;
 }
 
 PathDepositor::Marginal PathDepositor::marginal_power(const Pending& pending, const ImportanceMap& map) {

@@ -3,7 +3,7 @@
 
 #include "core/statistics.h"
 #include "photonmap/importance_map.h"
-#include "photonmap/photon_store.h"
+#include "photonmap/map_stores.h"
 #include "sampling/path.h"
 #include "scene/scene.h"
 
@@ -24,8 +24,9 @@ struct DepositOptions {
     const ImportanceMap* global = nullptr;  ///< at d2; null under `reciprocal`
     const ImportanceMap* caustic = nullptr; ///< at d1
     PowerRule rule = PowerRule::marginal;
-    const Scene* scene = nullptr; ///< that eye sides are drawn in; must be given
-    int max_scatterings = 24;     ///< of a whole path
+    const Scene* scene = nullptr;          ///< that eye sides are drawn in; must be given
+    int max_scatterings = 24;              ///< of a whole path
+    PhotonRole role = PhotonRole::carrier; ///< a scout's power is never asked for
 };
 
 /// Collects the photons of one chain: under `marginal` power f_map / Y(f_map E) for each path, times its weight. Times
@@ -36,10 +37,7 @@ class PathDepositor {
 
     /// Weights below these, those of the stores that the buffers go to, are sent through the roulette at once: what
     /// doesn't survive costs nothing more.
-    void set_thresholds(double global, double caustic) {
-        global_threshold_ = global;
-        caustic_threshold_ = caustic;
-    }
+    void set_thresholds(const MapStores::Thresholds& thresholds) { thresholds_ = thresholds; }
 
     /// Adds `weight` of `path`. Paths that share a stored sub-path and come close together make one photon: a chain's
     /// state and its candidates take turns, and proposals that change the eye side alone keep it.
@@ -48,8 +46,8 @@ class PathDepositor {
     /// Stores what is still held back. To be called at the end.
     void flush();
 
-    PhotonBuffer& global() { return global_; }
-    PhotonBuffer& caustic() { return caustic_; }
+    PhotonRole role() const { return options_.role; }
+    MapBuffers& buffers() { return buffers_; }
 
     /// What came of the deposits, for statistics and for scales.
     struct Tally {
@@ -87,6 +85,7 @@ class PathDepositor {
         bool trusted; ///< enough importons say so, on a surface where they can tell, and none that a wall may hide
     };
     // Power for weight 1; black where it is lost. `given` is the weight that the sums of `pending` are over.
+    Rgb power_of(const Pending& pending, bool global, double given, double weight);
     Rgb global_power(const Pending& pending, double given, double weight);
     static Marginal marginal_power(const Pending& pending, const ImportanceMap& map);
     Rgb reciprocal_power(const Pending& pending, double given);
@@ -94,8 +93,8 @@ class PathDepositor {
 
     DepositOptions options_;
     Rng rng_;
-    double global_threshold_ = 0, caustic_threshold_ = 0;
-    PhotonBuffer global_, caustic_;
+    MapStores::Thresholds thresholds_;
+    MapBuffers buffers_;
     Pending recent_, older_;
     Tally tally_;
 };

@@ -1,6 +1,7 @@
 #include "photonmap/emission.h"
 
 #include "core/parallel.h"
+#include "photonmap/map_stores.h"
 #include "sampling/light_tracer.h"
 
 #include <algorithm>
@@ -28,7 +29,7 @@ struct Weighing {
 
 /// Photons of a block of paths, and what the weighing of later ones learns from them.
 struct Block {
-    PhotonBuffer global, caustic;
+    MapBuffers scouts, carriers;
     double known_global = 0, known_caustic = 0; ///< weight
     double unknown = 0;                         ///< luminance of power
     std::uint64_t arrivals = 0;
@@ -50,11 +51,12 @@ struct Block {
 /// Receives the arrivals of one light path after the other.
 class Collector {
   public:
-    Collector(const Weighing& weighing, double global_threshold, double caustic_threshold, int max_scatterings)
-        : weighing_(weighing), global_threshold_(global_threshold), caustic_threshold_(caustic_threshold),
-          max_scatterings_(max_scatterings) {}
+    Collector(const Weighing& weighing, const MapStores::Thresholds& scouts, const MapStores::Thresholds& carriers,
+              int max_scatterings)
+        : weighing_(weighing), scouts_(scouts), carriers_(carriers), max_scatterings_(max_scatterings) {}
 
-    void begin(Rng& rng) {
+    void begin(PhotonRole role, Rng& rng) {
+        role_ = role;
         rng_ = &rng;
         arrivals_ = 0;
     }
@@ -79,16 +81,19 @@ class Collector {
         (!known   ? block.unknown
          : global ? block.known_global
                   : block.known_caustic) += known ? weight : luminance(power);
-        const double kept = roulette(weight, global ? global_threshold_ : caustic_threshold_, *rng_);
+        const MapStores::Thresholds& least = role_ == PhotonRole::scout ? scouts_ : carriers_;
+        const double kept = roulette(weight, global ? least.global : least.caustic, *rng_);
         if (!(kept > 0)) return;
-        PhotonBuffer& buffer = global ? block.global : block.caustic;
+        MapBuffers& buffers = role_ == PhotonRole::scout ? block.scouts : block.carriers;
+        PhotonBuffer& buffer = global ? buffers.global : buffers.caustic;
         buffer.photons.emplace_back(v.point.p, v.point.ng, to_light, power / weight);
         buffer.weights.push_back(static_cast<float>(kept));
     }
 
     Weighing weighing_;
-    double global_threshold_, caustic_threshold_;
+    MapStores::Thresholds scouts_, carriers_;
     int max_scatterings_;
+    PhotonRole role_ = PhotonRole::carrier;
     Rng* rng_ = nullptr;
     int arrivals_ = 0;
 };
@@ -96,10 +101,14 @@ class Collector {
 constexpr std::int64_t kBlock = 64;   // paths
 constexpr std::int64_t kPilot = 8192; // paths
 
+PhotonRole role_of_path(std::int64_t i) {
+    return i % kScoutEvery == kScoutEvery - 1 ? PhotonRole::scout : PhotonRole::carrier;
+}
+
 Block trace_block(const Scene& scene, const EmissionOptions& options, Range paths, Collector collector) {
     for (std::int64_t i = paths.begin; i < paths.end; ++i) {
         Rng rng(options.seed, StreamPurpose::emission, static_cast<std::uint64_t>(i));
-        collector.begin(rng);
+        collector.begin(role_of_path(i), rng);
         trace_light_path(scene, options.max_scatterings, rng, collector);
     }
     return std::move(collector.block);
@@ -119,7 +128,8 @@ std::vector<Block> trace_blocks(const Scene& scene, const EmissionOptions& optio
 
 /// Weights of the first paths; nothing is stored.
 Block learn_from_pilot(const Scene& scene, const EmissionGuide& guide, const EmissionOptions& options) {
-    const double never = std::numeric_limits<double>::infinity();
+    const double infinity = std::numeric_limits<double>::infinity();
+    const MapStores::Thresholds never{infinity, infinity};
     Block sum;
     for (const Block& b : trace_blocks(scene, options, {0, std::min(kPilot, options.paths)},
                                        Collector({guide, 1}, never, never, options.max_scatterings)))
@@ -144,19 +154,20 @@ EmittedPhotons emit_photons(const Scene& scene, const EmissionGuide& guide, cons
     if (scene.emitter_distribution().empty()) return out;
     Block learnt = learn_from_pilot(scene, guide, options);
     const std::size_t for_caustic = caustic_part(scene, learnt, options.photons);
-    PhotonStore global(options.photons - for_caustic, 0, Rng(options.seed, StreamPurpose::thinning, 0));
-    PhotonStore caustic(for_caustic, 0, Rng(options.seed, StreamPurpose::thinning, 1));
+    MapStores stores(options.photons - for_caustic, for_caustic, 0, options.seed);
 
     // In rounds, so that buffers stay small beside the stores, and thresholds follow what is stored.
-    const std::int64_t round = std::clamp<std::int64_t>(static_cast<std::int64_t>(options.photons) / 32 / kBlock, 4, 512) * kBlock;
+    const std::int64_t round =
+        std::clamp<std::int64_t>(static_cast<std::int64_t>(options.photons) / 32 / kBlock, 4, 512) * kBlock;
     context.begin("photons", static_cast<std::uint64_t>(options.paths), "light paths");
     while (out.paths < options.paths && !(context.stopped() && out.paths > 0)) {
         const Range range{out.paths, std::min(options.paths, out.paths + round)};
         const Weighing weighing{guide, learnt.unknown_scale()};
-        const Collector collector(weighing, global.threshold(), caustic.threshold(), options.max_scatterings);
+        const Collector collector(weighing, stores.thresholds(PhotonRole::scout),
+                                  stores.thresholds(PhotonRole::carrier), options.max_scatterings);
         for (Block& b : trace_blocks(scene, options, range, collector)) {
-            global.absorb(b.global);
-            caustic.absorb(b.caustic);
+            stores.absorb(PhotonRole::scout, b.scouts);
+            stores.absorb(PhotonRole::carrier, b.carriers);
             learnt.learn(b);
         }
         out.paths = range.end;
@@ -164,10 +175,9 @@ EmittedPhotons emit_photons(const Scene& scene, const EmissionGuide& guide, cons
     }
     context.end();
     out.arrivals = learnt.arrivals;
-    const double scale = 1 / static_cast<double>(out.paths);
-    out.bytes = global.bytes() + caustic.bytes();
-    out.global = global.release(scale);
-    out.caustic = caustic.release(scale);
+    const double scale = 1 / static_cast<double>(out.paths - out.paths / kScoutEvery);
+    out.bytes = stores.bytes();
+    static_cast<Photons&>(out) = stores.release(scale, scale);
     return out;
 }
 

@@ -3,7 +3,7 @@
 
 #include "core/progress.h"
 #include "photonmap/importance_guide.h"
-#include "photonmap/photon_store.h"
+#include "photonmap/photons.h"
 #include "scene/scene.h"
 
 #include <cstdint>

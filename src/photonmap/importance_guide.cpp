@@ -2,6 +2,13 @@
 
 namespace keyhole {
 
+std::vector<Photon> ImportanceGuide::some(const PhotonMap& importons) {
+    std::vector<Photon> chosen;
+    chosen.reserve(importons.photons().size() / kScoutEvery + 1);
+    for (std::uint32_t i = 0; i < importons.photons().size(); i += kScoutEvery) chosen.push_back(importons[i]);
+    return chosen;
+}
+
 std::optional<double> ImportanceGuide::visible_power(const Vertex& v, const Vec3& to_light, const Rgb& power) const {
     const auto answer = map_.irradiance(v.point.p, facing(v.point.ng, to_light));
     if (!answer.known) return std::nullopt;

@@ -13,15 +13,22 @@ class ImportanceGuide {
     /// `importons` is only read here.
     ImportanceGuide(const PhotonMap& importons, float max_radius, const SurfacePatches& patches,
                     const RunContext& context)
-        : map_(importons, {.k = 30, .max_radius = max_radius, .stride = 4, .patches = &patches}, context) {}
+        : places_(some(importons)),
+          map_(places_, importons, {.k = 30, .max_radius = max_radius, .patches = &patches}, context) {}
+    ImportanceGuide(const ImportanceGuide&) = delete; // map_ refers to places_
+    ImportanceGuide& operator=(const ImportanceGuide&) = delete;
 
     /// Luminance that the picture gains, on average over its window, from light of RGB `power` [W] that arrives at `v`
     /// from `to_light`: about Y(power E). None where no importon is near: nothing is known there.
     std::optional<double> visible_power(const Vertex& v, const Vec3& to_light, const Rgb& power) const;
 
-    std::size_t bytes() const { return map_.bytes(); }
+    std::size_t bytes() const { return places_.bytes() + map_.bytes(); }
 
   private:
+    /// Importons that stand in for scouts. They count as carriers as well, which a guide can afford.
+    static std::vector<Photon> some(const PhotonMap& importons);
+
+    PhotonMap places_;
     IrradianceMap map_;
 };
 

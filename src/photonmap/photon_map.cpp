@@ -122,6 +122,29 @@ class NearestAccepted {
     const Photon* found_ = nullptr;
 };
 
+/// nanoflann's result set: every photon of a region.
+class AllInRegion {
+  public:
+    AllInRegion(const SurfaceRegion& region, float radius, const Photon* photons, std::vector<std::uint32_t>& found)
+        : region_(region), photons_(photons), found_(found), radius2_(radius * radius) {}
+
+    bool full() const { return true; }
+    float worstDist() const { return std::nextafter(radius2_, std::numeric_limits<float>::infinity()); }
+
+    bool addPoint(float /*euclidean2*/, std::uint32_t index) {
+        const Photon& photon = photons_[index];
+        if (region_.distance2(photon.position()) <= radius2_ && region_.accepts(photon.normal().unnormalised()))
+            found_.push_back(index);
+        return true;
+    }
+
+  private:
+    const SurfaceRegion& region_;
+    const Photon* photons_;
+    std::vector<std::uint32_t>& found_;
+    float radius2_;
+};
+
 } // namespace
 
 struct PhotonMap::Index {
@@ -151,6 +174,14 @@ const Photon* PhotonMap::nearest_accepted(const PhotonQuery& query,
     NearestAccepted result(query, photons().data(), accept);
     index_->tree.findNeighbors(result, query.region.position.getValue(), {});
     return result.found();
+}
+
+std::span<const std::uint32_t> PhotonMap::within(const SurfaceRegion& region, float radius) const {
+    thread_local std::vector<std::uint32_t> found;
+    found.clear();
+    AllInRegion result(region, radius, photons().data(), found);
+    if (!photons().empty()) index_->tree.findNeighbors(result, region.position.getValue(), {});
+    return found;
 }
 
 Neighbourhood PhotonMap::nearest(const PhotonQuery& query) const {

@@ -50,6 +50,11 @@ class PhotonMap {
     /// neither count nor narrow it. Allocates nothing after a thread's first query of that k.
     Neighbourhood nearest(const PhotonQuery& query) const;
 
+    /// Visits all photons of the region within `radius` [m], in the order of the tree.
+    template <class Visit> void for_each_within(const SurfaceRegion& region, float radius, const Visit& visit) const {
+        for (const std::uint32_t i : within(region, radius)) visit((*this)[i]);
+    }
+
     /// The nearest photon of the region that `accept` accepts; query.k doesn't matter. Null if there is none.
     const Photon* nearest_accepted(const PhotonQuery& query, const std::function<bool(const Photon&)>& accept) const;
 
@@ -59,6 +64,9 @@ class PhotonMap {
     std::size_t bytes() const;
 
   private:
+    /// Valid until the next call of the same thread.
+    std::span<const std::uint32_t> within(const SurfaceRegion& region, float radius) const;
+
     struct Index;
     std::unique_ptr<Index> index_;
 };

@@ -14,17 +14,30 @@ std::int64_t round_length(std::int64_t photons, std::int64_t chains) {
 
 } // namespace
 
-SampledPhotons sample_photons(const std::vector<Path>& seeds, const Mixture<Path>& mixture,
-                              const DepositOptions& deposit, const PhotonSamplingOptions& options,
-                              const RunContext& context) {
-    const auto chains = static_cast<std::int64_t>(seeds.size());
+ChainSeeds choose_chain_seeds(const Scene& scene, const StageOneSettings& settings, const StageOne& stage,
+                              std::int64_t chains) {
+    const Range all = stage.all_groups();
+    const Range for_scouts{0, all.end / kScoutEvery}, for_carriers{for_scouts.end, all.end};
+    const std::int64_t scouts = chains / kScoutEvery;
+    return {choose_seeds(scene, settings, stage, for_scouts, scouts),
+            choose_seeds(scene, settings, stage, for_carriers, chains - scouts), stage.brightness_of(for_carriers)};
+}
+
+SampledPhotons sample_photons(const ChainSeeds& seeds, const Mixture<Path>& mixture, const DepositOptions& deposit,
+                              const PhotonSamplingOptions& options, const RunContext& context) {
     SampledPhotons out;
-    if (chains == 0) return out;
-    auto set = std::make_unique<ChainSet>(seeds, mixture, options.seed, options.control);
+    if (seeds.carriers.empty()) return out;
+    std::vector<Path> all = seeds.scouts;
+    all.insert(all.end(), seeds.carriers.begin(), seeds.carriers.end());
+    const auto chains = static_cast<std::int64_t>(all.size());
+    auto set = std::make_unique<ChainSet>(all, mixture, options.seed, options.control);
     std::vector<PathDepositor> depositors;
-    depositors.reserve(seeds.size());
-    for (std::uint64_t c = 0; c < seeds.size(); ++c)
-        depositors.emplace_back(deposit, Rng(options.seed, StreamPurpose::chain, 2 * c + 1));
+    depositors.reserve(all.size());
+    for (std::uint64_t c = 0; c < all.size(); ++c) {
+        DepositOptions one = deposit;
+        one.role = c < seeds.scouts.size() ? PhotonRole::scout : PhotonRole::carrier;
+        depositors.emplace_back(one, Rng(options.seed, StreamPurpose::chain, 2 * c + 1));
+    }
 
     // Stores are shared: chains differ in what they find, and thinning must treat all photons alike. The threshold that
     // the run is expected to end with is there from the start.
@@ -32,20 +45,16 @@ SampledPhotons sample_photons(const std::vector<Path>& seeds, const Mixture<Path
     const auto mutations = static_cast<double>(per_chain * chains);
     const auto photons = static_cast<std::int64_t>(options.global_photons + options.caustic_photons);
     const double threshold = std::max(0.2, 0.8 * mutations / static_cast<double>(std::max<std::int64_t>(1, photons)));
-    PhotonStore global(options.global_photons, threshold, Rng(options.seed, StreamPurpose::thinning, 0));
-    PhotonStore caustic(options.caustic_photons, threshold, Rng(options.seed, StreamPurpose::thinning, 1));
+    MapStores stores(options.global_photons, options.caustic_photons, threshold, options.seed);
     const auto collect = [&] {
-        for (PathDepositor& depositor : depositors) {
-            global.absorb(depositor.global());
-            caustic.absorb(depositor.caustic());
-        }
+        for (PathDepositor& depositor : depositors) stores.absorb(depositor.role(), depositor.buffers());
     };
 
     // In rounds, so that a stop finds all chains equally long.
     const std::int64_t round = round_length(photons, chains);
     context.begin("photons", static_cast<std::uint64_t>(per_chain * chains), "mutations");
     while (set->steps() < per_chain && !(context.stopped() && set->steps() > 0)) {
-        for (PathDepositor& depositor : depositors) depositor.set_thresholds(global.threshold(), caustic.threshold());
+        for (PathDepositor& depositor : depositors) depositor.set_thresholds(stores.thresholds(depositor.role()));
         set->advance(std::min(round, per_chain - set->steps()), context,
                      [&](std::int64_t c, const Path& path, double weight) {
                          depositors[static_cast<std::size_t>(c)].deposit(path, weight);
@@ -57,14 +66,15 @@ SampledPhotons sample_photons(const std::vector<Path>& seeds, const Mixture<Path
     collect();
 
     out.chains = set->summary();
+    const double steps = static_cast<double>(set->steps()) * static_cast<double>(seeds.carriers.size());
     set.reset(); // its memory is needed below
-    const double scale = options.brightness / static_cast<double>(out.chains.steps);
-    for (const PathDepositor& depositor : depositors) out.tally.merge(depositor.tally());
+    for (const PathDepositor& depositor : depositors)
+        if (depositor.role() == PhotonRole::carrier) out.tally.merge(depositor.tally());
+    const double scale = seeds.brightness / steps;
     // The literal rule leaves a scale open: that which makes the photons as visible as the paths were.
     const double seen = out.tally.visible;
-    out.bytes = global.bytes() + caustic.bytes();
-    out.global = global.release(seen > 0 ? scale * out.tally.visible_weight / seen : scale);
-    out.caustic = caustic.release(scale);
+    out.bytes = stores.bytes();
+    static_cast<Photons&>(out) = stores.release(seen > 0 ? scale * out.tally.visible_weight / seen : scale, scale);
     return out;
 }
 

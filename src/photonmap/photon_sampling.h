@@ -14,7 +14,6 @@ struct PhotonSamplingOptions {
     std::int64_t mutations;      ///< over all chains
     std::size_t global_photons;  ///< ceiling for the global map; 0: none are kept
     std::size_t caustic_photons; ///< ceiling for the caustic map; 0: none are kept
-    double brightness;           ///< B_eye [W/(m^2 sr)]
     std::uint64_t seed;
     const Mixture<Path>* control = nullptr; ///< of the control chains, as in ChainSet
 };
@@ -25,11 +24,20 @@ struct SampledPhotons : Photons {
     PathDepositor::Tally tally; ///< of all chains
 };
 
+/// Where chains start. Scouts and carriers come from different samples of stage one.
+struct ChainSeeds {
+    std::vector<Path> scouts, carriers;
+    double brightness = 0; ///< B_eye [W/(m^2 sr)] by the samples that the carriers' seeds come from
+};
+
+/// Seeds for so many chains from a finished stage one.
+ChainSeeds choose_chain_seeds(const Scene& scene, const StageOneSettings& settings, const StageOne& stage,
+                              std::int64_t chains);
+
 /// Runs one chain from each seed, all equally long, and stores their photons. The number of chains is that of the seeds
 /// and never follows the threads: the result is the same on any number of them. After a stop every chain has made the
 /// same number of steps.
-SampledPhotons sample_photons(const std::vector<Path>& seeds, const Mixture<Path>& mixture,
-                              const DepositOptions& deposit, const PhotonSamplingOptions& options,
-                              const RunContext& context);
+SampledPhotons sample_photons(const ChainSeeds& seeds, const Mixture<Path>& mixture, const DepositOptions& deposit,
+                              const PhotonSamplingOptions& options, const RunContext& context);
 
 } // namespace keyhole

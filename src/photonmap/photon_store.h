@@ -1,4 +1,4 @@
-// Photons of one chain, under a hard ceiling.
+// Photons under a hard ceiling.
 #pragma once
 
 #include "core/rng.h"
@@ -18,15 +18,10 @@ inline double roulette(double weight, double threshold, Rng& rng) {
     return rng.next() * threshold < weight ? threshold : 0.0;
 }
 
-/// What one chain stores between two rounds, in order.
+/// What waits for a store, in order.
 struct PhotonBuffer {
     std::vector<Photon> photons;
     std::vector<float> weights;
-};
-
-/// What a sampler leaves: the photons of both maps, power in W.
-struct Photons {
-    std::vector<Photon> global, caustic;
 };
 
 /// Collects weighted photons and never holds more than its capacity. Weights below a threshold t survive with

@@ -1,6 +1,7 @@
 #include "render/memory_plan.h"
 
 #include "photonmap/photon_store.h"
+#include "photonmap/photons.h"
 
 #include <algorithm>
 
@@ -10,7 +11,7 @@ namespace {
 // Bytes. An index takes 8 to 9 on top of a photon's 24, by how its places cluster.
 constexpr double kFixed = 64 * 1024; // first blocks of small indices
 constexpr double kIndexed = sizeof(Photon) + 10.0;
-constexpr double kInStageThree = kIndexed + (kIndexed + 16) / 4;         // irradiance and direct light at every fourth
+constexpr double kInStageThree = kIndexed + (9.0 + 8.0) / kScoutEvery;   // irradiance and direct light at scouts
 constexpr double kInStageTwo = PhotonStore::bytes_per_photon() * 1.0625; // buffers on their way to the stores
 
 } // namespace
@@ -22,10 +23,11 @@ MemoryPlan plan_memory(const Settings& settings, ImportanceUse use, int maps) {
     if (settings.photons > 0) photons = std::min(photons, static_cast<double>(settings.photons));
     double importons = 0;
     if (use == ImportanceUse::beside) importons = (memory - photons * kInStageTwo) / (kIndexed * maps);
-    // All importons, and the index and the estimates of one map; later the estimates of all, beside the stores.
+    // All importons, and the index and the places of one map; later the places of all, beside the stores.
+    constexpr double places = (kIndexed + 9) / kScoutEvery;
     if (use == ImportanceUse::guide)
-        importons = std::min(memory / (sizeof(Photon) * maps + 10.0 + kIndexed / 4),
-                             (memory - photons * kInStageTwo) / (kIndexed / 4 * maps));
+        importons = std::min(memory / (sizeof(Photon) * maps + 10.0 + places),
+                             (memory - photons * kInStageTwo) / (places * maps));
     return {static_cast<std::size_t>(photons),
             std::clamp<std::int64_t>(static_cast<std::int64_t>(importons), 1, settings.importons)};
 }

@@ -86,7 +86,7 @@ class MetropolisSampler final : public PhotonSampler {
     Photons run_chains(const StageOneSettings& first, const StageOne& one, RenderStats& stats,
                        const RunContext& context) {
         const Settings& s = c_.settings;
-        const std::vector<Path> seeds = choose_seeds(c_.scene, first, one, s.chains);
+        const ChainSeeds seeds = choose_chain_seeds(c_.scene, first, one, s.chains);
         const bool delta = c_.scene.traits().delta;
         const MemoryPlan plan = plan_memory(s, ImportanceUse::beside, delta ? 2 : 1);
         Importons importons = trace_importance(
@@ -110,7 +110,6 @@ class MetropolisSampler final : public PhotonSampler {
                                                 {.mutations = s.mutations,
                                                  .global_photons = plan.photons - caustic,
                                                  .caustic_photons = caustic,
-                                                 .brightness = one.brightness.mean(),
                                                  .seed = first.seed,
                                                  .control = mixtures.control_or_null()},
                                                 context);

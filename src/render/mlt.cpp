@@ -42,7 +42,7 @@ void draw_chains(const Scene& scene, const Settings& settings, const UserPaths& 
                  const StageOne& one, Picture& picture, RenderStats& stats, const RunContext& context) {
     const StageClock clock(stats, "chains");
     const ChainMixtures mixtures({&scene, PathSet::stored, static_cast<int>(settings.max_depth)}, settings, paths);
-    ChainSet chains(choose_seeds(scene, first, one, settings.chains), mixtures.mixture, first.seed,
+    ChainSet chains(choose_seeds(scene, first, one, one.all_groups(), settings.chains), mixtures.mixture, first.seed,
                     mixtures.control_or_null());
     const ImageWindow& window = scene.camera().window();
     SplatFilm splats(picture.width, picture.height, PixelFilter(settings));

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -17,8 +18,15 @@ namespace keyhole {
 namespace {
 
 constexpr std::array<char, 8> kMagic{'K', 'H', 'P', 'H', 'O', 'T', 'O', 'N'};
-constexpr std::uint32_t kVersion = 1; ///< to be raised whenever Photon, or what a map holds, changes
+constexpr std::uint32_t kVersion = 2; ///< to be raised whenever Photon, or what a map holds, changes
 constexpr std::uint32_t kByteOrder = 0x01020304;
+
+constexpr std::size_t kParts = 4;
+/// The parts in the order of the file.
+auto parts(auto& photons) {
+    return std::array{&photons.global.scouts, &photons.global.carriers, &photons.caustic.scouts,
+                      &photons.caustic.carriers};
+}
 
 struct Header {
     std::array<char, 8> magic = kMagic;
@@ -26,10 +34,10 @@ struct Header {
     std::uint32_t version = kVersion;
     std::uint64_t scene = 0;
     std::int64_t max_scatterings = 0;
-    std::uint64_t global = 0, caustic = 0; ///< photons
+    std::array<std::uint64_t, kParts> photons{};
     std::uint64_t checksum = 0;
 };
-static_assert(std::is_trivially_copyable_v<Header> && sizeof(Header) == 56);
+static_assert(std::is_trivially_copyable_v<Header> && sizeof(Header) == 72);
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why) {
     throw InputError(fmt::format("{}: {}", path, why));
@@ -54,8 +62,7 @@ void append(std::vector<char>& bytes, const void* data, std::size_t size) {
 
 std::uint64_t checksum(const Photons& photons) {
     Hash hash;
-    hash.add(photons.global);
-    hash.add(photons.caustic);
+    for (const auto* part : parts(photons)) hash.add(*part);
     return hash.value();
 }
 
@@ -76,14 +83,12 @@ void save_photons(const std::string& path, const PhotonFileKey& key, const Photo
     Header header;
     header.scene = key.scene;
     header.max_scatterings = key.max_scatterings;
-    header.global = photons.global.size();
-    header.caustic = photons.caustic.size();
+    for (std::size_t i = 0; i < kParts; ++i) header.photons[i] = parts(photons)[i]->size();
     header.checksum = checksum(photons);
     std::vector<char> bytes;
     bytes.reserve(sizeof header + (photons.global.size() + photons.caustic.size()) * sizeof(Photon));
     append(bytes, &header, sizeof header);
-    append(bytes, photons.global.data(), photons.global.size() * sizeof(Photon));
-    append(bytes, photons.caustic.data(), photons.caustic.size() * sizeof(Photon));
+    for (const auto* part : parts(photons)) append(bytes, part->data(), part->size() * sizeof(Photon));
     write_file_atomically(path, bytes);
 }
 
@@ -97,13 +102,13 @@ Photons load_photons(const std::string& path, const PhotonFileKey& key) {
     file.read(reinterpret_cast<char*>(&header), sizeof header);
     check(path, header, key);
     const std::uint64_t most = (size - sizeof header) / sizeof(Photon);
-    if (header.global > most || header.caustic > most ||
-        size != sizeof header + (header.global + header.caustic) * sizeof(Photon))
-        refuse(path, fmt::format("found {} bytes where the header promises {} photons: the file is damaged", size,
-                                 header.global + header.caustic));
+    std::uint64_t all = 0;
+    for (const std::uint64_t n : header.photons) all += std::min(n, most + 1); // no sum may wrap around
+    if (size != sizeof header + all * sizeof(Photon))
+        refuse(path,
+               fmt::format("found {} bytes where the header promises {} photons: the file is damaged", size, all));
     Photons photons;
-    photons.global = read_photons(file, path, header.global);
-    photons.caustic = read_photons(file, path, header.caustic);
+    for (std::size_t i = 0; i < kParts; ++i) *parts(photons)[i] = read_photons(file, path, header.photons[i]);
     if (checksum(photons) != header.checksum)
         refuse(path, "the photons are not those that were saved: the file is damaged");
     return photons;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/settings.h"
-#include "photonmap/photon_store.h"
+#include "photonmap/photons.h"
 #include "scene/scene.h"
 
 #include <cstdint>

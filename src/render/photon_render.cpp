@@ -49,33 +49,31 @@ bool gather_pass(const SamplerContext& c, std::int64_t pass, std::uint64_t seed,
     const StageClock clock(stats, "gather");
     const Settings& s = c.settings;
     const Radii radii(c.scene, pass);
-    const PhotonMap global(std::move(photons.global)), caustic(std::move(photons.caustic));
-    IrradianceOptions estimates{.k = static_cast<int>(s.nearest),
-                                .max_radius = radii.global,
-                                .shrink = radii.shrink,
-                                .patches = &c.patches,
-                                .scene = &c.scene};
+    stats.photons_global = photons.global.size();
+    stats.photons_caustic = photons.caustic.size();
+    const ScoutedMap global(std::move(photons.global)), caustic(std::move(photons.caustic));
+    const IrradianceOptions estimates{.k = static_cast<int>(s.nearest),
+                                      .max_radius = radii.global,
+                                      .shrink = radii.shrink,
+                                      .patches = &c.patches,
+                                      .scene = &c.scene};
     // An estimate made beforehand is asked from a little way off. Once regions get as small as that, each is made where
     // it is asked.
-    const bool beforehand =
-        static_cast<float>(s.nearest) * radii.shrink * radii.shrink > 2.0f * static_cast<float>(estimates.stride);
-    const std::optional<IrradianceMap> irradiance =
-        beforehand ? std::optional<IrradianceMap>(std::in_place, global, estimates, context) : std::nullopt;
-    stats.photons_global = global.photons().size();
-    stats.photons_caustic = caustic.photons().size();
+    std::optional<IrradianceMap> irradiance;
+    if (static_cast<float>(s.nearest) * radii.shrink * radii.shrink > 2.0f * kScoutEvery)
+        irradiance.emplace(global.scouts(), global.carriers(), estimates, context);
     if (irradiance) stats.values["photons per lookup"] = irradiance->mean_photons();
 
     std::optional<Sites> sites;
     if (irradiance) {
-        const SiteOptions at{.k = estimates.k, .max_radius = estimates.max_radius, .seed = seed};
-        sites.emplace(c.scene, global, irradiance->places(), at, context);
+        sites.emplace(c.scene, irradiance->places(), SiteOptions{.seed = seed}, context);
     }
     stats.photon_bytes = std::max<std::uint64_t>(
         stats.photon_bytes, global.bytes() + caustic.bytes() + (irradiance ? irradiance->bytes() + sites->bytes() : 0));
-    const GatherMaps maps{.global = global.photons().empty() ? nullptr : &global,
+    const GatherMaps maps{.global = global.carriers().photons().empty() ? nullptr : &global,
                           .irradiance = irradiance ? &*irradiance : nullptr,
                           .sites = sites ? &*sites : nullptr,
-                          .caustic = caustic.photons().empty() ? nullptr : &caustic,
+                          .caustic = caustic.carriers().photons().empty() ? nullptr : &caustic,
                           .patches = &c.patches};
     const LookupOptions lookups{.nearest = static_cast<int>(s.nearest),
                                 .max_radius = radii.global,

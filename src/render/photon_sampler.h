@@ -4,7 +4,7 @@
 #include "core/progress.h"
 #include "core/render_stats.h"
 #include "core/settings.h"
-#include "photonmap/photon_store.h"
+#include "photonmap/photons.h"
 #include "photonmap/surface_patches.h"
 #include "sampling/user_paths.h"
 #include "scene/scene.h"

@@ -98,7 +98,7 @@ double try_metropolis(const SamplerContext& c, const RunContext& run) {
                                  .seed = static_cast<std::uint64_t>(s.seed)};
     const std::uint64_t start = rays_traced();
     const StageOne one = run_stage_one(c.scene, first, run);
-    const std::vector<Path> seeds = choose_seeds(c.scene, first, one, kChains);
+    const std::vector<Path> seeds = choose_seeds(c.scene, first, one, one.all_groups(), kChains);
     if (seeds.empty()) return std::numeric_limits<double>::infinity();
     const double b = one.brightness.mean();
     const double brightness =

@@ -95,7 +95,18 @@ Technique choose_technique(const Scene& scene, const StageOneSettings& settings)
     return cost[0] <= cost[1] ? Technique::path : Technique::bidirectional;
 }
 
+double sum(const std::vector<double>& of, Range some) {
+    double total = 0;
+    for (std::int64_t i = some.begin; i < some.end; ++i) total += of[static_cast<std::size_t>(i)];
+    return total;
+}
+
 } // namespace
+
+double StageOne::brightness_of(Range some) const {
+    const std::int64_t count = std::min(samples, some.end * kGroup) - some.begin * kGroup;
+    return count > 0 ? sum(groups, some) / static_cast<double>(count) : 0.0;
+}
 
 StageOne run_stage_one(const Scene& scene, const StageOneSettings& settings, const RunContext& context) {
     const Technique technique = choose_technique(scene, settings);
@@ -124,9 +135,8 @@ StageOne run_stage_one(const Scene& scene, const StageOneSettings& settings, con
 }
 
 std::vector<Path> choose_seeds(const Scene& scene, const StageOneSettings& settings, const StageOne& stage,
-                               std::int64_t count) {
-    double total = 0;
-    for (const double g : stage.groups) total += g;
+                               Range groups, std::int64_t count) {
+    const double total = sum(stage.groups, groups);
     if (!(total > 0)) return {};
 
     // Systematic resampling: one mark in each of `count` equal parts of the running sum.
@@ -135,15 +145,17 @@ std::vector<Path> choose_seeds(const Scene& scene, const StageOneSettings& setti
         double left;
     };
     std::vector<Mark> marks;
-    const double shift = Rng(settings.seed, StreamPurpose::seed_choice, 0).next();
+    const double shift =
+        Rng(settings.seed, StreamPurpose::seed_choice, static_cast<std::uint64_t>(groups.begin)).next();
     double before = 0;
-    for (std::size_t g = 0; g < stage.groups.size(); ++g) {
+    for (std::int64_t g = groups.begin; g < groups.end; ++g) {
+        const double here = stage.groups[static_cast<std::size_t>(g)];
         while (static_cast<std::int64_t>(marks.size()) < count) {
             const double mark = (static_cast<double>(marks.size()) + shift) / static_cast<double>(count) * total;
-            if (mark >= before + stage.groups[g]) break;
-            marks.push_back({static_cast<std::int64_t>(g), mark - before});
+            if (mark >= before + here) break;
+            marks.push_back({g, mark - before});
         }
-        before += stage.groups[g];
+        before += here;
     }
 
     std::vector<std::optional<Path>> found(marks.size());

@@ -1,6 +1,7 @@
 // Stage one: the mean luminance B_eye of what stage two samples, and seeds for its chains.
 #pragma once
 
+#include "core/parallel.h"
 #include "core/progress.h"
 #include "core/statistics.h"
 #include "sampling/independent_paths.h"
@@ -27,14 +28,18 @@ struct StageOne {
     std::vector<double> groups;            ///< sum of contributions of each kGroup consecutive samples
 
     static constexpr std::int64_t kGroup = 32;
+
+    Range all_groups() const { return {0, static_cast<std::int64_t>(groups.size())}; }
+    /// B_eye from the samples of some groups alone [W/(m^2 sr)]; 0 without samples.
+    double brightness_of(Range some) const;
 };
 
 /// Independent paths over the window, by whichever technique needs less work for the same error here.
 StageOne run_stage_one(const Scene& scene, const StageOneSettings& settings, const RunContext& context);
 
-/// `count` of the traced paths, drawn with probability proportional to the luminance of their contributions by
-/// systematic resampling, traced again from their random streams. Empty if no path found light.
+/// `count` of the paths that the samples of some groups found, drawn with probability proportional to the luminance of
+/// their contributions by systematic resampling, traced again from their random streams. Empty if none found light.
 std::vector<Path> choose_seeds(const Scene& scene, const StageOneSettings& settings, const StageOne& stage,
-                               std::int64_t count);
+                               Range groups, std::int64_t count);
 
 } // namespace keyhole

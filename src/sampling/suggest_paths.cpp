@@ -112,7 +112,7 @@ void finish(UserPathFile& file) {
 
 UserPathFile suggest_user_paths(const Scene& scene, const StageOneSettings& first, const SuggestOptions& options) {
     const StageOne one = run_stage_one(scene, first, {});
-    std::vector<Candidate> left = candidates(scene, choose_seeds(scene, first, one, options.pool));
+    std::vector<Candidate> left = candidates(scene, choose_seeds(scene, first, one, one.all_groups(), options.pool));
     const double radius = options.radius * (scene.upper() - scene.lower()).length();
     UserPathFile file;
     while (!left.empty() && file.paths.size() < options.count) {

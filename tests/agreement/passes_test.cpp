@@ -34,11 +34,8 @@ TEST_P(Passes, ConvergeToPathTracing) {
     path.seed = 1000;
     Settings passes = settings();
     passes.passes = 40;
-    // Known defects, bounded here until they are understood: ipm is 1 % dark; mps in passes as short as these is 6 %
-    // bright, single blocks up to 17 %.
-    const double tolerance = passes.method == "ipm" ? 0.02 : 0.2;
     const test::Disagreement d =
-        test::compare(test::render_blocks(*scene, passes, 4), test::render_blocks(*scene, path, 4), tolerance);
+        test::compare(test::render_blocks(*scene, passes, 4), test::render_blocks(*scene, path, 4), 0.01);
     EXPECT_EQ(d.rejected, 0) << d.report << "mean brightness ratio " << d.ratio;
 }
 

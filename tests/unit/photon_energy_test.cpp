@@ -73,8 +73,8 @@ ImportanceGuide guide(std::vector<Photon>&& importons, const SurfacePatches& pat
 
 void add_run(const Scene& scene, const Photons& photons, Energy& e) {
     std::array<double, kRegions> global{}, caustic{};
-    for (const Photon& p : photons.global) global[region(scene, p.position())] += luminance(p.power());
-    for (const Photon& p : photons.caustic) caustic[region(scene, p.position())] += luminance(p.power());
+    for (const Photon& p : photons.global.carriers) global[region(scene, p.position())] += luminance(p.power());
+    for (const Photon& p : photons.caustic.carriers) caustic[region(scene, p.position())] += luminance(p.power());
     for (std::size_t r = 0; r < kRegions; ++r) {
         e.global[r].add(global[r]);
         e.caustic[r].add(caustic[r]);
@@ -91,10 +91,7 @@ Energy by_emission(const Scene& scene, int depth, bool guided, int runs) {
         const ImportanceGuide at_d1 = guide(std::move(importons.first), patches);
         const ImportanceGuide at_d2 = guide(std::move(importons.second), patches);
         const EmissionGuide both = guided ? EmissionGuide{&at_d2, &at_d1} : EmissionGuide{};
-        const EmissionOptions options{.paths = 60'000,
-                                      .photons = 25'000,
-                                      .max_scatterings = depth,
-                                      .seed = seed};
+        const EmissionOptions options{.paths = 60'000, .photons = 25'000, .max_scatterings = depth, .seed = seed};
         const EmittedPhotons photons = emit_photons(scene, both, options, {});
         EXPECT_LE(photons.global.size() + photons.caustic.size(), options.photons);
         add_run(scene, photons, e);
@@ -115,7 +112,7 @@ ChainEnergy by_chains(const Scene& scene, int depth, int runs) {
         const auto seed = static_cast<std::uint64_t>(100 + run);
         const StageOneSettings first{.max_scatterings = depth, .samples = 60'000, .seed = seed};
         const StageOne one = run_stage_one(scene, first, {});
-        const std::vector<Path> seeds = choose_seeds(scene, first, one, 2000);
+        const ChainSeeds seeds = choose_chain_seeds(scene, first, one, 2000);
         Importons importons = trace_importance(scene, {.samples = 200'000, .max_scatterings = depth, .seed = seed}, {});
         const ImportanceMap at_d1 = importance_map(std::move(importons.first), patches);
         const ImportanceMap at_d2 = importance_map(std::move(importons.second), patches);
@@ -123,12 +120,7 @@ ChainEnergy by_chains(const Scene& scene, int depth, int runs) {
             const SampledPhotons photons = sample_photons(
                 seeds, mixture,
                 {.global = &at_d2, .caustic = &at_d1, .rule = rule, .scene = &scene, .max_scatterings = depth},
-                {.mutations = 100'000,
-                 .global_photons = 100'000,
-                 .caustic_photons = 50'000,
-                 .brightness = one.brightness.mean(),
-                 .seed = seed},
-                {});
+                {.mutations = 100'000, .global_photons = 100'000, .caustic_photons = 50'000, .seed = seed}, {});
             add_run(scene, photons, rule == PowerRule::marginal ? e.marginal : e.reciprocal);
         }
     }

@@ -1,0 +1,82 @@
+// Estimates from photons that come in clumps, as those of a chain do.
+#include "core/statistics.h"
+#include "photon_support.h"
+#include "photonmap/irradiance_map.h"
+
+#include <gtest/gtest.h>
+
+namespace keyhole {
+namespace {
+
+using namespace photon_test;
+
+constexpr int kClumps = 60, kInClump = 8, kMean = kClumps * kInClump;
+const PhotonQuery kMiddle{{Vec3(0.5f, 0.5f, 0), Vec3(0, 0, 1)}, 0.45f, 24};
+
+double one(const Photon&) { return 1; }
+
+/// Photons in clumps of a hundredth of the square's side, which wrap around at its borders: mean density kMean.
+std::vector<Photon> clumped(int clumps, Rng& rng) {
+    std::vector<Photon> photons;
+    for (int c = 0; c < clumps; ++c) {
+        const double x = rng.next(), y = rng.next();
+        for (int i = 0; i < kInClump; ++i)
+            photons.emplace_back(
+                kUnitSquare.at(std::fmod(x + 0.01 * rng.next(), 1), std::fmod(y + 0.01 * rng.next(), 1)),
+                kUnitSquare.normal(), kUnitSquare.normal(), Rgb(1.0));
+    }
+    return photons;
+}
+
+PhotonSet clumped_set(Rng& rng) {
+    PhotonSet set;
+    set.scouts = clumped(kClumps / (kScoutEvery - 1), rng);
+    set.carriers = clumped(kClumps, rng);
+    return set;
+}
+
+void expect_mean(const RunningStats& stats, double expected) {
+    EXPECT_LT(std::abs(stats.mean() - expected), 4 * stats.standard_error())
+        << stats.mean() << " +- " << stats.standard_error() << ", expected " << expected;
+    EXPECT_LT(stats.standard_error(), 0.02 * std::abs(expected)) << "too noisy to mean anything";
+}
+
+TEST(ScoutedMap, HasTheRightExpectationForClumpedPhotons) {
+    RunningStats scouted, shrunk, nearest;
+    for (std::uint64_t i = 0; i < 20'000; ++i) {
+        Rng rng = make_rng(i);
+        const ScoutedMap map(clumped_set(rng));
+        PhotonQuery query = kMiddle;
+        scouted.add(estimate_density(map, query, nullptr, one).value.x);
+        nearest.add(estimate_density(map.carriers(), query, Unbiased::density, nullptr, one).value.x);
+        query.shrink = 0.5f;
+        shrunk.add(estimate_density(map, query, nullptr, one).value.x);
+    }
+    expect_mean(scouted, kMean);
+    expect_mean(shrunk, kMean);
+    EXPECT_GT(nearest.mean(), 1.1 * kMean) << "clumps don't show, so the test shows nothing";
+}
+
+TEST(ScoutedMap, IsNotPulledUpWhereEstimatesAreMadeAtPhotons) {
+    RunningStats at_scouts;
+    for (std::uint64_t i = 0; i < 6000; ++i) {
+        Rng rng = make_rng(i);
+        const PhotonSet set = clumped_set(rng);
+        const PhotonMap scouts(set.scouts), carriers(set.carriers);
+        const IrradianceMap map(scouts, carriers, {.k = kMiddle.k, .max_radius = kMiddle.max_radius}, {});
+        at_scouts.add(map.irradiance(kMiddle.region.position, kMiddle.region.normal).irradiance.x);
+    }
+    expect_mean(at_scouts, kMean);
+}
+
+TEST(ScoutedMap, AnswersWithoutScoutsOverTheLargestRegion) {
+    Rng rng = make_rng(1);
+    PhotonSet set;
+    set.carriers = throw_photons(kUnitSquare, 20'000, rng);
+    const DensityEstimate e = estimate_density(ScoutedMap(std::move(set)), kMiddle, nullptr, one);
+    EXPECT_EQ(e.radius, kMiddle.max_radius);
+    EXPECT_NEAR(e.value.x, 20'000, 4 * std::sqrt(20'000));
+}
+
+} // namespace
+} // namespace keyhole
