@@ -13,3 +13,9 @@ find_package(JPEG REQUIRED)
 # OpenImageIO's own CMake files want parts that Debian's package lacks.
 find_library(OPENIMAGEIO_LIBRARY OpenImageIO REQUIRED)
 find_library(OPENIMAGEIO_UTIL_LIBRARY OpenImageIO_Util REQUIRED)
+# For keyhole-mpi, which is built where MPI is found unless somebody says otherwise.
+find_package(MPI QUIET COMPONENTS CXX)
+option(KEYHOLE_MPI "Build keyhole-mpi, which renders on several machines" ${MPI_FOUND})
+if(KEYHOLE_MPI AND NOT MPI_FOUND)
+  message(FATAL_ERROR "KEYHOLE_MPI is on, but there is no MPI (Debian: libopenmpi-dev)")
+endif()

@@ -14,13 +14,21 @@ std::string settings_text(const Settings& settings) {
     return text;
 }
 
+std::map<std::string, std::string> render_identity(const Settings& settings, std::uint64_t scene_hash) {
+    return {{"program", "keyhole " KEYHOLE_VERSION},
+            {"settings", settings_text(settings)},
+            {"seed", std::to_string(settings.seed)},
+            {"scene hash", fmt::format("{:016x}", scene_hash)}};
+}
+
 std::map<std::string, std::string> picture_metadata(const std::string& command_line, const std::string& scene,
-                                                    const Settings& settings, const RenderStats& stats) {
-    std::map<std::string, std::string> metadata{{"program", "keyhole " KEYHOLE_VERSION},
-                                                {"command", command_line},
+                                                    const RenderStats& stats) {
+    std::string warnings;
+    for (const std::string& w : stats.warnings) warnings += w + "\n";
+    std::map<std::string, std::string> metadata{{"command", command_line},
                                                 {"scene", scene},
-                                                {"seed", std::to_string(settings.seed)},
-                                                {"settings", settings_text(settings)},
+                                                {"samples", fmt::format("{}", stats.samples)},
+                                                {"warnings", warnings},
                                                 {"complete", stats.complete ? "yes" : "no"}};
     double wall = 0, cpu = 0;
     std::uint64_t rays = 0;

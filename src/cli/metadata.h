@@ -12,9 +12,12 @@ namespace keyhole {
 /// Every setting as "key=value", in the order of the table, separated by spaces.
 std::string settings_text(const Settings& settings);
 
-/// String attributes for the EXR: program, command, scene, seed, settings, complete, seconds and rays of each stage and
-/// of all, peak memory.
+/// What tells renders apart: program, settings, seed and the hash of the scene.
+std::map<std::string, std::string> render_identity(const Settings& settings, std::uint64_t scene_hash);
+
+/// Further string attributes for the EXR: command, scene, samples, warnings, complete, seconds and rays of each stage
+/// and of all, peak memory.
 std::map<std::string, std::string> picture_metadata(const std::string& command_line, const std::string& scene,
-                                                    const Settings& settings, const RenderStats& stats);
+                                                    const RenderStats& stats);
 
 } // namespace keyhole

@@ -3,14 +3,18 @@
 
 #include "cli/command.h"
 #include "cli/interrupt.h"
+#include "cli/keeping.h"
 #include "cli/metadata.h"
 #include "cli/outputs.h"
 #include "cli/report.h"
 #include "cli/resolution.h"
 #include "cli/stats_json.h"
+#include "cli/team.h"
 #include "cli/terminal_progress.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "film/atomic_file.h"
+#include "sampling/scene_hash.h"
 #include "scene/load/load.h"
 
 #include <fmt/format.h>
@@ -18,6 +22,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <optional>
+#include <sstream>
 #include <string_view>
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -28,11 +33,15 @@ namespace {
 struct RenderOptions {
     std::string command_line, scene, resolution, user_paths;
     Outputs outputs;
-    bool no_png = false, quiet = false, verbose = false;
+    bool no_png = false, quiet = false, verbose = false, strict = false;
     std::vector<std::string> overrides; ///< key=value, in the order of the command line
     std::string save_map, load_map;
+    Keeping keeping;
     int threads = 0;
     std::optional<double> timeout; ///< [s]
+    Team* team = nullptr;          ///< null: this process is alone
+
+    bool writes() const { return team == nullptr || team->rank() == 0; }
 };
 
 /// Null for --quiet.
@@ -45,9 +54,10 @@ std::unique_ptr<TerminalProgress> make_progress(bool quiet) {
     return std::make_unique<TerminalProgress>(stderr, terminal, known ? size.ws_col : 80);
 }
 
-/// Whether at least one pixel has a sample. A stop before that leaves nothing worth a file, least of all one that
-/// replaces an earlier picture.
+/// Whether at least one pixel has a sample, or a share at least one unit of work. A stop before that leaves nothing
+/// worth a file, least of all one that replaces an earlier picture.
 bool has_picture(const RenderResult& result) {
+    if (!result.picture.sums.empty()) return result.stats.samples > 0;
     const auto empty = result.stats.values.find("empty pixels");
     return empty == result.stats.values.end() ||
            empty->second < static_cast<double>(result.picture.width) * static_cast<double>(result.picture.height);
@@ -57,18 +67,52 @@ bool names_setting(const std::vector<std::string>& overrides, const std::string&
     return std::ranges::any_of(overrides, [&](const std::string& o) { return o.starts_with(key + "="); });
 }
 
-RenderResult render_scene(LoadedScene& loaded, const RenderOptions& options, StopToken& stop) {
+/// Joins what all processes have done, on the first of them.
+void join_team(Team& team, RenderResult& result) {
+    std::vector<NamedPicture> parts;
+    const auto join = [&](Picture part) {
+        if (part.metadata["units"].empty()) return;
+        parts.push_back({fmt::format("part {}", parts.size()), std::move(part)});
+        if (parts.size() < 2) return;
+        // One after the other, so that two films are the most that is held.
+        Picture joined = join_pictures(parts);
+        parts = {{"what was joined", std::move(joined)}};
+    };
+    Picture own = std::move(result.picture);
+    result.picture = {};
+    if (team.rank() == 0) join(own);
+    team.collect(own, join);
+    if (parts.empty()) return;
+    result.picture = join_pictures(parts);
+    const auto& metadata = result.picture.metadata;
+    result.stats.complete = metadata.at("complete") == "yes";
+    result.stats.samples = std::stod(metadata.at("samples"));
+    std::istringstream warnings(metadata.at("warnings"));
+    result.stats.warnings.clear();
+    for (std::string line; std::getline(warnings, line);) result.stats.warnings.push_back(line);
+}
+
+RenderResult render_scene(LoadedScene& loaded, RenderOptions& options, StopToken& stop) {
     RenderResult result;
     with_threads(options.threads, [&] {
         Scene scene(std::move(loaded.description));
+        const ImageWindow& window = scene.camera().window();
+        const Picture expected{
+            window.width, window.height, {}, render_identity(loaded.settings, scene_hash(scene)), {}};
+        const Share share = options.keeping.share(options.outputs.exr, expected, loaded.settings, options.team);
         const auto progress = make_progress(options.quiet);
-        result = render(scene, loaded.settings, RunContext{&stop, progress.get()}, loaded.user_paths);
+        result = render(scene, loaded.settings, RunContext{&stop, progress.get()}, loaded.user_paths, share);
+        result.picture.metadata.insert(expected.metadata.begin(), expected.metadata.end());
+        if (options.keeping.resume && share.done == nullptr)
+            result.stats.remarks.emplace_back("found no checkpoint to go on from: started from the beginning");
     });
+    if (options.team != nullptr) join_team(*options.team, result);
     return result;
 }
 
 int run(RenderOptions options) {
     StopToken stop;
+    if (!options.writes()) options.quiet = true;
     if (options.timeout)
         stop.set_deadline(StopToken::Clock::now() + std::chrono::duration_cast<StopToken::Clock::duration>(
                                                         std::chrono::duration<double>(*options.timeout)));
@@ -77,7 +121,8 @@ int run(RenderOptions options) {
         options.outputs.png.clear();
     else if (options.outputs.png.empty())
         options.outputs.png = default_png(options.outputs.exr);
-    options.outputs.check();
+    if (options.writes()) options.outputs.check();
+    if (const std::string file = options.keeping.file(options.outputs.exr); !file.empty()) check_writable(file);
 
     const InterruptHandler interrupts(stop);
     std::vector<std::string> load_warnings;
@@ -90,6 +135,7 @@ int run(RenderOptions options) {
     if (!options.user_paths.empty()) loaded.user_paths = load_user_paths(options.user_paths);
     if (!options.resolution.empty()) set_resolution(loaded.description.window, options.resolution);
     RenderResult result = render_scene(loaded, options, stop);
+    if (!options.writes()) return stop.requested() ? kInterrupted : kSuccess;
     result.stats.warnings.insert(result.stats.warnings.begin(), load_warnings.begin(), load_warnings.end());
     if (!options.quiet) print_warnings(result.stats);
     if (!has_picture(result)) {
@@ -97,13 +143,14 @@ int run(RenderOptions options) {
         fmt::print(stderr, "keyhole: stopped before the first pixel: nothing was written\n");
         return kInterrupted;
     }
-    result.picture.metadata = picture_metadata(options.command_line, options.scene, loaded.settings, result.stats);
+    result.picture.metadata.merge(picture_metadata(options.command_line, options.scene, result.stats));
     options.outputs.write(result.picture, stats_json(result.stats).dump(2) + "\n");
     if (options.verbose) print_report(result.stats);
     if (!options.quiet)
         fmt::print(stderr, "{}: {} x {} pixels{}\n", options.outputs.exr, result.picture.width, result.picture.height,
                    result.stats.complete ? "" : ", stopped early");
-    return stop.requested() ? kInterrupted : kSuccess;
+    if (stop.requested()) return kInterrupted;
+    return options.strict && !result.stats.warnings.empty() ? kNotTrusted : kSuccess;
 }
 
 /// All settings with their defaults, for the end of the help text.
@@ -119,10 +166,11 @@ std::string settings_help() {
 
 } // namespace
 
-void add_render_command(CLI::App& app, Action& action, const std::string& command_line) {
+void add_render_command(CLI::App& app, Action& action, const std::string& command_line, Team* team) {
     CLI::App* command = app.add_subcommand("render", "Render a scene");
     auto o = std::make_shared<RenderOptions>();
     o->command_line = command_line;
+    o->team = team;
     command->add_option("SCENE", o->scene, "scene file (YAML, or .pbrt)")->required();
     command->add_option("-o,--output", o->outputs.exr,
                         "picture to write (.exr); default: the scene's name, in this folder");
@@ -151,9 +199,11 @@ void add_render_command(CLI::App& app, Action& action, const std::string& comman
         ->allow_extra_args(false);
     command->add_option("--save-map", o->save_map, "write the photons of the first pass to this file");
     command->add_option("--load-map", o->load_map, "take photons from this file instead of sampling any");
+    o->keeping.add_options(*command);
     command->add_option("-t,--threads", o->threads, "threads; 0: one for each core")->check(CLI::Range(0, 4096));
     command->add_option("--timeout", o->timeout, "as many passes as fit in SECONDS; write what there is then")
         ->check(CLI::Range(0.0, 1e9));
+    command->add_flag("--strict", o->strict, "exit with 3 where there is a warning: the picture can't be trusted");
     auto* quiet = command->add_flag("-q,--quiet", o->quiet, "say nothing but errors");
     command->add_flag("-v,--verbose", o->verbose, "print statistics")->excludes(quiet);
     command->footer(settings_help() + "Whole numbers may be written 100k, 2.5M or 1e6.");

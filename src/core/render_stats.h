@@ -25,6 +25,7 @@ struct ProposalStats {
 
 struct RenderStats {
     std::vector<StageStats> stages;
+    double samples = 0; ///< of a pixel, or mutations by pixel of methods that only run chains; of whole units of work
     double brightness = 0, brightness_error = 0; ///< B_eye and its standard error [W/(m^2 sr)]
     std::vector<ProposalStats> proposals;
     std::uint64_t photons_global = 0, photons_caustic = 0, photon_bytes = 0, importons = 0, importon_bytes = 0;

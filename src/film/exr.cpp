@@ -1,6 +1,7 @@
 #include "film/exr.h"
 
 #include "core/error.h"
+#include "core/hash.h"
 #include "film/atomic_file.h"
 #include "film/exr_names.h"
 
@@ -53,9 +54,24 @@ Imf::Slice slice(Image& image, std::size_t c, int x0, int y0) {
     return {Imf::FLOAT, base, stride, row};
 }
 
+constexpr const char* kSumsHash = "sums hash";
+
+std::string hash_of(const std::map<std::string, PixelWords>& sums) {
+    Hash hash;
+    for (const auto& [kind, words] : sums) hash.add(words.data);
+    return fmt::format("{:016x}", hash.value());
+}
+
+/// Word `w` of sums, in a file whose first pixel lies at the origin.
+Imf::Slice word_slice(PixelWords& sums, int w, int width) {
+    const auto stride = static_cast<std::size_t>(sums.words) * sizeof(std::uint32_t);
+    return {Imf::UINT, reinterpret_cast<char*>(sums.data.data() + w), stride, stride * static_cast<std::size_t>(width)};
+}
+
 void encode(Imf::OStream& stream, const Picture& picture) {
     Imf::Header header(picture.width, picture.height);
-    header.compression() = Imf::ZIP_COMPRESSION;
+    // Sums compress badly by any means, and there are many of them.
+    header.compression() = picture.sums.empty() ? Imf::ZIP_COMPRESSION : Imf::RLE_COMPRESSION;
     for (const auto& [key, value] : picture.metadata) header.insert(key, Imf::StringAttribute(value));
     Imf::FrameBuffer buffer;
     for (const auto& [layer, image] : picture.layers) {
@@ -69,6 +85,13 @@ void encode(Imf::OStream& stream, const Picture& picture) {
             buffer.insert(names[c], slice(const_cast<Image&>(image), c, 0, 0));
         }
     }
+    if (!picture.sums.empty()) header.insert(kSumsHash, Imf::StringAttribute(hash_of(picture.sums)));
+    for (const auto& [kind, sums] : picture.sums) {
+        for (int w = 0; w < sums.words; ++w) {
+            header.channels().insert(exr_sum_name(kind, w), Imf::Channel(Imf::UINT));
+            buffer.insert(exr_sum_name(kind, w), word_slice(const_cast<PixelWords&>(sums), w, picture.width));
+        }
+    }
     Imf::OutputFile file(stream, header);
     file.setFrameBuffer(buffer);
     file.writePixels(picture.height);
@@ -80,10 +103,21 @@ std::map<std::string, std::vector<std::string>> layers_of(const Imf::ChannelList
         if (c.channel().xSampling != 1 || c.channel().ySampling != 1)
             throw InputError(
                 fmt::format("found the subsampled channel '{}', expected all at full resolution", c.name()));
-        layers[exr_layer_of(c.name())].emplace_back(c.name());
+        if (!is_exr_sum(c.name())) layers[exr_layer_of(c.name())].emplace_back(c.name());
     }
     for (auto& [layer, names] : layers) sort_exr_channels(names);
     return layers;
+}
+
+/// Makes room for the sums of a file and has them read to it.
+void expect_sums(const Imf::Header& header, Picture& picture, Imf::FrameBuffer& buffer) {
+    for (auto c = header.channels().begin(); c != header.channels().end(); ++c)
+        if (is_exr_sum(c.name())) ++picture.sums[exr_sum_kind(c.name())].words;
+    for (auto& [kind, sums] : picture.sums) {
+        sums.data.resize(static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height) *
+                         static_cast<std::size_t>(sums.words));
+        for (int w = 0; w < sums.words; ++w) buffer.insert(exr_sum_name(kind, w), word_slice(sums, w, picture.width));
+    }
 }
 
 Picture decode(Imf::InputFile& file) {
@@ -102,11 +136,16 @@ Picture decode(Imf::InputFile& file) {
         for (std::size_t c = 0; c < names.size(); ++c)
             buffer.insert(names[c], slice(image, c, window.min.x, window.min.y));
     }
+    // Only what write_exr() wrote starts at the origin and has sums.
+    if (window.min.x == 0 && window.min.y == 0) expect_sums(header, picture, buffer);
     for (auto a = header.begin(); a != header.end(); ++a)
         if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&a.attribute()))
             picture.metadata[a.name()] = text->value();
     file.setFrameBuffer(buffer);
     file.readPixels(window.min.y, window.max.y);
+    if (!picture.sums.empty() && picture.metadata[kSumsHash] != hash_of(picture.sums))
+        throw InputError("found sums that are not those that were written: the file is damaged");
+    picture.metadata.erase(kSumsHash);
     return picture;
 }
 

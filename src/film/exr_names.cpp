@@ -1,9 +1,13 @@
 #include "film/exr_names.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace keyhole {
 namespace {
+
+constexpr std::string_view kSums = "sums.";
 
 std::string_view last_part(std::string_view channel) {
     const auto dot = channel.rfind('.');
@@ -45,6 +49,14 @@ void sort_exr_channels(std::vector<std::string>& channels) {
         const std::string_view part = last_part(channel);
         return std::pair(part.size() == 1 ? kOrder.find(part[0]) : std::string_view::npos, channel);
     });
+}
+
+std::string exr_sum_name(const std::string& kind, int w) { return fmt::format("{}{}.{:03}", kSums, kind, w); }
+
+bool is_exr_sum(std::string_view channel) { return channel.starts_with(kSums); }
+
+std::string exr_sum_kind(const std::string& channel) {
+    return channel.substr(kSums.size(), channel.rfind('.') - kSums.size());
 }
 
 } // namespace keyhole

@@ -17,4 +17,9 @@ std::string exr_layer_of(const std::string& channel);
 /// Sorts channels of one layer as they are stored in an Image: R, G, B, A or X, Y, Z; others by name.
 void sort_exr_channels(std::vector<std::string>& channels);
 
+/// The channel of word `w` of sums (Picture::sums), whether a channel is one, and of which kind.
+std::string exr_sum_name(const std::string& kind, int w);
+bool is_exr_sum(std::string_view channel);
+std::string exr_sum_kind(const std::string& channel);
+
 } // namespace keyhole

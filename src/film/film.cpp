@@ -1,5 +1,7 @@
 #include "film/film.h"
 
+#include "film/pixel_words.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -39,9 +41,27 @@ void Film::add(int x, int y, const PixelSample& sample) {
     }
     if (!good) return;
     Pixel& p = pixels_[index(x, y)];
-    for (std::size_t c = 0; c < kChannels; ++c) p.sums[c] += values[c];
+    for (std::size_t c = 0; c < kChannels; ++c) p.sums.add(c, values[c]);
     ++p.samples;
 }
+
+void Film::merge(const Film& other) {
+    assert(other.pixels_.size() == pixels_.size());
+    for (std::size_t p = 0; p < pixels_.size(); ++p) {
+        pixels_[p].sums.merge(other.pixels_[p].sums);
+        pixels_[p].samples += other.pixels_[p].samples;
+    }
+    for (std::size_t i = 0; i < kLayers.size(); ++i) dropped_[i] += other.dropped(i);
+}
+
+void Film::clear() {
+    std::ranges::fill(pixels_, Pixel{});
+    for (auto& n : dropped_) n = 0;
+}
+
+PixelWords Film::words() const { return pixel_words(pixels_); }
+
+void Film::set_words(const PixelWords& words) { set_pixels(pixels_, words); }
 
 Picture Film::to_picture() const {
     Picture picture;
@@ -53,8 +73,7 @@ Picture Film::to_picture() const {
         images[i] = &(picture.layers[kLayers[i].name] = Image(width_, height_, kLayers[i].channels));
     for (std::size_t p = 0; p < pixels_.size(); ++p) {
         if (pixels_[p].samples == 0) continue;
-        Channels mean = pixels_[p].sums;
-        for (double& m : mean) m /= static_cast<double>(pixels_[p].samples);
+        const Channels mean = means(pixels_[p]);
         std::size_t first = 0;
         for (std::size_t i = 0; i < kLayers.size(); ++i) {
             const auto n = static_cast<std::size_t>(kLayers[i].channels);
@@ -67,10 +86,22 @@ Picture Film::to_picture() const {
     return picture;
 }
 
-Film::LuminanceSum Film::luminance_sum(std::size_t pixel) const {
-    const Channels& s = pixels_[pixel].sums;
-    const Rgb beauty(s[0] + s[3] + s[6], s[1] + s[4] + s[7], s[2] + s[5] + s[8]);
-    return {luminance(beauty), static_cast<double>(pixels_[pixel].samples)};
+Film::Channels Film::means(const Pixel& pixel) {
+    Channels mean{};
+    if (pixel.samples == 0) return mean;
+    for (std::size_t c = 0; c < kChannels; ++c) mean[c] = pixel.sums.value(c) / static_cast<double>(pixel.samples);
+    return mean;
+}
+
+double Film::mean_luminance(std::size_t pixel) const {
+    const Channels m = means(pixels_[pixel]);
+    return luminance(Rgb(m[0] + m[3] + m[6], m[1] + m[4] + m[7], m[2] + m[5] + m[8]));
+}
+
+double Film::samples_per_pixel() const {
+    double sum = 0;
+    for (const Pixel& p : pixels_) sum += static_cast<double>(p.samples);
+    return sum / static_cast<double>(pixels_.size());
 }
 
 std::uint64_t Film::empty_pixels() const {

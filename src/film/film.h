@@ -3,6 +3,7 @@
 
 #include "core/pixel_sample.h"
 #include "core/render_stats.h"
+#include "core/reproducible_sum.h"
 #include "film/filter.h"
 #include "film/picture.h"
 
@@ -14,8 +15,9 @@
 
 namespace keyhole {
 
-/// Pixels are means of their samples, each of weight 1 (see PixelFilter).
-/// Thread safety: add() for different pixels may run at once; a pixel belongs to one thread at a time.
+/// Pixels are means of their samples, each of weight 1 (see PixelFilter). The sums don't depend on the order of
+/// samples, nor on how they were shared out among films that are merged. Thread safety: add() for different pixels may
+/// run at once; a pixel belongs to one thread at a time.
 class Film {
   public:
     struct Layer {
@@ -44,6 +46,16 @@ class Film {
     /// dropped as a whole, so that the layers stay means over the same samples; it is counted for each layer at fault.
     void add(int x, int y, const PixelSample& sample);
 
+    /// Adds the samples of another film of the same size.
+    void merge(const Film& other);
+    /// Forgets all samples, and what was dropped.
+    void clear();
+
+    /// The sums as they stand in memory, and back.
+    /// @throws InputError for words of another size than this film's.
+    PixelWords words() const;
+    void set_words(const PixelWords& words);
+
     /// The means; "beauty" is direct + indirect + caustic. Pixels without samples are 0.
     Picture to_picture() const;
 
@@ -52,11 +64,9 @@ class Film {
     /// Pixels without a sample.
     std::uint64_t empty_pixels() const;
 
-    /// Sum of the luminance of a pixel's samples, row by row, and their number.
-    struct LuminanceSum {
-        double sum, samples;
-    };
-    LuminanceSum luminance_sum(std::size_t pixel) const;
+    double samples_per_pixel() const;
+    /// Mean luminance of a pixel's samples; pixels are counted row by row.
+    double mean_luminance(std::size_t pixel) const;
 
     /// Puts "empty pixels" among the values, and dropped samples among the warnings.
     void report(RenderStats& stats) const;
@@ -66,11 +76,12 @@ class Film {
     using Channels = std::array<double, kChannels>; ///< of all layers, one after the other
 
     struct Pixel {
-        Channels sums{};
+        ReproducibleSums<kChannels> sums;
         std::uint64_t samples = 0;
     };
 
     static Channels channels(const PixelSample& sample);
+    static Channels means(const Pixel& pixel);
     std::size_t index(int x, int y) const;
 
     int width_, height_;

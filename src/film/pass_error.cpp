@@ -1,23 +1,22 @@
 #include "film/pass_error.h"
 
+#include "film/pixel_words.h"
+
 #include <cmath>
 #include <limits>
 
 namespace keyhole {
 
-void PassError::add(const Film& film) {
-    const auto n = static_cast<std::size_t>(film.width()) * static_cast<std::size_t>(film.height());
-    pixels_.resize(n);
+void PassError::add(const Exposure& mean) {
+    pixels_.resize(mean.pixels());
     ++passes_;
-    for (std::size_t i = 0; i < n; ++i) {
+    const auto passes = static_cast<double>(passes_);
+    for (std::size_t i = 0; i < pixels_.size(); ++i) {
         Pixel& p = pixels_[i];
-        const auto [sum, samples] = film.luminance_sum(i);
-        const double value = samples > p.samples ? (sum - p.sum) / (samples - p.samples) : p.mean;
-        p.sum = sum;
-        p.samples = samples;
-        const double d = value - p.mean; // Welford 1962
-        p.mean += d / static_cast<double>(passes_);
-        p.m2 += d * (value - p.mean);
+        // Welford 1962, by the mean: the pass that moved it from there to here was passes * (here - there) off.
+        const double moved = mean.luminance(i) - p.mean;
+        p.mean += moved;
+        p.m2 += passes * (passes - 1) * moved * moved;
     }
 }
 
@@ -31,6 +30,14 @@ double PassError::relative() const {
         if (variance > 0) sum += variance / size / n;
     }
     return std::sqrt(sum);
+}
+
+PixelWords PassError::words() const { return pixel_words(pixels_); }
+
+void PassError::set_words(const PixelWords& words, std::int64_t passes) {
+    pixels_.resize(words.data.size() * sizeof(std::uint32_t) / sizeof(Pixel));
+    set_pixels(pixels_, words);
+    passes_ = passes;
 }
 
 } // namespace keyhole

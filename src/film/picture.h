@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -28,11 +29,19 @@ struct Image {
     }
 };
 
+/// What stands in memory for the pixels of a film: `words` words each, first row on top.
+struct PixelWords {
+    int words = 0;
+    std::vector<std::uint32_t> data;
+};
+
 /// What a render makes. The layer "beauty" is what is looked at: linear Rec. 709, W/(m^2 sr).
 struct Picture {
     int width = 0, height = 0;
     std::map<std::string, Image> layers;
     std::map<std::string, std::string> metadata;
+    /// Of a picture that others are to be joined with: the sums that its layers are means of, by kind; see Exposure.
+    std::map<std::string, PixelWords> sums;
 };
 
 } // namespace keyhole

@@ -7,7 +7,7 @@
 namespace keyhole {
 namespace {
 
-constexpr std::size_t kChannels = 3, kPerPixel = 3 * kChannels;
+constexpr std::size_t kChannels = 3;
 
 } // namespace
 
@@ -33,16 +33,14 @@ void SplatFilm::add(const Vec2& position, Layer layer, const Rgb& value) {
     }
 }
 
-void SplatFilm::add_to(Picture& picture, double scale) const {
-    Image& beauty = picture.layers.at("beauty");
-    Image* const layers[] = {&picture.layers.at("direct"), &picture.layers.at("indirect"),
-                             &picture.layers.at("caustic")};
-    for (std::size_t i = 0; i < sums_.size(); ++i) {
-        const auto value = static_cast<float>(scale * sums_[i].value());
-        const std::size_t at = i / kPerPixel * kChannels + i % kChannels;
-        layers[i % kPerPixel / kChannels]->data[at] += value;
-        beauty.data[at] += value;
-    }
+std::array<double, SplatFilm::kPerPixel> SplatFilm::sums(std::size_t pixel) const {
+    std::array<double, kPerPixel> values{};
+    for (std::size_t c = 0; c < kPerPixel; ++c) values[c] = sums_[pixel * kPerPixel + c].value();
+    return values;
+}
+
+void SplatFilm::clear() {
+    for (FixedSum& sum : sums_) sum.take();
 }
 
 } // namespace keyhole

@@ -7,6 +7,7 @@
 #include "film/picture.h"
 #include "sampling/light_class.h"
 
+#include <array>
 #include <vector>
 
 namespace keyhole {
@@ -16,6 +17,7 @@ namespace keyhole {
 class SplatFilm {
   public:
     enum class Layer { direct, indirect, caustic };
+    static constexpr std::size_t kPerPixel = 9;
 
     static Layer layer_of(LightClass light) {
         switch (light) {
@@ -37,8 +39,10 @@ class SplatFilm {
     /// Adds `value` at `position` [pixels] to all pixels whose filter reaches it. Positions may lie outside the film.
     void add(const Vec2& position, Layer layer, const Rgb& value);
 
-    /// Adds scale times the sums to the layers of these names, and to "beauty".
-    void add_to(Picture& picture, double scale) const;
+    /// The sums: of a pixel (row by row) layer by layer, of a layer R, G and B.
+    std::array<double, kPerPixel> sums(std::size_t pixel) const;
+    std::size_t pixels() const { return sums_.size() / kPerPixel; }
+    void clear();
 
   private:
     int width_, height_;

@@ -5,7 +5,9 @@
 #include "render/mis_heuristic.h"
 #include "render/pixel_sink.h"
 #include "render/pixels.h"
+#include "render/sample_report.h"
 #include "render/stage_clock.h"
+#include "render/work.h"
 #include "sampling/bidirectional_tracer.h"
 
 namespace keyhole {
@@ -39,27 +41,35 @@ PixelSample sample_pixel(const Scene& scene, const Vec2& image, int depth, MisHe
 
 } // namespace
 
-RenderResult render_bdpt(const Scene& scene, const Settings& settings, const RunContext& context) {
+RenderResult render_bdpt(const Scene& scene, const Settings& settings, const RunContext& context, const Share& share) {
     RenderResult result;
     const ImageWindow& window = scene.camera().window();
-    Film film(window.width, window.height, PixelFilter(settings));
+    RunningStats luminance;
+    Work work(settings, window, Exposure::Parts::both, share, settings.spp);
     SplatFilm splats(window.width, window.height, PixelFilter(settings));
-    std::int64_t rounds = 0;
+    // One light sub-path for each pixel and round, each an estimate of the whole window.
+    const double scale = window.pixels() / (static_cast<double>(window.width) * window.height);
     {
         const StageClock clock(result.stats, "bidirectional path tracing");
+        const SamplingStage stage(scene, work.left(), "bidirectional path tracing", context);
         const auto depth = static_cast<int>(settings.max_depth);
         const MisHeuristic heuristic = mis_heuristic(settings.mis);
-        rounds = sample_pixels(scene, film, settings.spp, static_cast<std::uint64_t>(settings.seed), StreamPurpose::bidirectional,
-                               "bidirectional path tracing", context, [&](const Vec2& image, SampleSource& source) {
-                                   return sample_pixel(scene, image, depth, heuristic, splats, source);
-                               });
-        result.stats.complete = rounds == settings.spp;
+        while (const auto round = work.take(context)) {
+            Film& film = *work.unit().film;
+            const bool whole = sample_round(scene, film, *round, static_cast<std::uint64_t>(settings.seed),
+                                            StreamPurpose::bidirectional, context, luminance,
+                                            [&](const Vec2& image, SampleSource& source) {
+                                                return sample_pixel(scene, image, depth, heuristic, splats, source);
+                                            });
+            // Of later rounds that are cut short the eye's samples are enough.
+            const double share_of_round = whole ? 1 : work.is_first() ? film.samples_per_pixel() : 0;
+            if (share_of_round > 0) work.unit().drawn->add(splats, scale / share_of_round);
+            splats.clear();
+            if (whole) work.end_unit(result.stats);
+        }
     }
-    film.report(result.stats);
-    result.picture = film.to_picture();
-    // One light sub-path for each pixel and round, each an estimate of the whole window.
-    const double light_subpaths = static_cast<double>(window.width) * window.height * static_cast<double>(rounds);
-    if (rounds > 0) splats.add_to(result.picture, window.pixels() / light_subpaths);
+    report_eye_paths(luminance, scene, result.stats);
+    result.picture = work.finish(result.stats);
     return result;
 }
 

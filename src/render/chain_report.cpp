@@ -21,33 +21,7 @@ void warn_of_chains(RenderStats& stats, const ChainSummary& chains) {
             "{} of {} chains spent more than half of their {} steps on a single path: expect bright spots that are not "
             "there. Try more mutations",
             chains.stuck, chains.chains, steps));
-    if (!chains.agreement) {
-        stats.warnings.push_back(fmt::format(
-            "the chains made {} steps each, too few to tell whether they agree: indirect light and caustics "
-            "can't be trusted. Try more mutations",
-            steps));
-    } else if (chains.agreement->r_hat > kMostRHat && chains.agreement->error > kMostError) {
-        stats.warnings.push_back(
-            fmt::format("independent groups of chains disagree on the brightness of parts of the image (split R-hat "
-                        "{:.2f}, {:.0f} % standard error): indirect light and caustics can't be trusted. Try more "
-                        "mutations",
-                        chains.agreement->r_hat, 100 * chains.agreement->error));
-    }
-}
-
-} // namespace
-
-StageOne measure_brightness(const Scene& scene, const StageOneSettings& settings, RenderStats& stats,
-                            const RunContext& context) {
-    const StageClock clock(stats, "brightness");
-    StageOne one = run_stage_one(scene, settings, context);
-    stats.brightness = one.brightness.mean();
-    stats.brightness_error = one.brightness.standard_error();
-    stats.values["brightness of caustics"] = one.caustic.mean();
-    stats.values["brightness of caustics, error"] = one.caustic.standard_error();
-    stats.values["brightness by bidirectional tracing"] = one.technique == Technique::bidirectional ? 1 : 0;
-    stats.values["brightness samples"] = static_cast<double>(one.samples);
-    return one;
+    warn_of_agreement(stats, chains.agreement, static_cast<std::int64_t>(steps));
 }
 
 void warn_of_brightness(RenderStats& stats, bool stopped) {
@@ -97,6 +71,64 @@ void report_chains(RenderStats& stats, const Mixture<Path>& mixture, const Chain
         stats.values["user paths, chains without"] = static_cast<double>(chains.guidance->chains_without);
     }
     warn_of_chains(stats, chains);
+}
+
+} // namespace
+
+void warn_of_agreement(RenderStats& stats, const std::optional<Agreement>& agreement, std::int64_t steps) {
+    if (!agreement) {
+        stats.warnings.push_back(fmt::format(
+            "the chains made {} steps each, too few to tell whether they agree: what they draw can't be trusted. Try "
+            "more mutations",
+            steps));
+    } else if (agreement->r_hat > kMostRHat && agreement->error > kMostError) {
+        stats.warnings.push_back(
+            fmt::format("independent groups of chains disagree on the brightness of parts of the image (split R-hat "
+                        "{:.2f}, {:.0f} % standard error): what they draw can't be trusted. Try more mutations",
+                        agreement->r_hat, 100 * agreement->error));
+    }
+}
+
+void add_ledger(std::vector<ProposalStats>& lines, const std::vector<ProposalStats>& more) {
+    for (std::size_t k = 0; k < more.size() && k < lines.size(); ++k) {
+        lines[k].proposed += more[k].proposed;
+        lines[k].zero += more[k].zero;
+        lines[k].nan += more[k].nan;
+        lines[k].rejected += more[k].rejected;
+        lines[k].accepted += more[k].accepted;
+        for (const auto& [reason, n] : more[k].failed) lines[k].failed[reason] += n;
+        lines[k].seconds += more[k].seconds;
+    }
+}
+
+StageOne ChainReports::measure_brightness(const Scene& scene, const StageOneSettings& settings, RenderStats& stats,
+                                          const RunContext& context) {
+    const StageClock clock(stats, "brightness");
+    StageOne one = run_stage_one(scene, settings, context);
+    stopped_ = one.samples < settings.samples;
+    brightness_.merge(one.brightness);
+    stats.brightness = brightness_.mean();
+    stats.brightness_error = brightness_.standard_error();
+    stats.values["brightness of caustics"] = one.caustic.mean();
+    stats.values["brightness of caustics, error"] = one.caustic.standard_error();
+    stats.values["brightness by bidirectional tracing"] = one.technique == Technique::bidirectional ? 1 : 0;
+    stats.values["brightness samples"] = static_cast<double>(one.samples);
+    return one;
+}
+
+void ChainReports::add(const Mixture<Path>& mixture, const ChainSummary& chains, RenderStats& stats) {
+    RenderStats pass;
+    report_chains(first_ ? stats : pass, mixture, chains);
+    add_ledger(stats.proposals, pass.proposals);
+    first_ = false;
+}
+
+void ChainReports::finish(RenderStats& stats) const {
+    warn_of_brightness(stats, stopped_);
+    for (const ProposalStats& p : stats.proposals)
+        if (p.nan > 0)
+            stats.warnings.push_back(
+                fmt::format("{} proposals '{}' had a density or value that is not a number", p.nan, p.name));
 }
 
 } // namespace keyhole

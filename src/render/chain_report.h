@@ -7,15 +7,31 @@
 
 namespace keyhole {
 
-/// Stage one, with its figures in `stats`.
-StageOne measure_brightness(const Scene& scene, const StageOneSettings& settings, RenderStats& stats,
-                            const RunContext& context);
+/// Collects what is to be told of one pass after the other.
+class ChainReports {
+  public:
+    /// Stage one of a pass, with its figures in `stats`. B of a pass is its own: passes are independent, and the mean
+    /// over them has the error of all samples of B together.
+    StageOne measure_brightness(const Scene& scene, const StageOneSettings& settings, RenderStats& stats,
+                                const RunContext& context);
 
-/// Warns where the brightness in `stats` is zero or poorly known; `stopped`: stage one was cut short.
-void warn_of_brightness(RenderStats& stats, bool stopped);
+    /// Puts the ledger and the figures of the chains of a pass into `stats`. The first pass warns where the picture
+    /// can't be trusted: chains that stick, and groups of chains that disagree. The others add to the ledger.
+    void add(const Mixture<Path>& mixture, const ChainSummary& chains, RenderStats& stats);
 
-/// Puts the ledger and the figures of a set of chains into `stats`, and warns where the picture can't be trusted:
-/// chains that stick, and groups of chains that disagree.
-void report_chains(RenderStats& stats, const Mixture<Path>& mixture, const ChainSummary& chains);
+    /// Warns where the brightness of all passes is zero or poorly known.
+    void finish(RenderStats& stats) const;
+
+  private:
+    RunningStats brightness_; // over all passes
+    bool stopped_ = false;    // in stage one
+    bool first_ = true;
+};
+
+/// Warns where groups of chains disagree, or `steps` of each were too few to tell.
+void warn_of_agreement(RenderStats& stats, const std::optional<Agreement>& agreement, std::int64_t steps);
+
+/// Adds the ledgers of a later pass.
+void add_ledger(std::vector<ProposalStats>& lines, const std::vector<ProposalStats>& more);
 
 } // namespace keyhole

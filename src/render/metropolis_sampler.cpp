@@ -32,19 +32,6 @@ void report_power(const PathDepositor::Tally& t, RenderStats& stats) {
     stats.values["eye sides drawn"] = static_cast<double>(t.draws);
 }
 
-/// Adds the ledgers of a later pass.
-void add_ledger(std::vector<ProposalStats>& lines, const std::vector<ProposalStats>& more) {
-    for (std::size_t k = 0; k < more.size() && k < lines.size(); ++k) {
-        lines[k].proposed += more[k].proposed;
-        lines[k].zero += more[k].zero;
-        lines[k].nan += more[k].nan;
-        lines[k].rejected += more[k].rejected;
-        lines[k].accepted += more[k].accepted;
-        for (const auto& [reason, n] : more[k].failed) lines[k].failed[reason] += n;
-        lines[k].seconds += more[k].seconds;
-    }
-}
-
 PowerRule power_rule(const Settings& settings) {
     return settings.power == "reciprocal" ? PowerRule::reciprocal
            : settings.power == "literal"  ? PowerRule::literal
@@ -62,26 +49,15 @@ class MetropolisSampler final : public PhotonSampler {
                                      .max_scatterings = static_cast<int>(c_.settings.max_depth),
                                      .samples = c_.settings.brightness_samples,
                                      .seed = seed};
-        const StageOne one = brightness(first, stats, context);
+        const StageOne one = reports_.measure_brightness(c_.scene, first, stats, context);
         if (!(one.brightness.mean() > 0)) return {};
         const StageClock clock(stats, "photons");
         return run_chains(first, one, stats, context);
     }
 
-    void finish(RenderStats& stats) override { warn_of_brightness(stats, stopped_); }
+    void finish(RenderStats& stats) override { reports_.finish(stats); }
 
   private:
-    /// B of a pass is its own: passes are independent, and the mean over them has the error of all samples of B
-    /// together.
-    StageOne brightness(const StageOneSettings& settings, RenderStats& stats, const RunContext& context) {
-        StageOne one = measure_brightness(c_.scene, settings, stats, context);
-        stopped_ = one.samples < settings.samples;
-        brightness_.merge(one.brightness);
-        stats.brightness = brightness_.mean();
-        stats.brightness_error = brightness_.standard_error();
-        return one;
-    }
-
     /// Chains from the seeds of stage one, photons with the power that the rule gives them.
     Photons run_chains(const StageOneSettings& first, const StageOne& one, RenderStats& stats,
                        const RunContext& context) {
@@ -115,24 +91,14 @@ class MetropolisSampler final : public PhotonSampler {
                                                 context);
         stats.photon_bytes = std::max<std::uint64_t>(stats.photon_bytes, photons.bytes + stats.importon_bytes);
         report_power(photons.tally, stats);
-        report(mixtures.mixture, photons.chains, stats);
+        reports_.add(mixtures.mixture, photons.chains, stats);
         return photons;
-    }
-
-    /// The first pass raises the alarms; the others add to the ledger.
-    void report(const Mixture<Path>& mixture, const ChainSummary& chains, RenderStats& stats) {
-        RenderStats pass;
-        report_chains(first_pass_ ? stats : pass, mixture, chains);
-        add_ledger(stats.proposals, pass.proposals);
-        first_pass_ = false;
     }
 
     SamplerContext c_;
     PowerRule rule_;
     PathSet set_;
-    RunningStats brightness_; // over all passes
-    bool stopped_ = false;    // in stage one
-    bool first_pass_ = true;
+    ChainReports reports_;
 };
 
 } // namespace

@@ -6,29 +6,30 @@
 #include "film/splats.h"
 #include "render/chain_report.h"
 #include "render/methods.h"
+#include "render/pass_seed.h"
 #include "render/pixel_sink.h"
 #include "render/pixels.h"
+#include "render/sample_report.h"
 #include "render/stage_clock.h"
+#include "render/work.h"
 #include "sampling/proposals/registry.h"
 
 namespace keyhole {
 namespace {
 
-/// Samples everything that the chains leave out.
-Picture sample_direct(const Scene& scene, const Settings& settings, RenderStats& stats, const RunContext& context) {
+/// Samples everything that the chains leave out. Returns whether it was completed.
+bool sample_direct(const Scene& scene, const Settings& settings, std::int64_t pass, Film& film, RunningStats& luminance,
+                   RenderStats& stats, const RunContext& context) {
     const StageClock clock(stats, "direct light");
-    Film film(scene.camera().window().width, scene.camera().window().height, PixelFilter(settings));
     const auto depth = static_cast<int>(settings.max_depth);
-    const auto rounds =
-        sample_pixels(scene, film, settings.spp, static_cast<std::uint64_t>(settings.seed), StreamPurpose::path_tracing,
-                      "direct light", context, [&](const Vec2& image, SampleSource& source) {
-                          PixelSink sink{PixelSink::Elsewhere::stored};
-                          trace_path(scene, image, depth, source, sink);
-                          return sink.pixel;
-                      });
-    stats.complete = rounds == settings.spp;
-    film.report(stats);
-    return film.to_picture();
+    const auto rounds = sample_pass(scene, film, pass, settings.spp, static_cast<std::uint64_t>(settings.seed),
+                                    StreamPurpose::path_tracing, "direct light", context, luminance,
+                                    [&](const Vec2& image, SampleSource& source) {
+                                        PixelSink sink{PixelSink::Elsewhere::stored};
+                                        trace_path(scene, image, depth, source, sink);
+                                        return sink.pixel;
+                                    });
+    return rounds == settings.spp;
 }
 
 void splat(SplatFilm& splats, const ImageWindow& window, const Path& path, double weight) {
@@ -37,15 +38,16 @@ void splat(SplatFilm& splats, const ImageWindow& window, const Path& path, doubl
     splats.add(window.to_pixel(path.image), layer, path.contribution * (weight / path.target));
 }
 
-/// Runs the chains and adds what they draw to `picture`.
-void draw_chains(const Scene& scene, const Settings& settings, const UserPaths& paths, const StageOneSettings& first,
-                 const StageOne& one, Picture& picture, RenderStats& stats, const RunContext& context) {
+/// Runs the chains of a pass and adds what they draw. Returns whether they got to their end.
+bool draw_chains(const Scene& scene, const Settings& settings, const UserPaths& paths, const StageOneSettings& first,
+                 const StageOne& one, Work& work, ChainReports& reports, RenderStats& stats,
+                 const RunContext& context) {
     const StageClock clock(stats, "chains");
     const ChainMixtures mixtures({&scene, PathSet::stored, static_cast<int>(settings.max_depth)}, settings, paths);
     ChainSet chains(choose_seeds(scene, first, one, one.all_groups(), settings.chains), mixtures.mixture, first.seed,
                     mixtures.control_or_null());
     const ImageWindow& window = scene.camera().window();
-    SplatFilm splats(picture.width, picture.height, PixelFilter(settings));
+    SplatFilm splats(window.width, window.height, PixelFilter(settings));
 
     // In rounds, so that a stop finds all chains equally long.
     constexpr std::int64_t kRound = 64;
@@ -57,25 +59,40 @@ void draw_chains(const Scene& scene, const Settings& settings, const UserPaths& 
                        [&](std::int64_t, const Path& path, double weight) { splat(splats, window, path, weight); });
     context.end();
 
+    const bool whole = chains.steps() == per_chain;
     const ChainSummary summary = chains.summary();
-    report_chains(stats, mixtures.mixture, summary);
-    stats.complete = stats.complete && chains.steps() == per_chain;
-    splats.add_to(picture, one.brightness.mean() * window.pixels() / static_cast<double>(summary.steps));
+    if (!whole && !work.is_first()) return false;
+    reports.add(mixtures.mixture, summary, stats);
+    work.unit().drawn->add(splats, one.brightness.mean() * window.pixels() / static_cast<double>(summary.steps));
+    return whole;
 }
 
 } // namespace
 
-RenderResult render_mlt(const Scene& scene, const Settings& settings, const UserPaths& paths,
-                        const RunContext& context) {
+RenderResult render_mlt(const Scene& scene, const Settings& settings, const UserPaths& paths, const RunContext& context,
+                        const Share& share) {
     RenderResult result;
-    const StageOneSettings first{.max_scatterings = static_cast<int>(settings.max_depth),
-                                 .samples = settings.brightness_samples,
-                                 .seed = static_cast<std::uint64_t>(settings.seed)};
-    result.picture = sample_direct(scene, settings, result.stats, context);
-    const StageOne one = measure_brightness(scene, first, result.stats, context);
-    warn_of_brightness(result.stats, one.samples < first.samples);
-    if (one.brightness.mean() > 0)
-        draw_chains(scene, settings, paths, first, one, result.picture, result.stats, context);
+    RenderStats& stats = result.stats;
+    Work work(settings, scene.camera().window(), Exposure::Parts::both, share);
+    ChainReports reports;
+    RunningStats luminance; // of direct light
+    while (const auto pass = work.take(context)) {
+        const StageOneSettings first{.max_scatterings = static_cast<int>(settings.max_depth),
+                                     .samples = settings.brightness_samples,
+                                     .seed = seed_of_pass(settings, *pass)};
+        bool whole = sample_direct(scene, settings, *pass, *work.unit().film, luminance, stats, context);
+        if (!whole && !work.is_first()) break;
+        const StageOne one = reports.measure_brightness(scene, first, stats, context);
+        whole = whole && one.samples == first.samples;
+        if (one.brightness.mean() > 0)
+            whole = draw_chains(scene, settings, paths, first, one, work, reports, stats, context) && whole;
+        else if (whole)
+            work.unit().drawn->add(SplatFilm(scene.camera().window().width, scene.camera().window().height), 0);
+        if (whole) work.end_unit(stats);
+    }
+    reports.finish(stats);
+    report_samples(luminance, stats);
+    result.picture = work.finish(stats);
     return result;
 }
 

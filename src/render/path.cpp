@@ -2,27 +2,33 @@
 #include "render/methods.h"
 #include "render/pixel_sink.h"
 #include "render/pixels.h"
+#include "render/sample_report.h"
 #include "render/stage_clock.h"
+#include "render/work.h"
 
 namespace keyhole {
 
-RenderResult render_path(const Scene& scene, const Settings& settings, const RunContext& context) {
+RenderResult render_path(const Scene& scene, const Settings& settings, const RunContext& context, const Share& share) {
     RenderResult result;
-    Film film(scene.camera().window().width, scene.camera().window().height, PixelFilter(settings));
+    RunningStats luminance;
+    Work work(settings, scene.camera().window(), Exposure::Parts::film, share, settings.spp);
     {
         const StageClock clock(result.stats, "path tracing");
+        const SamplingStage stage(scene, work.left(), "path tracing", context);
         const auto depth = static_cast<int>(settings.max_depth);
-        const auto rounds = sample_pixels(scene, film, settings.spp, static_cast<std::uint64_t>(settings.seed),
-                                          StreamPurpose::path_tracing, "path tracing", context,
-                                          [&](const Vec2& image, SampleSource& source) {
-                                              PixelSink sink{};
-                                              trace_path(scene, image, depth, source, sink);
-                                              return sink.pixel;
-                                          });
-        result.stats.complete = rounds == settings.spp;
+        while (const auto round = work.take(context)) {
+            const bool whole = sample_round(scene, *work.unit().film, *round, static_cast<std::uint64_t>(settings.seed),
+                                            StreamPurpose::path_tracing, context, luminance,
+                                            [&](const Vec2& image, SampleSource& source) {
+                                                PixelSink sink{};
+                                                trace_path(scene, image, depth, source, sink);
+                                                return sink.pixel;
+                                            });
+            if (whole) work.end_unit(result.stats);
+        }
     }
-    film.report(result.stats);
-    result.picture = film.to_picture();
+    report_eye_paths(luminance, scene, result.stats);
+    result.picture = work.finish(result.stats);
     return result;
 }
 

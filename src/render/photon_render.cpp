@@ -1,14 +1,16 @@
 // The methods that render from photon maps: pass by pass a sampler, the maps, the gather.
-#include "film/pass_error.h"
 #include "gather/fill_cache.h"
 #include "gather/final_gather.h"
 #include "render/methods.h"
+#include "render/pass_seed.h"
 #include "render/photon_file.h"
 #include "render/photon_sampler.h"
 #include "render/pixels.h"
 #include "render/radii.h"
+#include "render/sample_report.h"
 #include "render/sampler_trial.h"
 #include "render/stage_clock.h"
+#include "render/work.h"
 
 #include <fmt/format.h>
 
@@ -36,16 +38,9 @@ std::unique_ptr<PhotonSampler> make_sampler(const SamplerContext& c, RenderStats
     return make_emission_sampler(c, method == "ipm");
 }
 
-/// Passes have seeds of their own; the first has the render's.
-std::uint64_t seed_of_pass(std::uint64_t seed, std::int64_t pass) {
-    if (pass == 0) return seed;
-    Rng rng(seed, StreamPurpose::seed_choice, static_cast<std::uint64_t>(pass));
-    return static_cast<std::uint64_t>(rng.next() * 0x1p32) << 20 ^ static_cast<std::uint64_t>(rng.next() * 0x1p32);
-}
-
 /// Stage three: what the eye sees, from the photons of a pass. Returns whether it was completed.
 bool gather_pass(const SamplerContext& c, std::int64_t pass, std::uint64_t seed, Photons photons, Film& film,
-                 RenderStats& stats, const RunContext& context) {
+                 RunningStats& luminance, RenderStats& stats, const RunContext& context) {
     const StageClock clock(stats, "gather");
     const Settings& s = c.settings;
     const Radii radii(c.scene, pass);
@@ -84,43 +79,36 @@ bool gather_pass(const SamplerContext& c, std::int64_t pass, std::uint64_t seed,
     if (s.irradiance_cache) cache = fill_cache(rays, cache_options(s, seed), context);
     if (cache) stats.values["cached irradiances"] = static_cast<double>(cache->size());
     const FinalGather gather(rays, cache ? &*cache : nullptr, static_cast<int>(s.gather_rays));
-    const auto rounds = sample_pixels(
-        c.scene, film, s.spp, static_cast<std::uint64_t>(s.seed), StreamPurpose::gather, "gather", context,
-        [&](const Vec2& image, SampleSource& source) { return gather.sample(image, source); }, pass * s.spp);
+    const auto rounds =
+        sample_pass(c.scene, film, pass, s.spp, static_cast<std::uint64_t>(s.seed), StreamPurpose::gather, "gather",
+                    context, [&](const Vec2& image, SampleSource& source) { return gather.sample(image, source); });
     return rounds == s.spp;
 }
 
 } // namespace
 
 RenderResult render_photons(const Scene& scene, const Settings& settings, const UserPaths& paths,
-                            const RunContext& context) {
+                            const RunContext& context, const Share& share) {
     RenderResult result;
     RenderStats& stats = result.stats;
     const SurfacePatches patches(scene.shapes());
     const SamplerContext c{scene, settings, patches, paths};
     const auto sampler = make_sampler(c, stats, context);
-    Film film(scene.camera().window().width, scene.camera().window().height, PixelFilter(settings));
-    PassError error;
-    std::int64_t pass = 0;
-    for (bool done = false; !done;) {
-        const std::uint64_t seed = seed_of_pass(static_cast<std::uint64_t>(settings.seed), pass);
+    Work work(settings, scene.camera().window(), Exposure::Parts::film, share);
+    RunningStats luminance;
+    while (const auto pass = work.take(context)) {
+        const std::uint64_t seed = seed_of_pass(settings, *pass);
         Photons photons = sampler->sample(seed, stats, context);
-        if (pass == 0 && !settings.save_map.empty())
+        if (*pass == 0 && !settings.save_map.empty())
             save_photons(settings.save_map, photon_file_key(scene, settings), photons);
         // The photons of a pass that was cut short are good for a first picture, not for one that is there.
-        if (pass > 0 && context.stopped()) break;
-        const bool whole = gather_pass(c, pass, seed, std::move(photons), film, stats, context);
-        pass += whole ? 1 : 0;
-        error.add(film);
-        done = !whole || pass == settings.passes || (pass >= 4 && error.relative() <= settings.target_error);
+        if (!work.is_first() && context.stopped()) break;
+        if (gather_pass(c, *pass, seed, std::move(photons), *work.unit().film, luminance, stats, context))
+            work.end_unit(stats);
     }
-    // With a time or an error to go for, there is no number of passes that would be all of them.
-    stats.complete = settings.passes > 0 && settings.target_error == 0 ? pass == settings.passes : pass > 0;
-    stats.values["passes"] = static_cast<double>(pass);
-    if (pass > 1) stats.values["relative error"] = error.relative();
     sampler->finish(stats);
-    film.report(stats);
-    result.picture = film.to_picture();
+    report_samples(luminance, stats);
+    result.picture = work.finish(stats);
     return result;
 }
 

@@ -6,50 +6,86 @@
 #include "core/pixel_sample.h"
 #include "core/progress.h"
 #include "core/rng.h"
+#include "core/statistics.h"
 #include "film/film.h"
 #include "scene/scene.h"
 
 #include <algorithm>
+#include <atomic>
+#include <cmath>
 #include <string_view>
+#include <vector>
 
 namespace keyhole {
 
-/// Takes `spp` samples of every pixel: sample(window point, random source) -> PixelSample. Works in rounds of one
-/// sample for every pixel, so that a stop leaves a whole picture. Each sample has a random stream of its own, by
-/// `first_round` plus the rounds before it, and shares the pixel with the others evenly (LatticeSource). Returns the
-/// number of full rounds.
+/// Takes one sample of every pixel: sample(window point, random source) -> PixelSample. Each has a random stream of its
+/// own, by `round`, and shares the pixel with those of other rounds evenly (LatticeSource). Returns whether it got
+/// round before a stop. `luminance_of_samples` receives that of the samples.
 template <class Sample>
-std::int64_t sample_pixels(const Scene& scene, Film& film, std::int64_t spp, std::uint64_t seed, StreamPurpose purpose,
-                           std::string_view stage, const RunContext& context, Sample&& sample,
-                           std::int64_t first_round = 0) {
+bool sample_round(const Scene& scene, Film& film, std::int64_t round, std::uint64_t seed, StreamPurpose purpose,
+                  const RunContext& context, RunningStats& luminance_of_samples, Sample&& sample) {
     const ImageWindow& window = scene.camera().window();
     constexpr int kTile = 16;
     const int across = (window.width + kTile - 1) / kTile, down = (window.height + kTile - 1) / kTile;
     const auto pixels = static_cast<std::uint64_t>(window.width) * static_cast<std::uint64_t>(window.height);
-    context.begin(stage, pixels * static_cast<std::uint64_t>(spp), "samples");
-    std::int64_t round = 0;
-    for (; round < spp && !context.stopped(); ++round) {
-        parallel_for(static_cast<std::int64_t>(across) * down, [&](std::int64_t tile) {
-            if (context.stopped()) return;
-            const int x0 = static_cast<int>(tile % across) * kTile, y0 = static_cast<int>(tile / across) * kTile;
-            const int x1 = std::min(x0 + kTile, window.width), y1 = std::min(y0 + kTile, window.height);
-            for (int y = y0; y < y1; ++y) {
-                for (int x = x0; x < x1; ++x) {
-                    const auto pixel = static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(window.width) +
-                                       static_cast<std::uint64_t>(x);
-                    const auto sample_number = static_cast<std::uint64_t>(first_round + round);
-                    LatticeSource source(Rng(seed, StreamPurpose::lattice, pixel), sample_number,
-                                         Rng(seed, purpose, pixel + pixels * sample_number));
-                    const double u0 = source.next(), u1 = source.next();
-                    const Vec2 centre(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-                    film.add(x, y, sample(window.to_window(centre + film.filter().sample_offset(u0, u1)), source));
-                }
+    const auto sample_number = static_cast<std::uint64_t>(round);
+    std::atomic<bool> whole = true;
+    std::vector<RunningStats> tiles(static_cast<std::size_t>(across) * static_cast<std::size_t>(down));
+    parallel_for(static_cast<std::int64_t>(across) * down, [&](std::int64_t tile) {
+        if (context.stopped()) {
+            whole = false;
+            return;
+        }
+        const int x0 = static_cast<int>(tile % across) * kTile, y0 = static_cast<int>(tile / across) * kTile;
+        const int x1 = std::min(x0 + kTile, window.width), y1 = std::min(y0 + kTile, window.height);
+        for (int y = y0; y < y1; ++y) {
+            for (int x = x0; x < x1; ++x) {
+                const auto pixel = static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(window.width) +
+                                   static_cast<std::uint64_t>(x);
+                LatticeSource source(Rng(seed, StreamPurpose::lattice, pixel), sample_number,
+                                     Rng(seed, purpose, pixel + pixels * sample_number));
+                const double u0 = source.next(), u1 = source.next();
+                const Vec2 centre(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+                const PixelSample s = sample(window.to_window(centre + film.filter().sample_offset(u0, u1)), source);
+                film.add(x, y, s);
+                const double l = luminance(s.direct + s.indirect + s.caustic);
+                if (std::isfinite(l)) tiles[static_cast<std::size_t>(tile)].add(l);
             }
-            context.advance(static_cast<std::uint64_t>((x1 - x0) * (y1 - y0)));
-        });
+        }
+        context.advance(static_cast<std::uint64_t>((x1 - x0) * (y1 - y0)));
+    });
+    for (const RunningStats& t : tiles) luminance_of_samples.merge(t);
+    return whole;
+}
+
+/// A stage of `rounds` rounds. Begins in its constructor, ends at the end of its scope.
+class SamplingStage {
+  public:
+    SamplingStage(const Scene& scene, std::int64_t rounds, std::string_view name, const RunContext& context)
+        : context_(context) {
+        const ImageWindow& window = scene.camera().window();
+        const auto pixels = static_cast<std::uint64_t>(window.width) * static_cast<std::uint64_t>(window.height);
+        context.begin(name, pixels * static_cast<std::uint64_t>(rounds), "samples");
     }
-    context.end();
-    return round;
+    ~SamplingStage() { context_.end(); }
+    SamplingStage(const SamplingStage&) = delete;
+    SamplingStage& operator=(const SamplingStage&) = delete;
+
+  private:
+    const RunContext& context_;
+};
+
+/// The rounds of pass `pass`, `spp` of them, as a stage. Returns how many it got through.
+template <class Sample>
+std::int64_t sample_pass(const Scene& scene, Film& film, std::int64_t pass, std::int64_t spp, std::uint64_t seed,
+                         StreamPurpose purpose, std::string_view name, const RunContext& context,
+                         RunningStats& luminance_of_samples, Sample&& sample) {
+    const SamplingStage stage(scene, spp, name, context);
+    std::int64_t rounds = 0;
+    while (rounds < spp &&
+           sample_round(scene, film, pass * spp + rounds, seed, purpose, context, luminance_of_samples, sample))
+        ++rounds;
+    return rounds;
 }
 
 } // namespace keyhole

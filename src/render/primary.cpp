@@ -1,9 +1,12 @@
 // --method pssmlt, mmlt, rjmlt: chains in primary sample space, drawn to the film.
 #include "core/parallel.h"
 #include "film/splats.h"
+#include "render/chain_report.h"
 #include "render/methods.h"
 #include "render/mis_heuristic.h"
+#include "render/pass_seed.h"
 #include "render/stage_clock.h"
+#include "render/work.h"
 #include "sampling/primary/p_large.h"
 #include "sampling/primary/primary_chains.h"
 
@@ -28,13 +31,11 @@ Failures failures_of(std::string_view word) {
                                      : Failures::reject;
 }
 
-std::vector<PrimaryStratum> start(const Scene& scene, const Settings& settings, const EmitterInverse& inverses,
-                                  RenderStats& stats, const RunContext& context) {
+std::vector<PrimaryStratum> start(const Scene& scene, const Settings& settings, std::uint64_t seed,
+                                  const EmitterInverse& inverses, RenderStats& stats, const RunContext& context) {
     const StageClock clock(stats, "brightness");
     const BuilderContext builders{&scene, static_cast<int>(settings.max_depth), mis_heuristic(settings.mis)};
-    const PrimaryStartOptions options{.samples = settings.brightness_samples,
-                                      .chains = settings.chains,
-                                      .seed = static_cast<std::uint64_t>(settings.seed)};
+    const PrimaryStartOptions options{.samples = settings.brightness_samples, .chains = settings.chains, .seed = seed};
     if (settings.method == "mmlt") return start_by_length(builders, nullptr, options, context);
     if (settings.method == "rjmlt") return start_by_length(builders, &inverses, options, context);
     auto builder = settings.builder == "path"        ? make_path_builder(builders)
@@ -69,8 +70,6 @@ void report(const PrimaryChains& chains, RenderStats& stats) {
     const PrimaryCounts counts = chains.counts();
     stats.proposals = {line("small step", counts.small), line("large step", counts.large),
                        line("second try", counts.second)};
-    stats.brightness = chains.brightness();
-    stats.brightness_error = chains.brightness_error();
     const auto share = [&](std::uint64_t n) {
         return static_cast<double>(n) / static_cast<double>(counts.proposals());
     };
@@ -89,21 +88,57 @@ void report(const PrimaryChains& chains, RenderStats& stats) {
         stats.values["technique changes without inverse"] = of_changes(c.no_inverse);
         stats.values["technique changes that drifted"] = of_changes(c.drifted);
     }
-    if (chains.broken() > 0)
-        stats.warnings.push_back(fmt::format("{} candidates had a value that is not a number", chains.broken()));
-    if (stats.brightness_error > 0.05 * stats.brightness)
-        stats.warnings.push_back(
-            fmt::format("the brightness of the picture is known to {:.0f} % only (standard error): "
-                        "raise brightness_samples",
-                        100 * stats.brightness_error / stats.brightness));
 }
 
-/// Runs the chains and adds what they draw to `picture`.
-void draw(PrimaryChains& chains, const Scene& scene, const Settings& settings, Picture& picture, RenderStats& stats,
+/// Collects what is to be told of one pass after the other.
+class PassReports {
+  public:
+    void add(const PrimaryChains& chains, RenderStats& stats) {
+        RenderStats pass;
+        report(chains, pass);
+        add_ledger(pass.proposals, stats.proposals);
+        stats.proposals = pass.proposals;
+        for (const auto& [name, value] : pass.values) stats.values[name] = value;
+        if (const auto agreement = chains.agreement()) {
+            stats.values["chains, agreement (split R-hat)"] = agreement->r_hat;
+            stats.values["chains, error of block brightness"] = agreement->error;
+        }
+        if (passes_ == 0) warn_of_agreement(stats, chains.agreement(), chains.steps());
+        broken_ += chains.broken();
+        brightness_ += chains.brightness();
+        variance_ += chains.brightness_error() * chains.brightness_error();
+        ++passes_;
+    }
+
+    void finish(RenderStats& stats) const {
+        if (passes_ == 0) {
+            stats.warnings.emplace_back("no sampled path carried light: the picture is black. If there is any, try "
+                                        "more brightness_samples");
+            return;
+        }
+        stats.brightness = brightness_ / passes_;
+        stats.brightness_error = std::sqrt(variance_) / passes_;
+        if (broken_ > 0)
+            stats.warnings.push_back(fmt::format("{} candidates had a value that is not a number", broken_));
+        if (stats.brightness_error > 0.05 * stats.brightness)
+            stats.warnings.push_back(
+                fmt::format("the brightness of the picture is known to {:.0f} % only (standard error): "
+                            "raise brightness_samples",
+                            100 * stats.brightness_error / stats.brightness));
+    }
+
+  private:
+    std::uint64_t broken_ = 0;
+    double brightness_ = 0, variance_ = 0; // sums over passes
+    double passes_ = 0;
+};
+
+/// Runs the chains of a pass and adds what they draw. Returns whether they got to their end.
+bool draw(PrimaryChains& chains, const Scene& scene, const Settings& settings, Work& work, RenderStats& stats,
           const RunContext& context) {
     const StageClock clock(stats, "chains");
     const ImageWindow& window = scene.camera().window();
-    SplatFilm film(picture.width, picture.height, PixelFilter(settings));
+    SplatFilm film(window.width, window.height, PixelFilter(settings));
     // Deposits are of the size of the brightness; the film's sums want numbers about 1.
     const double unit = std::exp2(std::round(std::log2(chains.brightness())));
     const auto deposit = [&](const Splat& s, double factor) {
@@ -121,29 +156,37 @@ void draw(PrimaryChains& chains, const Scene& scene, const Settings& settings, P
         drawn += steps;
     }
     context.end();
-    stats.complete = drawn == rest;
-    film.add_to(picture, unit * window.pixels() / static_cast<double>(drawn * chains.size()));
-    report(chains, stats);
+    if (drawn < rest && !work.is_first()) return false;
+    work.unit().drawn->add(film, unit * window.pixels() / static_cast<double>(drawn * chains.size()));
+    return drawn == rest;
 }
 
 } // namespace
 
-RenderResult render_primary(const Scene& scene, const Settings& settings, const RunContext& context) {
+RenderResult render_primary(const Scene& scene, const Settings& settings, const RunContext& context,
+                            const Share& share) {
     RenderResult result;
-    Picture& picture = result.picture;
-    picture.width = scene.camera().window().width;
-    picture.height = scene.camera().window().height;
-    for (const char* layer : {"beauty", "direct", "indirect", "caustic"})
-        picture.layers[layer] = Image(picture.width, picture.height, 3);
+    RenderStats& stats = result.stats;
     const EmitterInverse inverses(scene);
-    const std::vector<PrimaryStratum> strata = start(scene, settings, inverses, result.stats, context);
-    PrimaryChains chains(strata, static_cast<std::uint64_t>(settings.seed), settings.large_step_mis == "on");
-    if (chains.size() > 0)
-        draw(chains, scene, settings, picture, result.stats, context);
-    else
-        result.stats.warnings.emplace_back(
-            "no sampled path carried light: the picture is black. If there is any, try more "
-            "brightness_samples");
+    const ImageWindow& window = scene.camera().window();
+    Work work(settings, window, Exposure::Parts::drawn, share);
+    PassReports reports;
+    while (const auto pass = work.take(context)) {
+        const std::uint64_t seed = seed_of_pass(settings, *pass);
+        const std::vector<PrimaryStratum> strata = start(scene, settings, seed, inverses, stats, context);
+        PrimaryChains chains(strata, seed, settings.large_step_mis == "on");
+        bool whole = !context.stopped();
+        if (!whole && !work.is_first()) break;
+        if (chains.size() > 0) {
+            whole = draw(chains, scene, settings, work, stats, context) && whole;
+            if (whole || work.is_first()) reports.add(chains, stats);
+        } else {
+            work.unit().drawn->add(SplatFilm(window.width, window.height), 0);
+        }
+        if (whole) work.end_unit(stats);
+    }
+    reports.finish(stats);
+    result.picture = work.finish(stats);
     return result;
 }
 

@@ -8,20 +8,21 @@
 
 namespace keyhole {
 
-RenderResult render(Scene& scene, const Settings& settings, const RunContext& context, const UserPathFile& user_paths) {
+RenderResult render(Scene& scene, const Settings& settings, const RunContext& context, const UserPathFile& user_paths,
+                    const Share& share) {
     ImageWindow window = scene.camera().window();
     // Room for the filter, and for photon lookups at the border of the picture.
     window.margin = std::max({2.0f, 0.03f * static_cast<float>(std::max(window.width, window.height)),
                               static_cast<float>(PixelFilter(settings).radius())});
     scene.set_window(window);
     const UserPaths paths = bind_user_paths(scene, user_paths);
-    if (settings.method == "path") return render_path(scene, settings, context);
-    if (settings.method == "mlt") return render_mlt(scene, settings, paths, context);
-    if (settings.method == "bdpt") return render_bdpt(scene, settings, context);
+    if (settings.method == "path") return render_path(scene, settings, context, share);
+    if (settings.method == "mlt") return render_mlt(scene, settings, paths, context, share);
+    if (settings.method == "bdpt") return render_bdpt(scene, settings, context, share);
     if (settings.method == "pssmlt" || settings.method == "mmlt" || settings.method == "rjmlt")
-        return render_primary(scene, settings, context);
+        return render_primary(scene, settings, context, share);
     for (const char* method : {"auto", "mps", "ipm", "pm"})
-        if (settings.method == method) return render_photons(scene, settings, paths, context);
+        if (settings.method == method) return render_photons(scene, settings, paths, context, share);
     throw InputError("unknown method '" + settings.method + "'");
 }
 

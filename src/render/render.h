@@ -5,6 +5,7 @@
 #include "core/render_stats.h"
 #include "core/settings.h"
 #include "film/picture.h"
+#include "render/share.h"
 #include "scene/load/user_path_file.h"
 #include "scene/scene.h"
 
@@ -18,8 +19,9 @@ struct RenderResult {
 /// Renders by the method that the settings name. The same scene, settings and seed give the same picture, bit for bit,
 /// whatever the number of threads. After a stop the result is what there is so far, with stats.complete false. Sets the
 /// scene's window margin. Methods that run chains are guided by `user_paths`.
-/// @throws InputError for user paths that can't work in the scene.
+/// Renders only the part that `share` asks for.
+/// @throws InputError for user paths that can't work in the scene, and a `share.done` of another render.
 RenderResult render(Scene& scene, const Settings& settings, const RunContext& context,
-                    const UserPathFile& user_paths = {});
+                    const UserPathFile& user_paths = {}, const Share& share = {});
 
 } // namespace keyhole

@@ -1,67 +1,19 @@
 // The program from outside: exit codes, messages, files.
 #include "film/exr.h"
-#include "support/scratch_directory.h"
+#include "support/program.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <array>
 #include <csignal>
 #include <cstdio>
 #include <fcntl.h>
-#include <filesystem>
-#include <fstream>
-#include <spawn.h>
-#include <sstream>
 #include <sys/wait.h>
-#include <unistd.h>
 
 using namespace keyhole;
 using testing::HasSubstr;
 using testing::StartsWith;
-
-namespace {
-
-constexpr const char* kScene =
-    "film: {resolution: [24, 16]}\n"
-    "camera: {from: [0, 0, 3], to: [0, 0, 0]}\n"
-    "materials: {white: {type: diffuse}}\n"
-    "shapes:\n"
-    "  - {type: sphere, material: white}\n"
-    "  - {type: rectangle, corner: [-1, 3, -1], u: [2, 0, 0], v: [0, 0, 2], emission: {power: 60}}\n"
-    "render: {method: path, spp: 2}\n";
-
-class Program : public testing::Test {
-  protected:
-    Program() { scratch.write("scene.yaml", kScene); }
-
-    /// Starts the program in the scratch directory.
-    pid_t start(const std::string& arguments) {
-        const std::string line =
-            "cd '" + scratch.path("") + "' && exec " KEYHOLE_EXECUTABLE " " + arguments + " >out 2>err";
-        std::array<const char*, 4> argv{"sh", "-c", line.c_str(), nullptr};
-        pid_t pid = 0;
-        EXPECT_EQ(posix_spawn(&pid, "/bin/sh", nullptr, nullptr, const_cast<char**>(argv.data()), environ), 0);
-        return pid;
-    }
-    int wait(pid_t pid) {
-        int status = 0;
-        waitpid(pid, &status, 0);
-        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    }
-    int run(const std::string& arguments) { return wait(start(arguments)); }
-    std::string read(const std::string& name) const {
-        std::ostringstream text;
-        text << std::ifstream(scratch.path(name)).rdbuf();
-        return text.str();
-    }
-    bool exists(const std::string& name) const { return std::filesystem::exists(scratch.path(name)); }
-
-    ScratchDirectory scratch;
-};
-
-} // namespace
 
 TEST_F(Program, RenderWritesPicturesWithTheirHistory) {
     ASSERT_EQ(run("render scene.yaml -D seed=5 --resolution 20x10 --stats s.json"), 0) << read("err");

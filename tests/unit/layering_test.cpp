@@ -17,8 +17,8 @@ namespace {
 using Strings = std::vector<std::string>;
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 8> kRooms{"core",   "scene", "sampling", "photonmap",
-                                                 "gather", "film",  "render",   "cli"};
+constexpr std::array<std::string_view, 9> kRooms{"core", "scene",  "sampling", "photonmap", "gather",
+                                                 "film", "render", "cli",      "mpi"};
 constexpr std::size_t kMostLines = 400;
 
 /// A source file; `path` is relative to src.

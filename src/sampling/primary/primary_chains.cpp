@@ -102,13 +102,18 @@ void PrimaryChains::advance(const PrimaryKernel& kernel, std::int64_t steps, con
                             const Deposit& deposit) {
     std::vector<Weights> by_stratum;
     for (std::size_t k = 0; k < strata_->size(); ++k) by_stratum.push_back(weights(k, kernel));
+    const double brightness = this->brightness();
     parallel_for(size(), [&](std::int64_t c) {
         Chain& chain = *chains_[static_cast<std::size_t>(c)];
         chain.counts = {};
         chain.changes = {};
         const auto& change = (*strata_)[chain.stratum].change;
         chain.large = {};
-        Depositing space(chain, by_stratum[chain.stratum], deposit);
+        const Deposit watched = [&](const Splat& splat, double factor) {
+            monitor_.add(c, splat.image, luminance(splat.value) * factor / brightness);
+            deposit(splat, factor);
+        };
+        Depositing space(chain, by_stratum[chain.stratum], deposit ? watched : deposit);
         int left_out = 0;
         for (std::int64_t done = 0; done < steps;) {
             if (change && chain.rng.next() < kChange) {
@@ -129,6 +134,7 @@ void PrimaryChains::advance(const PrimaryKernel& kernel, std::int64_t steps, con
         large_[chain->stratum].merge(chain->large);
         changes_ += chain->changes;
     }
+    if (deposit) monitor_.end_round(steps);
     steps_ += steps;
 }
 

@@ -1,6 +1,7 @@
 // Many chains in primary sample space, side by side.
 #pragma once
 
+#include "sampling/agreement.h"
 #include "sampling/primary/primary_kernel.h"
 #include "sampling/primary/primary_start.h"
 #include "sampling/primary/primary_state.h"
@@ -36,6 +37,8 @@ class PrimaryChains {
     /// Mean luminance over the window by independent samples and large steps, and its standard error.
     double brightness() const;
     double brightness_error() const;
+    /// How far groups of chains agree on the brightness of parts of the image; see AgreementMonitor.
+    std::optional<Agreement> agreement() const { return monitor_.agreement(); }
     /// Candidates with a value that was not a number.
     std::uint64_t broken() const;
 
@@ -71,6 +74,7 @@ class PrimaryChains {
     std::vector<RunningStats> large_;   ///< targets of large steps, by stratum
     std::vector<PrimaryCounts> counts_; ///< by stratum
     ChangeCounts changes_;
+    AgreementMonitor monitor_;
     std::int64_t steps_ = 0;
 };
 

@@ -1,0 +1,115 @@
+#include "cli/keeping.h"
+
+#include "core/error.h"
+#include "core/unit_set.h"
+#include "film/exr.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <filesystem>
+
+namespace keyhole {
+namespace {
+
+/// Between checkpoints of a render that goes on, where nobody says.
+constexpr double kSeconds = 600;
+
+constexpr int kMostRanks = 16'384;
+
+namespace fs = std::filesystem;
+
+std::pair<std::int64_t, std::int64_t> parse_range(const std::string& text) {
+    std::int64_t begin = 0, end = 0;
+    const char *at = text.data(), *last = at + text.size();
+    const auto colon = std::from_chars(at, last, begin);
+    const bool half = colon.ec == std::errc() && colon.ptr != last && *colon.ptr == ':';
+    const auto rest = half ? std::from_chars(colon.ptr + 1, last, end) : colon;
+    if (!half || rest.ec != std::errc() || rest.ptr != last || begin < 0 || end <= begin)
+        throw InputError(fmt::format("--pass-range: found '{}', expected A:B, the passes from A (counted from 0) to "
+                                     "before B",
+                                     text));
+    return {begin, end};
+}
+
+} // namespace
+
+void Keeping::add_options(CLI::App& command) {
+    command.add_option("--pass-range", pass_range,
+                       "A:B, render only passes A to B-1, counted from 0; `keyhole merge` joins the shares");
+    command
+        .add_option("--checkpoint", checkpoint,
+                    "every so many SECONDS keep what is done, beside the picture as NAME.checkpoint.exr")
+        ->check(CLI::Range(0.0, 1e9));
+    command.add_flag("--resume", resume, "go on from that file");
+}
+
+std::string Keeping::file(const std::string& exr, int rank) const {
+    if (!checkpoint && !resume) return {};
+    const std::string ending = rank == 0 ? ".checkpoint.exr" : fmt::format(".checkpoint.{}.exr", rank);
+    return fs::path(exr).replace_extension(ending).string();
+}
+
+/// Several processes leave a file each. They become one, whatever the number of processes now.
+void Keeping::read(const std::string& exr, const NamedPicture& render) {
+    std::vector<std::string> files;
+    for (int rank = 0; rank < kMostRanks; ++rank)
+        if (const std::string path = file(exr, rank); fs::exists(path)) files.push_back(path);
+    if (files.empty()) return;
+    for (const std::string& path : files) {
+        NamedPicture next{path, read_exr(path)};
+        check_same_render(render, next, SameRender::seed);
+        if (next.picture.metadata["units"].empty()) continue; // written before the first unit was whole
+        if (done_.name.empty()) {
+            done_ = std::move(next);
+        } else if (!units_of(done_).contains(units_of(next))) {
+            Picture joined = join_shares(std::array{std::move(done_), std::move(next)});
+            done_ = {files.front(), std::move(joined)};
+        }
+    }
+    if (files.size() == 1 || done_.name.empty()) return;
+    // Once it is written what is in the others is in it, so that a death at any point here loses nothing.
+    write_exr(files.front(), done_.picture);
+    for (const std::string& path : files)
+        if (path != file(exr)) fs::remove(path);
+}
+
+Share Keeping::share(const std::string& exr, const Picture& render, const Settings& settings, Team* team) {
+    Share share;
+    if (!pass_range.empty()) {
+        const auto [begin, end] = parse_range(pass_range);
+        share.first_pass = begin;
+        share.end_pass = end;
+    }
+    share.keep_sums = !pass_range.empty() || team != nullptr;
+    if (share.keep_sums && (settings.passes < share.end_pass.value_or(1) || settings.target_error > 0))
+        throw InputError(fmt::format("found passes={} and target_error={}, expected a number of passes that is known "
+                                     "beforehand and not below what is to be shared out",
+                                     settings.passes, settings.target_error));
+    if (team != nullptr) share.take_number = [team] { return team->take_number(); };
+    if (file(exr).empty()) return share;
+    const int rank = team != nullptr ? team->rank() : 0;
+    if (resume) {
+        if (rank == 0) read(exr, {"the render", render});
+        if (team != nullptr) team->wait_for_first();
+        if (rank > 0 && fs::exists(file(exr))) {
+            done_ = {file(exr), read_exr(file(exr))};
+            done_.picture.sums.clear(); // the first process has them
+        }
+        if (!done_.name.empty()) share.done = &done_.picture;
+    }
+    share.save_every = checkpoint.value_or(kSeconds);
+    share.save = [path = file(exr, rank), identity = render.metadata](Picture picture) {
+        picture.metadata.insert(identity.begin(), identity.end());
+        try {
+            write_exr(path, picture);
+        } catch (const InputError& e) {
+            // A full disk is no reason to lose the render as well: there may be room again.
+            fmt::print(stderr, "keyhole: warning: no checkpoint: {}\n", e.what());
+        }
+    };
+    return share;
+}
+
+} // namespace keyhole

@@ -1,0 +1,77 @@
+#include "cli/program.h"
+
+#include "cli/command.h"
+#include "core/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+#include <string_view>
+
+namespace keyhole {
+namespace {
+
+/// An argument as a shell would want it.
+std::string quoted(std::string_view argument) {
+    constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%";
+    if (!argument.empty() && argument.find_first_not_of(kPlain) == std::string_view::npos) return std::string(argument);
+    std::string s = "'";
+    for (const char c : argument) s += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return s + "'";
+}
+
+std::string joined(int argc, char** argv) {
+    std::string line = "keyhole";
+    for (int i = 1; i < argc; ++i) line += " " + quoted(argv[i]);
+    return line;
+}
+
+/// One line on stderr.
+int fail(int code, std::string message) {
+    std::ranges::replace(message, '\n', ' ');
+    fmt::print(stderr, "keyhole: {}\n", message);
+    return code;
+}
+
+int run(int argc, char** argv, Team* team) {
+    CLI::App app("Metropolis photon sampling: a physically based renderer.", "keyhole");
+    app.set_version_flag("--version", "keyhole " KEYHOLE_VERSION);
+    app.require_subcommand(1);
+    Action action;
+    add_render_command(app, action, joined(argc, argv), team);
+    add_merge_command(app, action, joined(argc, argv));
+    add_diff_command(app, action);
+    add_paths_command(app, action);
+    add_experiment_command(app, action);
+    add_info_command(app, action);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& e) {
+        if (e.get_exit_code() == 0) return app.exit(e); // help and version
+        return fail(kBadInput, std::string(e.what()) + " (see --help)");
+    }
+    if (team != nullptr && team->rank() > 0 && !app.got_subcommand("render")) return kSuccess;
+    const int code = action();
+    if (std::fflush(stdout) != 0) return fail(kInternalError, "cannot write to the standard output");
+    return code;
+}
+
+} // namespace
+
+int run_program(int argc, char** argv, Team* team) {
+    try {
+        return run(argc, argv, team);
+    } catch (const InputError& e) {
+        return fail(kBadInput, e.what());
+    } catch (const std::bad_alloc&) {
+        return fail(kInternalError, "out of memory");
+    } catch (const std::exception& e) {
+        return fail(kInternalError, fmt::format("internal error: {}", e.what()));
+    }
+}
+
+} // namespace keyhole

@@ -1,0 +1,13 @@
+// The program: parses the command line, runs a subcommand, turns exceptions into exit codes.
+#pragma once
+
+#include "cli/command.h"
+#include "cli/team.h"
+
+namespace keyhole {
+
+/// @param team the processes that share `render`; null: this one is alone.
+/// @returns an ExitCode.
+int run_program(int argc, char** argv, Team* team);
+
+} // namespace keyhole

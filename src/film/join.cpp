@@ -1,0 +1,179 @@
+#include "film/join.h"
+
+#include "core/error.h"
+#include "core/unit_set.h"
+#include "film/exposure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <set>
+#include <sstream>
+
+namespace keyhole {
+namespace {
+
+[[noreturn]] void refuse(const NamedPicture& p, const std::string& why) {
+    throw InputError(fmt::format("{}: {}", p.name, why));
+}
+
+const std::string& attribute(const NamedPicture& p, const std::string& key) {
+    const auto found = p.picture.metadata.find(key);
+    if (found == p.picture.metadata.end())
+        refuse(p, fmt::format("found no attribute '{}', expected a picture that this program wrote", key));
+    return found->second;
+}
+
+bool is_share(const NamedPicture& p) { return !p.picture.sums.empty(); }
+
+double samples(const NamedPicture& p) {
+    const std::string& text = attribute(p, "samples");
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || !(value > 0) || !std::isfinite(value))
+        refuse(p, fmt::format("found {} samples, expected some", text));
+    return value;
+}
+
+std::map<std::string, std::string> settings_of(const NamedPicture& p) {
+    std::map<std::string, std::string> settings;
+    std::istringstream words(attribute(p, "settings"));
+    for (std::string word; words >> word;) settings[word.substr(0, word.find('='))] = word;
+    return settings;
+}
+
+Exposure exposure_of(const NamedPicture& p) {
+    const auto& sums = p.picture.sums;
+    const bool film = sums.contains("samples"), drawn = sums.contains("drawn");
+    return {p.picture.width, p.picture.height, PixelFilter(),
+            film && drawn ? Exposure::Parts::both
+            : film        ? Exposure::Parts::film
+                          : Exposure::Parts::drawn};
+}
+
+void set_sums(Exposure& exposure, const NamedPicture& p) {
+    try {
+        exposure.set_sums(p.picture.sums);
+    } catch (const InputError& e) {
+        refuse(p, e.what());
+    }
+}
+
+/// Lines of both texts, each once.
+std::string joined_lines(const std::string& a, const std::string& b) {
+    std::string all = a;
+    std::istringstream lines(b);
+    for (std::string line; std::getline(lines, line);)
+        if (("\n" + all).find("\n" + line + "\n") == std::string::npos) all += line + "\n";
+    return all;
+}
+
+/// Pictures of different seeds.
+Picture average(const std::vector<NamedPicture>& pictures) {
+    Picture result = pictures.front().picture;
+    result.sums.clear();
+    result.metadata.erase("units");
+    double total = 0;
+    std::string seeds, warnings;
+    for (const NamedPicture& p : pictures) {
+        total += samples(p);
+        seeds += (seeds.empty() ? "" : ",") + attribute(p, "seed");
+        if (const auto w = p.picture.metadata.find("warnings"); w != p.picture.metadata.end())
+            warnings = joined_lines(warnings, w->second);
+    }
+    for (auto& [name, image] : result.layers) {
+        std::vector<double> sums(image.data.size());
+        for (const NamedPicture& p : pictures) {
+            const auto layer = p.picture.layers.find(name);
+            if (layer == p.picture.layers.end() || layer->second.data.size() != sums.size())
+                refuse(p, fmt::format("found no layer '{}'", name));
+            const double weight = samples(p) / total;
+            for (std::size_t i = 0; i < sums.size(); ++i)
+                sums[i] += weight * static_cast<double>(layer->second.data[i]);
+        }
+        std::ranges::transform(sums, image.data.begin(), [](double x) { return static_cast<float>(x); });
+    }
+    result.metadata["seed"] = seeds;
+    result.metadata["samples"] = fmt::format("{}", total);
+    result.metadata["warnings"] = warnings;
+    return result;
+}
+
+} // namespace
+
+UnitSet units_of(const NamedPicture& p) {
+    try {
+        return UnitSet::parse(attribute(p, "units"));
+    } catch (const InputError& e) {
+        refuse(p, e.what());
+    }
+}
+
+void check_same_render(const NamedPicture& a, const NamedPicture& b, SameRender same) {
+    for (const char* key : {"scene hash", "program"})
+        if (attribute(a, key) != attribute(b, key))
+            refuse(b, fmt::format("found another {} than that of {}: {} and {}", key, a.name, attribute(b, key),
+                                  attribute(a, key)));
+    if (a.picture.width != b.picture.width || a.picture.height != b.picture.height)
+        refuse(b, fmt::format("found {} x {} pixels, expected {} x {} as in {}", b.picture.width, b.picture.height,
+                              a.picture.width, a.picture.height, a.name));
+    const std::set<std::string_view> free = same == SameRender::seed
+                                                ? std::set<std::string_view>{}
+                                                : std::set<std::string_view>{"seed", "passes", "spp", "mutations"};
+    const auto of_a = settings_of(a), of_b = settings_of(b);
+    for (const auto& [key, word] : of_a) {
+        if (free.contains(key)) continue;
+        const auto other = of_b.find(key);
+        if (other == of_b.end() || other->second != word)
+            refuse(b, fmt::format("found {}, expected {} as in {}", other == of_b.end() ? "no " + key : other->second,
+                                  word, a.name));
+    }
+}
+
+Picture join_shares(std::span<const NamedPicture> shares) {
+    const NamedPicture& first = shares.front();
+    Exposure all = exposure_of(first), one = exposure_of(first);
+    UnitSet units;
+    double total = 0;
+    std::string warnings;
+    for (const NamedPicture& share : shares) {
+        if (!is_share(share))
+            refuse(share, fmt::format("found the seed {} again, expected another, or shares made with --pass-range",
+                                      attribute(share, "seed")));
+        check_same_render(first, share, SameRender::seed);
+        if (!units.add(units_of(share)))
+            refuse(share, fmt::format("found work that is in another of the pictures too: {} of {}",
+                                      attribute(share, "units"), units.to_string()));
+        set_sums(one, share);
+        all.merge(one);
+        total += samples(share);
+        warnings = joined_lines(warnings, attribute(share, "warnings"));
+    }
+    Picture result = all.to_picture();
+    result.sums = all.sums();
+    result.metadata = first.picture.metadata;
+    result.metadata["samples"] = fmt::format("{}", total);
+    result.metadata["units"] = units.to_string();
+    result.metadata["warnings"] = warnings;
+    const bool whole = units.to_string() == fmt::format("0:{}", attribute(first, "units of all"));
+    result.metadata["complete"] = whole ? "yes" : "no";
+    return result;
+}
+
+Picture join_pictures(std::span<const NamedPicture> pictures) {
+    std::map<std::string, std::vector<NamedPicture>> by_seed;
+    for (const NamedPicture& p : pictures) by_seed[attribute(p, "seed")].push_back(p);
+    std::vector<NamedPicture> joined;
+    for (const auto& [seed, group] : by_seed) {
+        NamedPicture& one = joined.emplace_back(group.front());
+        if (group.size() > 1 || is_share(one)) one.picture = join_shares(group);
+        check_same_render(joined.front(), one, SameRender::method);
+    }
+    Picture result = joined.size() > 1 ? average(joined) : std::move(joined.front().picture);
+    // A share that has all units is the render itself.
+    if (result.metadata["complete"] == "yes") result.sums.clear();
+    return result;
+}
+
+} // namespace keyhole

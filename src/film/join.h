@@ -1,0 +1,38 @@
+// Several pictures of one scene made into one.
+#pragma once
+
+#include "core/unit_set.h"
+#include "film/picture.h"
+
+#include <span>
+#include <string>
+
+namespace keyhole {
+
+/// A picture as `keyhole render` wrote it, with the name that messages call it by.
+struct NamedPicture {
+    std::string name;
+    Picture picture;
+};
+
+/// How alike two renders have to be: in all settings; in all but the seed and how many samples were taken.
+enum class SameRender { seed, method };
+
+/// Checks by their metadata that two pictures show the same scene, by the same program and settings.
+/// @throws InputError that says what differs.
+void check_same_render(const NamedPicture& a, const NamedPicture& b, SameRender same);
+
+/// The units of work in a share. @throws InputError
+UnitSet units_of(const NamedPicture& share);
+
+/// The sum of shares of one render, a share itself. There is at least one.
+/// @throws InputError for shares that don't belong together or overlap.
+Picture join_shares(std::span<const NamedPicture> shares);
+
+/// Joins shares of one render, those with the same seed, to what one run would have made, bit for bit: their sums add
+/// up (see Exposure). As long as some of it is missing the result is itself a share. Pictures of different seeds are
+/// averaged with weights as their samples.
+/// @throws InputError for pictures that don't belong together, shares that overlap, and a seed that comes twice.
+Picture join_pictures(std::span<const NamedPicture> pictures);
+
+} // namespace keyhole

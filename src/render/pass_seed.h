@@ -1,0 +1,17 @@
+// The seeds of passes.
+#pragma once
+
+#include "core/rng.h"
+#include "core/settings.h"
+
+namespace keyhole {
+
+/// Passes have seeds of their own, by their number; the first has the render's.
+inline std::uint64_t seed_of_pass(const Settings& settings, std::int64_t pass) {
+    const auto seed = static_cast<std::uint64_t>(settings.seed);
+    if (pass == 0) return seed;
+    Rng rng(seed, StreamPurpose::seed_choice, static_cast<std::uint64_t>(pass));
+    return static_cast<std::uint64_t>(rng.next() * 0x1p32) << 20 ^ static_cast<std::uint64_t>(rng.next() * 0x1p32);
+}
+
+} // namespace keyhole

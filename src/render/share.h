@@ -1,0 +1,36 @@
+// A share of a render, and what becomes of it.
+#pragma once
+
+#include "film/picture.h"
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+
+namespace keyhole {
+
+/// A render is a row of units of work: passes, or, of methods that sample pixels only, rounds of one sample for each
+/// pixel (settings.spp of them to a pass). The random streams of a unit follow from its number alone, and sums of units
+/// don't depend on how they are grouped (Exposure), so that any process may do any of them.
+struct Share {
+    std::int64_t first_pass = 0;
+    std::optional<std::int64_t> end_pass; ///< the pass after the last one; none: settings.passes
+
+    /// Where to go on; null: from the start. A picture that was saved by a render of the same scene and settings.
+    /// Without its sums it only says which units others have done.
+    const Picture* done = nullptr;
+
+    /// The picture is to have its sums, and metadata "units" that says which they are the sums of.
+    bool keep_sums = false;
+    /// Called between units with such a picture of all that is done, once `save_every` seconds have gone by since the
+    /// last time, and at the end. May be empty.
+    std::function<void(const Picture&)> save;
+    double save_every = std::numeric_limits<double>::infinity();
+
+    /// Tells different processes which units to do: the n-th call made by any of them returns n, from 0. Empty: there
+    /// is only this process.
+    std::function<std::int64_t()> take_number;
+};
+
+} // namespace keyhole

@@ -1,0 +1,64 @@
+// The loop over units of work that all methods share.
+#pragma once
+
+#include "core/progress.h"
+#include "core/render_stats.h"
+#include "core/settings.h"
+#include "core/unit_set.h"
+#include "film/exposure.h"
+#include "film/pass_error.h"
+#include "render/share.h"
+#include "scene/camera.h"
+
+#include <chrono>
+#include <optional>
+
+namespace keyhole {
+
+/// Hands out units of work, adds up what they gather, and saves it now and then.
+///
+///     while (const auto unit = work.take(context)) { ...; work.unit().film->add(...); work.end_unit(stats); }
+///     result.picture = work.finish(stats);
+class Work {
+  public:
+    /// @param units_per_pass units that settings.passes counts as one.
+    /// @throws InputError for a `share.done` that isn't of this render.
+    Work(const Settings& settings, const ImageWindow& window, Exposure::Parts parts, const Share& share,
+         std::int64_t units_per_pass = 1);
+
+    /// The next unit to do; none: all are done, the error is small enough, or it is time to stop and there is something
+    /// to show.
+    std::optional<std::int64_t> take(const RunContext& context);
+    /// Where the unit under way goes.
+    Exposure& unit() { return pending_ ? *pending_ : total_; }
+    /// The unit is whole. What of one is in unit() when work ends counts for the picture, but isn't saved.
+    void end_unit(const RenderStats& stats);
+    /// Units of the share that are left, for a display of progress; those of a pass where there is no end.
+    std::int64_t left() const;
+    /// Whether no unit is whole yet: one that is cut short is better than nothing then.
+    bool is_first() const { return done_.empty(); }
+
+    /// The picture. Puts "passes", "relative error", "empty pixels", dropped samples and whether all of the share was
+    /// done into `stats`, and the warnings of the part that was done before.
+    Picture finish(RenderStats& stats);
+
+  private:
+    void load(const Picture& done);
+    Picture snapshot(const RenderStats& stats) const;
+    bool enough() const;
+    double samples() const; // as RenderStats::samples
+
+    Settings settings_;
+    Share share_;
+    std::int64_t per_pass_, begin_, end_; // in units
+    Exposure total_;
+    std::optional<Exposure> pending_; // where sums must not have a part of a unit in them
+    UnitSet before_, done_;           // what was done elsewhere; all that is
+    std::int64_t taken_ = 0, under_way_ = 0;
+    PassError error_;
+    bool knows_error_ = true; // not once parts were joined
+    std::vector<std::string> old_warnings_;
+    std::chrono::steady_clock::time_point saved_ = std::chrono::steady_clock::now();
+};
+
+} // namespace keyhole

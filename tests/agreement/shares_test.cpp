@@ -1,0 +1,81 @@
+// A render that several did shares of, or that was broken off, is the one that one run makes, bit for bit.
+#include "core/error.h"
+#include "core/parallel.h"
+#include "film/join.h"
+#include "render/render.h"
+#include "support/test_scenes.h"
+
+#include <gtest/gtest.h>
+
+namespace keyhole {
+namespace {
+
+class Shares : public testing::TestWithParam<const char*> {
+  protected:
+    static Settings settings() {
+        Settings s;
+        s.method = GetParam();
+        s.passes = 4;
+        s.spp = 2;
+        s.brightness_samples = 10'000;
+        s.importons = 5'000;
+        s.chains = 40;
+        s.mutations = 8'000;
+        s.light_paths = 8'000;
+        s.photons = 5'000;
+        return s;
+    }
+    static RenderResult make(const Share& share, int threads = 2) {
+        RenderResult result;
+        with_threads(threads, [&] {
+            const auto scene = test::mirror_glass_box();
+            result = render(*scene, settings(), {}, {}, share);
+        });
+        for (const auto& [key, value] :
+             {std::pair("program", "p"), {"scene hash", "h"}, {"settings", "spp=2"}, {"seed", "1"}})
+            result.picture.metadata[key] = value;
+        return result;
+    }
+    static NamedPicture passes(std::int64_t begin, std::int64_t end, int threads) {
+        return {std::to_string(begin),
+                make({.first_pass = begin, .end_pass = end, .keep_sums = true}, threads).picture};
+    }
+    static void expect_same(const Picture& a, const Picture& b) {
+        EXPECT_EQ(a.layers.size(), b.layers.size());
+        for (const auto& [name, image] : a.layers) EXPECT_EQ(image.data, b.layers.at(name).data) << name;
+    }
+};
+
+TEST_P(Shares, JoinedAreTheWhole) {
+    const Picture whole = make({}).picture;
+    const std::vector<NamedPicture> shares{passes(3, 4, 1), passes(0, 1, 3), passes(1, 3, 4)};
+    expect_same(join_pictures(shares), whole);
+    // In two steps, the first of which leaves a gap.
+    const NamedPicture ends{"ends", join_pictures(std::span(shares).first(2))};
+    EXPECT_FALSE(ends.picture.sums.empty());
+    const Picture joined = join_pictures(std::vector{shares[2], ends});
+    expect_same(joined, whole);
+    EXPECT_TRUE(joined.sums.empty());
+    EXPECT_EQ(joined.metadata.at("complete"), "yes");
+}
+
+TEST_P(Shares, OfABrokenOffRenderAreGoneOnFrom) {
+    std::vector<Picture> saved;
+    const RenderResult whole = make({.save = [&](const Picture& p) { saved.push_back(p); }, .save_every = 0});
+    expect_same(whole.picture, make({}).picture);
+    ASSERT_GE(saved.size(), 5u);
+    for (const Picture& done : {saved[0], saved[saved.size() / 2], saved.back()}) {
+        const RenderResult rest = make({.done = &done}, 3);
+        expect_same(rest.picture, whole.picture);
+        EXPECT_TRUE(rest.stats.complete);
+        EXPECT_EQ(rest.stats.values.at("passes"), 4);
+        EXPECT_EQ(rest.stats.values.at("relative error"), whole.stats.values.at("relative error"));
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, Shares,
+                         testing::Values("mps", "ipm", "pm", "mlt", "path", "bdpt", "pssmlt", "mmlt", "rjmlt"),
+                         [](const auto& info) { return std::string(info.param); });
+
+} // namespace
+} // namespace keyhole

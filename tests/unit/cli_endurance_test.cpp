@@ -1,0 +1,144 @@
+// Long renders, from outside: killed and gone on with, done in shares, and not to be trusted.
+#include "film/exr.h"
+#include "support/program.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <cstdlib>
+
+using namespace keyhole;
+using testing::HasSubstr;
+
+namespace {
+
+class LongRender : public Program {
+  protected:
+    void expect_same(const std::string& a, const std::string& b) {
+        const Picture one = read_exr(scratch.path(a)), other = read_exr(scratch.path(b));
+        for (const auto& [name, image] : one.layers) EXPECT_EQ(image.data, other.layers.at(name).data) << name;
+    }
+
+    /// Kills the program again and again, mostly soon after it has written a checkpoint, and lets it go on.
+    void kill_and_resume(const std::string& render, int kills) {
+        const std::string file = scratch.path("a.checkpoint.exr");
+        for (int i = 0; i < kills; ++i) {
+            std::error_code ignored;
+            const auto before = std::filesystem::last_write_time(file, ignored);
+            const pid_t pid = start(render + " -o a.exr --checkpoint 0 --resume -t " + std::to_string(i % 4 + 1));
+            const bool at_once = i % 5 == 4;
+            int status = 0;
+            while (!at_once && waitpid(pid, &status, WNOHANG) == 0 &&
+                   std::filesystem::last_write_time(file, ignored) == before)
+                usleep(1000);
+            ASSERT_EQ(status, 0) << read("err");
+            usleep(static_cast<useconds_t>(std::rand() % (at_once ? 30'000 : 4000)));
+            kill(pid, SIGKILL);
+            waitpid(pid, &status, 0);
+        }
+        EXPECT_FALSE(exists("a.exr")) << "ended before it was killed: the test needs a longer render";
+        EXPECT_EQ(run(render + " -o a.exr --checkpoint 0 --resume"), 0) << read("err");
+    }
+};
+
+} // namespace
+
+TEST_F(LongRender, KilledFiftyTimesEndsAsIfItHadNotBeen) {
+    const std::string render = "render scene.yaml --no-png --spp 40 --passes 300";
+    kill_and_resume(render, 50);
+    ASSERT_EQ(run(render + " -o b.exr"), 0);
+    expect_same("a.exr", "b.exr");
+}
+
+TEST_F(LongRender, OfPhotonsIsGoneOnFromToo) {
+    const std::string render = "render scene.yaml --no-png --method mps --passes 40 --mutations 5k -D chains=50 "
+                               "-D brightness_samples=2000 -D importons=2000 -D photon_memory=512KiB";
+    kill_and_resume(render, 10);
+    ASSERT_EQ(run(render + " -o b.exr"), 0);
+    expect_same("a.exr", "b.exr");
+}
+
+TEST_F(LongRender, GoesOnOnlyFromItsOwnCheckpoint) {
+    const std::string render = "render scene.yaml -q --no-png --passes 3 -o a.exr --checkpoint 0 --resume";
+    ASSERT_EQ(run("render scene.yaml --no-png --passes 3 -o a.exr --resume"), 0);
+    EXPECT_THAT(read("err"), HasSubstr("no checkpoint to go on from"));
+    const std::string good = read("a.checkpoint.exr");
+
+    EXPECT_EQ(run(render + " --spp 3"), 2);
+    EXPECT_THAT(read("err"), HasSubstr("found spp=2, expected spp=3"));
+    EXPECT_EQ(run(render + " --seed 3"), 2);
+    EXPECT_EQ(run(render + " --method mlt"), 2);
+    EXPECT_EQ(run(render + " --resolution 16x24"), 2);
+    EXPECT_THAT(read("err"), HasSubstr("found 24 x 16 pixels, expected 16 x 24"));
+    std::string other = kScene;
+    other.replace(other.find("power: 60"), 9, "power: 61");
+    scratch.write("other.yaml", other);
+    EXPECT_EQ(run("render other.yaml --no-png --passes 3 -o a.exr --resume"), 2);
+    EXPECT_THAT(read("err"), HasSubstr("found another scene hash"));
+
+    for (const std::size_t size :
+         {std::size_t{0}, std::size_t{10}, std::size_t{300}, good.size() / 2, good.size() - 1}) {
+        scratch.write("a.checkpoint.exr", good.substr(0, size));
+        EXPECT_EQ(run(render), 2) << size << " bytes";
+    }
+    int refused = 0;
+    for (int i = 0; i < 20; ++i) {
+        std::string bad = good;
+        bad[bad.size() * (2 * static_cast<std::size_t>(i) + 1) / 40] ^= 0x10;
+        scratch.write("a.checkpoint.exr", bad);
+        const int code = run(render);
+        EXPECT_TRUE(code == 0 || code == 2) << code << " " << read("err");
+        refused += code == 2 ? 1 : 0;
+    }
+    EXPECT_GE(refused, 12) << "sums are most of the file";
+    scratch.write("a.checkpoint.exr", good);
+    EXPECT_EQ(run(render), 0) << read("err");
+}
+
+TEST_F(LongRender, InterruptedLeavesACheckpoint) {
+    const pid_t pid = start("render scene.yaml --no-png -o a.exr --spp 4 --passes 100k --checkpoint 1000");
+    while (read("err").find("path tracing") == std::string::npos && waitpid(pid, nullptr, WNOHANG) == 0) usleep(20'000);
+    kill(pid, SIGTERM);
+    EXPECT_EQ(wait(pid), 130) << read("err");
+    EXPECT_TRUE(read_exr(scratch.path("a.checkpoint.exr")).metadata.contains("units"));
+}
+
+TEST_F(LongRender, MergesSharesAndSeeds) {
+    const std::string render = "render scene.yaml -q --no-png --passes 5 ";
+    ASSERT_EQ(run(render + "-o whole.exr"), 0);
+    ASSERT_EQ(run(render + "-o a.exr --pass-range 0:2"), 0) << read("err");
+    ASSERT_EQ(run(render + "-o b.exr --pass-range 2:5 -t 3"), 0);
+    ASSERT_EQ(run(render + "-o overlap.exr --pass-range 1:3"), 0);
+    ASSERT_EQ(run(render + "-o two.exr --seed 2 --passes 15"), 0);
+    ASSERT_EQ(run("merge b.exr a.exr -o c.exr"), 0) << read("err");
+    expect_same("c.exr", "whole.exr");
+    EXPECT_EQ(read_exr(scratch.path("c.exr")).metadata.at("complete"), "yes");
+
+    ASSERT_EQ(run("merge whole.exr two.exr -o mean.exr --no-png"), 0) << read("err");
+    const Picture one = read_exr(scratch.path("whole.exr")), two = read_exr(scratch.path("two.exr")),
+                  mean = read_exr(scratch.path("mean.exr"));
+    for (const auto& [name, image] : mean.layers)
+        for (std::size_t i = 0; i < image.data.size(); ++i)
+            EXPECT_FLOAT_EQ(image.data[i], 0.25f * one.layers.at(name).data[i] + 0.75f * two.layers.at(name).data[i]);
+    EXPECT_EQ(mean.metadata.at("seed"), "1,2");
+    EXPECT_EQ(mean.metadata.at("samples"), "40");
+
+    std::string other = kScene;
+    other.replace(other.find("0, 0, 3"), 7, "0, 0, 4");
+    scratch.write("other.yaml", other);
+    ASSERT_EQ(run("render other.yaml -q --no-png --passes 5 --seed 9 -o other.exr"), 0);
+    ASSERT_EQ(run(render + "-o depth.exr --seed 9 -D max_depth=3"), 0);
+    for (const auto& [inputs, message] : std::initializer_list<std::pair<const char*, const char*>>{
+             {"a.exr overlap.exr", "found work that is in another of the pictures too"},
+             {"whole.exr whole.exr", "found the seed 1 again"},
+             {"whole.exr other.exr", "found another scene hash"},
+             {"whole.exr depth.exr", "found max_depth=3, expected max_depth=24"},
+             {"whole.exr none.exr", "cannot read"}}) {
+        EXPECT_EQ(run(std::string("merge -o m.exr ") + inputs), 2) << inputs;
+        EXPECT_THAT(read("err"), HasSubstr(message)) << inputs;
+    }
+    for (const char* range : {"3", "3:", ":3", "3:3", "4:2", "-1:2", "0:6", "0:2x"})
+        EXPECT_EQ(run(render + "-o d.exr --pass-range=" + range), 2) << range;
+    EXPECT_FALSE(exists("m.exr") || exists("d.exr"));
+}

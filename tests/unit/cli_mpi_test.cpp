@@ -1,0 +1,60 @@
+// keyhole-mpi: any number of processes makes the picture that one makes.
+#include "film/exr.h"
+#include "support/program.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <cstdlib>
+
+using namespace keyhole;
+using testing::HasSubstr;
+
+namespace {
+
+class Ranks : public Program {
+  protected:
+    void SetUp() override {
+        if (std::string(KEYHOLE_MPI_EXECUTABLE).empty()) GTEST_SKIP() << "built without MPI";
+        if (std::system("mpirun --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "no mpirun here (openmpi-bin)";
+        setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
+        setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
+    }
+    static std::string mpirun(int ranks) {
+        return "mpirun --oversubscribe -np " + std::to_string(ranks) + " " KEYHOLE_MPI_EXECUTABLE " ";
+    }
+    int run_ranks(int ranks, const std::string& arguments) { return wait(start_line(mpirun(ranks) + arguments)); }
+    void expect_same(const std::string& a, const std::string& b) {
+        const Picture one = read_exr(scratch.path(a)), other = read_exr(scratch.path(b));
+        for (const auto& [name, image] : one.layers) EXPECT_EQ(image.data, other.layers.at(name).data) << name;
+    }
+};
+
+} // namespace
+
+TEST_F(Ranks, MakeThePictureThatOneMakes) {
+    const std::string render = "render scene.yaml --no-png -t 1 --method mps --passes 4 --mutations 5k -D chains=50 "
+                               "-D brightness_samples=2000 -D importons=2000 -D photon_memory=512KiB ";
+    ASSERT_EQ(run(render + "-o whole.exr"), 0);
+    for (const int ranks : {1, 3}) {
+        ASSERT_EQ(run_ranks(ranks, render + "-o a.exr"), 0) << read("err");
+        expect_same("whole.exr", "a.exr");
+        EXPECT_EQ(read_exr(scratch.path("a.exr")).metadata.at("complete"), "yes");
+    }
+    EXPECT_EQ(run_ranks(3, "diff whole.exr a.exr"), 0) << read("err");
+    EXPECT_EQ(run_ranks(2, "render none.yaml"), 2);
+}
+
+TEST_F(Ranks, KilledGoOnWithAnotherNumberOfThem) {
+    const std::string render = "render scene.yaml --no-png -t 1 --spp 20 --passes 200 --checkpoint 0 -o a.exr ";
+    ASSERT_EQ(run("render scene.yaml --no-png --spp 20 --passes 200 -o whole.exr"), 0);
+    const pid_t pid = start_line(mpirun(3) + render);
+    while (!(exists("a.checkpoint.exr") && exists("a.checkpoint.1.exr") && exists("a.checkpoint.2.exr")) &&
+           waitpid(pid, nullptr, WNOHANG) == 0)
+        usleep(1000);
+    kill(pid, SIGTERM);
+    EXPECT_NE(wait(pid), 0);
+    ASSERT_EQ(run_ranks(2, render + "--resume"), 0) << read("err");
+    expect_same("whole.exr", "a.exr");
+}
