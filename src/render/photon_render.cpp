@@ -4,6 +4,7 @@
 #include "render/methods.h"
 #include "render/pass_seed.h"
 #include "render/photon_file.h"
+#include "render/photon_report.h"
 #include "render/photon_sampler.h"
 #include "render/pixels.h"
 #include "render/radii.h"
@@ -46,6 +47,7 @@ bool gather_pass(const SamplerContext& c, std::int64_t pass, std::uint64_t seed,
     const Radii radii(c.scene, pass);
     stats.photons_global = photons.global.size();
     stats.photons_caustic = photons.caustic.size();
+    report_power(photons, stats);
     const ScoutedMap global(std::move(photons.global)), caustic(std::move(photons.caustic));
     const IrradianceOptions estimates{.k = static_cast<int>(s.nearest),
                                       .max_radius = radii.global,
@@ -57,7 +59,8 @@ bool gather_pass(const SamplerContext& c, std::int64_t pass, std::uint64_t seed,
     std::optional<IrradianceMap> irradiance;
     if (static_cast<float>(s.nearest) * radii.shrink * radii.shrink > 2.0f * kScoutEvery)
         irradiance.emplace(global.scouts(), global.carriers(), estimates, context);
-    if (irradiance) stats.values["photons per lookup"] = irradiance->mean_photons();
+    if (irradiance)
+        report_lookups(irradiance->mean_photons(), static_cast<double>(s.nearest) * radii.shrink * radii.shrink, stats);
 
     std::optional<Sites> sites;
     if (irradiance) {
@@ -107,6 +110,7 @@ RenderResult render_photons(const Scene& scene, const Settings& settings, const 
             work.end_unit(stats);
     }
     sampler->finish(stats);
+    warn_of_photons(stats);
     report_samples(luminance, stats);
     result.picture = work.finish(stats);
     return result;

@@ -1,0 +1,65 @@
+#include "render/photon_report.h"
+
+#include "core/vec.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+
+namespace keyhole {
+namespace {
+
+constexpr const char* kBrightest = "photon power, share of the brightest 0.1 %";
+constexpr const char* kFound = "photons per lookup";
+constexpr const char* kShare = "photons per lookup, share of those asked for";
+
+/// Beyond these photons are not to be trusted.
+constexpr double kMostOfPower = 0.25;
+constexpr double kLeastFound = 0.25;
+
+double share_of_brightest(const std::vector<Photon>& photons) {
+    if (photons.empty()) return 0;
+    std::vector<double> powers;
+    powers.reserve(photons.size());
+    for (const Photon& p : photons) powers.push_back(luminance(p.power()));
+    const auto few = powers.begin() + static_cast<std::ptrdiff_t>((powers.size() + 999) / 1000);
+    std::ranges::nth_element(powers, few - 1, std::greater<>());
+    const double all = std::accumulate(powers.begin(), powers.end(), 0.0);
+    return all > 0 ? std::accumulate(powers.begin(), few, 0.0) / all : 0;
+}
+
+} // namespace
+
+void report_power(const Photons& photons, RenderStats& stats) {
+    stats.values[kBrightest] =
+        std::max(share_of_brightest(photons.global.carriers), share_of_brightest(photons.caustic.carriers));
+}
+
+void report_lookups(double found, double asked, RenderStats& stats) {
+    stats.values[kFound] = found;
+    stats.values[kShare] = found / asked;
+}
+
+void warn_of_photons(RenderStats& stats) {
+    const auto value = [&](const char* name, double otherwise) {
+        const auto v = stats.values.find(name);
+        return v == stats.values.end() ? otherwise : v->second;
+    };
+    if (stats.photons_global + stats.photons_caustic == 0) {
+        stats.warnings.emplace_back("no photon was stored: only direct light is rendered. If there is more, try more "
+                                    "light_paths or mutations");
+        return;
+    }
+    if (value(kBrightest, 0) > kMostOfPower)
+        stats.warnings.push_back(fmt::format("the brightest 0.1 % of the photons carry {:.0f} % of the power: expect "
+                                             "blotches. Try more passes, or another method",
+                                             100 * value(kBrightest, 0)));
+    if (value(kShare, 1) < kLeastFound)
+        stats.warnings.push_back(fmt::format("the photon map is too sparse where it is asked: {:.1f} photons within "
+                                             "reach of a lookup, {:.0f} % of those asked for. Try more photons",
+                                             value(kFound, 0), 100 * value(kShare, 1)));
+}
+
+} // namespace keyhole
