@@ -82,9 +82,9 @@ bool gather_pass(const SamplerContext& c, std::int64_t pass, std::uint64_t seed,
     if (s.irradiance_cache) cache = fill_cache(rays, cache_options(s, seed), context);
     if (cache) stats.values["cached irradiances"] = static_cast<double>(cache->size());
     const FinalGather gather(rays, cache ? &*cache : nullptr, static_cast<int>(s.gather_rays));
-    const auto rounds =
-        sample_pass(c.scene, film, pass, s.spp, static_cast<std::uint64_t>(s.seed), StreamPurpose::gather, "gather",
-                    context, [&](const Vec2& image, SampleSource& source) { return gather.sample(image, source); });
+    const auto rounds = sample_pass(
+        c.scene, film, pass, s.spp, static_cast<std::uint64_t>(s.seed), StreamPurpose::gather, "gather", context,
+        luminance, [&](const Vec2& image, SampleSource& source) { return gather.sample(image, source); });
     return rounds == s.spp;
 }
 

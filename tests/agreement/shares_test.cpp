@@ -37,8 +37,11 @@ class Shares : public testing::TestWithParam<const char*> {
         return result;
     }
     static NamedPicture passes(std::int64_t begin, std::int64_t end, int threads) {
-        return {std::to_string(begin),
-                make({.first_pass = begin, .end_pass = end, .keep_sums = true}, threads).picture};
+        Share share;
+        share.first_pass = begin;
+        share.end_pass = end;
+        share.keep_sums = true;
+        return {std::to_string(begin), make(share, threads).picture};
     }
     static void expect_same(const Picture& a, const Picture& b) {
         EXPECT_EQ(a.layers.size(), b.layers.size());
@@ -61,11 +64,16 @@ TEST_P(Shares, JoinedAreTheWhole) {
 
 TEST_P(Shares, OfABrokenOffRenderAreGoneOnFrom) {
     std::vector<Picture> saved;
-    const RenderResult whole = make({.save = [&](const Picture& p) { saved.push_back(p); }, .save_every = 0});
+    Share saving;
+    saving.save = [&](const Picture& p) { saved.push_back(p); };
+    saving.save_every = 0;
+    const RenderResult whole = make(saving);
     expect_same(whole.picture, make({}).picture);
     ASSERT_GE(saved.size(), 5u);
     for (const Picture& done : {saved[0], saved[saved.size() / 2], saved.back()}) {
-        const RenderResult rest = make({.done = &done}, 3);
+        Share resuming;
+        resuming.done = &done;
+        const RenderResult rest = make(resuming, 3);
         expect_same(rest.picture, whole.picture);
         EXPECT_TRUE(rest.stats.complete);
         EXPECT_EQ(rest.stats.values.at("passes"), 4);

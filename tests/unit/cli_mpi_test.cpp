@@ -47,8 +47,8 @@ TEST_F(Ranks, MakeThePictureThatOneMakes) {
 }
 
 TEST_F(Ranks, KilledGoOnWithAnotherNumberOfThem) {
-    const std::string render = "render scene.yaml --no-png -t 1 --spp 20 --passes 200 --checkpoint 0 -o a.exr ";
-    ASSERT_EQ(run("render scene.yaml --no-png --spp 20 --passes 200 -o whole.exr"), 0);
+    const std::string render = "render scene.yaml --no-png -t 1 --spp 10 --passes 60 --checkpoint 0 -o a.exr ";
+    ASSERT_EQ(run("render scene.yaml --no-png --spp 10 --passes 60 -o whole.exr"), 0);
     const pid_t pid = start_line(mpirun(3) + render);
     while (!(exists("a.checkpoint.exr") && exists("a.checkpoint.1.exr") && exists("a.checkpoint.2.exr")) &&
            waitpid(pid, nullptr, WNOHANG) == 0)

@@ -63,7 +63,6 @@ TEST(ReproducibleSum_OfTerms, LosesLessThanItPromises) {
         const long double exact = std::accumulate(terms.begin(), terms.end(), 0.0L);
         const double largest = *std::ranges::max_element(terms);
         EXPECT_NEAR(grouped(terms, 5, false).value(0), static_cast<double>(exact), 10'000 * 0x1p-32 * largest);
-        if (spread == 0) EXPECT_NEAR(grouped(terms, 5, false).value(0) / static_cast<double>(exact), 1, 0x1p-31);
     }
 }
 

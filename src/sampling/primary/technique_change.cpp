@@ -64,7 +64,7 @@ class TechniqueChange::Edits {
 
   private:
     PrimaryState* state_;
-    InlineVector<Edit, 4 * (kMaxScatterings + 4)> edits_;
+    InlineVector<Edit, 6 * (kMaxScatterings + 4)> edits_; // three numbers of each vertex in either sub-path
 };
 
 /// The numbers with which eye vertex j finds vertex j + 1.
