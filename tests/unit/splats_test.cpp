@@ -1,4 +1,4 @@
-#include "film/splats.h"
+#include "film/drawn_light.h"
 
 #include "core/parallel.h"
 #include "core/rng.h"
@@ -14,6 +14,13 @@ Picture blank(int width, int height) {
     return p;
 }
 
+/// Adds scale times the splats to a picture.
+void draw(const SplatFilm& splats, double scale, Picture& picture) {
+    DrawnLight light(picture.width, picture.height);
+    light.add(splats, scale);
+    light.add_to(picture);
+}
+
 // A film is a mean over samples spread as its filter: uniform splats of value 1 must give 1 everywhere, borders
 // included if splats fall beyond them.
 TEST(Splats_OfUniformPoints, FillTheFilmEvenly) {
@@ -26,7 +33,7 @@ TEST(Splats_OfUniformPoints, FillTheFilmEvenly) {
                        SplatFilm::Layer::caustic, Rgb(1, 2, 3));
     Picture picture = blank(width, height);
     picture.layers["beauty"].data.assign(picture.layers["beauty"].data.size(), 10.0f);
-    splats.add_to(picture, 1.0 / (per_unit * per_unit));
+    draw(splats, 1.0 / (per_unit * per_unit), picture);
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x)
             for (int c = 0; c < 3; ++c) {
@@ -49,7 +56,7 @@ TEST(Splats_FromManyThreads, AddUpTheSame) {
             });
         });
         Picture picture = blank(4, 4);
-        splats.add_to(picture, 1);
+        draw(splats, 1, picture);
         if (first.empty()) first = picture.layers["indirect"].data;
         EXPECT_EQ(first, picture.layers["indirect"].data);
     }
