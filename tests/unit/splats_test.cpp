@@ -9,7 +9,7 @@ namespace keyhole {
 namespace {
 
 Picture blank(int width, int height) {
-    Picture p{width, height, {}, {}};
+    Picture p{width, height, {}, {}, {}};
     for (const char* layer : {"beauty", "direct", "indirect", "caustic"}) p.layers[layer] = Image(width, height, 3);
     return p;
 }
