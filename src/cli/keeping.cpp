@@ -8,6 +8,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 
 namespace keyhole {
@@ -88,6 +89,7 @@ Share Keeping::share(const std::string& exr, const Picture& render, const Settin
                                      "beforehand and not below what is to be shared out",
                                      settings.passes, settings.target_error));
     if (team != nullptr) share.take_number = [team] { return team->take_number(); };
+    if (checkpoint && std::isnan(*checkpoint)) throw InputError("--checkpoint: found nan, expected seconds");
     if (file(exr).empty()) return share;
     const int rank = team != nullptr ? team->rank() : 0;
     if (resume) {

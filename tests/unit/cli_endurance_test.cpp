@@ -140,5 +140,6 @@ TEST_F(LongRender, MergesSharesAndSeeds) {
     }
     for (const char* range : {"3", "3:", ":3", "3:3", "4:2", "-1:2", "0:6", "0:2x"})
         EXPECT_EQ(run(render + "-o d.exr --pass-range=" + range), 2) << range;
+    EXPECT_EQ(run(render + "-o d.exr --checkpoint nan"), 2);
     EXPECT_FALSE(exists("m.exr") || exists("d.exr"));
 }
