@@ -68,7 +68,8 @@ RenderResult render_bdpt(const Scene& scene, const Settings& settings, const Run
             if (whole) work.end_unit(result.stats);
         }
     }
-    report_eye_paths(luminance, scene, result.stats);
+    report_samples(luminance, result.stats);
+    report_lost_light(luminance, scene, result.stats);
     result.picture = work.finish(result.stats);
     return result;
 }

@@ -91,7 +91,7 @@ RenderResult render_mlt(const Scene& scene, const Settings& settings, const User
         if (whole) work.end_unit(stats);
     }
     reports.finish(stats);
-    report_samples(luminance, stats);
+    report_eye_samples(luminance, scene, stats);
     result.picture = work.finish(stats);
     return result;
 }

@@ -27,7 +27,8 @@ RenderResult render_path(const Scene& scene, const Settings& settings, const Run
             if (whole) work.end_unit(result.stats);
         }
     }
-    report_eye_paths(luminance, scene, result.stats);
+    report_eye_samples(luminance, scene, result.stats);
+    report_lost_light(luminance, scene, result.stats);
     result.picture = work.finish(result.stats);
     return result;
 }

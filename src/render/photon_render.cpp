@@ -111,7 +111,7 @@ RenderResult render_photons(const Scene& scene, const Settings& settings, const 
     }
     sampler->finish(stats);
     warn_of_photons(stats);
-    report_samples(luminance, stats);
+    report_eye_samples(luminance, scene, stats);
     result.picture = work.finish(stats);
     return result;
 }

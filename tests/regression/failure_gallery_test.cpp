@@ -23,7 +23,7 @@ struct Case {
 
 constexpr Case kCases[] = {{"keyhole", 0.00634, 0.2, "ipm pm"},
                            {"thin_wall", 0.00297},
-                           {"tiny_caustic", 1.850, 0.15, "path ipm pm mlt"},
+                           {"tiny_caustic", 1.850},
                            {"islands", 0.0895},
                            {"many_lights", 2.500},
                            {"sun_glass", 0.528},
