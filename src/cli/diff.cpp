@@ -1,7 +1,6 @@
 // keyhole diff: error measures as JSON.
+#include "cli/beauty.h"
 #include "cli/command.h"
-#include "core/error.h"
-#include "film/exr.h"
 #include "film/image_error.h"
 
 #include <fmt/format.h>
@@ -10,16 +9,9 @@
 namespace keyhole {
 namespace {
 
-Image beauty(const std::string& path) {
-    Picture picture = read_exr(path);
-    const auto layer = picture.layers.find("beauty");
-    if (layer == picture.layers.end()) throw InputError(path + ": found no channels R, G, B or Y");
-    return std::move(layer->second);
-}
-
 int diff(const std::vector<std::string>& paths) {
-    const Image picture = beauty(paths[0]), reference = beauty(paths[1]);
-    const Image second = paths.size() > 2 ? beauty(paths[2]) : Image();
+    const Image picture = read_beauty(paths[0]), reference = read_beauty(paths[1]);
+    const Image second = paths.size() > 2 ? read_beauty(paths[2]) : Image();
     const ImageError e = image_error(picture, reference, paths.size() > 2 ? &second : nullptr);
     // NaN becomes null.
     nlohmann::ordered_json json{{"relmse", e.relmse},   {"relmse_trim", e.relmse_trim},

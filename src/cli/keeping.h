@@ -21,6 +21,9 @@ struct Keeping {
 
     void add_options(CLI::App& command);
 
+    /// Whether any of it is asked for.
+    bool asked() const { return checkpoint || resume || !pass_range.empty(); }
+
     /// The share that this asks for. `exr` is the output; checkpoints go beside it. `render` has the size and the
     /// identity (render_identity()) of pictures of the render; a checkpoint to go on from has to have the same. Keeps
     /// what the share refers to. With a team every process has its checkpoints; all are read.

@@ -48,6 +48,8 @@ int run(int argc, char** argv, Team* team) {
     add_paths_command(app, action);
     add_experiment_command(app, action);
     add_info_command(app, action);
+    add_chart_command(app, action);
+    add_plan_command(app, action);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {

@@ -1,9 +1,8 @@
 // keyhole render: from a scene file to pictures.
-#include "render/render.h"
-
 #include "cli/command.h"
 #include "cli/interrupt.h"
 #include "cli/keeping.h"
+#include "cli/live_view.h"
 #include "cli/metadata.h"
 #include "cli/outputs.h"
 #include "cli/report.h"
@@ -14,6 +13,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "film/atomic_file.h"
+#include "render/effort.h"
 #include "sampling/scene_hash.h"
 #include "scene/load/load.h"
 
@@ -22,6 +22,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <string_view>
 #include <sys/ioctl.h>
@@ -38,10 +39,12 @@ struct RenderOptions {
     std::string save_map, load_map;
     Keeping keeping;
     int threads = 0;
-    std::optional<double> timeout; ///< [s]
-    Team* team = nullptr;          ///< null: this process is alone
+    std::optional<double> timeout, cpu_time; ///< [s]
+    std::string quality, display_server;
+    Team* team = nullptr; ///< null: this process is alone
 
     bool writes() const { return team == nullptr || team->rank() == 0; }
+    bool in_time() const { return timeout || cpu_time; }
 };
 
 /// Null for --quiet.
@@ -63,8 +66,11 @@ bool has_picture(const RenderResult& result) {
            empty->second < static_cast<double>(result.picture.width) * static_cast<double>(result.picture.height);
 }
 
-bool names_setting(const std::vector<std::string>& overrides, const std::string& key) {
-    return std::ranges::any_of(overrides, [&](const std::string& o) { return o.starts_with(key + "="); });
+/// Settings that the command line names.
+std::set<std::string> named_settings(const std::vector<std::string>& overrides) {
+    std::set<std::string> keys;
+    for (const std::string& o : overrides) keys.insert(o.substr(0, o.find('=')));
+    return keys;
 }
 
 /// Joins what all processes have done, on the first of them.
@@ -92,21 +98,41 @@ void join_team(Team& team, RenderResult& result) {
     for (std::string line; std::getline(warnings, line);) result.stats.warnings.push_back(line);
 }
 
+/// Writes a picture that isn't done.
+void write_unfinished(const Picture& picture, const RenderOptions& options) {
+    Picture copy = picture;
+    copy.metadata["scene"] = options.scene;
+    copy.metadata["command"] = options.command_line;
+    copy.metadata["complete"] = "no";
+    options.outputs.write(copy, "{\n  \"complete\": false\n}\n");
+}
+
 RenderResult render_scene(LoadedScene& loaded, RenderOptions& options, StopToken& stop) {
     RenderResult result;
+    LiveView view(options.writes() ? options.display_server : "", options.outputs.exr,
+                  [&](const Picture& picture) { write_unfinished(picture, options); });
     with_threads(options.threads, [&] {
         Scene scene(std::move(loaded.description));
         const ImageWindow& window = scene.camera().window();
-        const Picture expected{
-            window.width, window.height, {}, render_identity(loaded.settings, scene_hash(scene)), {}};
-        const Share share = options.keeping.share(options.outputs.exr, expected, loaded.settings, options.team);
+        const std::uint64_t hash = scene_hash(scene);
+        const Picture expected{window.width, window.height, {}, render_identity(loaded.settings, hash), {}};
+        Share share = options.keeping.share(options.outputs.exr, expected, loaded.settings, options.team);
         const auto progress = make_progress(options.quiet);
-        result = render(scene, loaded.settings, RunContext{&stop, progress.get()}, loaded.user_paths, share);
-        result.picture.metadata.insert(expected.metadata.begin(), expected.metadata.end());
+        if (options.writes()) view.watch(share);
+        const RunContext context{&stop, progress.get()};
+        // Parts of a render have to agree on its settings: none can follow from the time.
+        const bool alone = options.team == nullptr && !options.keeping.asked();
+        result = options.in_time() && alone && loaded.settings.passes > 0 && loaded.settings.load_map.empty()
+                     ? render_in_time(scene, loaded.settings, named_settings(options.overrides), context,
+                                      loaded.user_paths, share)
+                     : render(scene, loaded.settings, context, loaded.user_paths, share);
+        const auto identity = render_identity(result.settings, hash);
+        result.picture.metadata.insert(identity.begin(), identity.end());
         if (options.keeping.resume && share.done == nullptr)
             result.stats.remarks.emplace_back("found no checkpoint to go on from: started from the beginning");
     });
     if (options.team != nullptr) join_team(*options.team, result);
+    if (!result.picture.layers.empty()) view.show(result.picture);
     return result;
 }
 
@@ -116,6 +142,7 @@ int run(RenderOptions options) {
     if (options.timeout)
         stop.set_deadline(StopToken::Clock::now() + std::chrono::duration_cast<StopToken::Clock::duration>(
                                                         std::chrono::duration<double>(*options.timeout)));
+    if (options.cpu_time) stop.set_cpu_limit(*options.cpu_time);
     if (options.outputs.exr.empty()) options.outputs.exr = default_exr(options.scene);
     if (options.no_png)
         options.outputs.png.clear();
@@ -126,10 +153,13 @@ int run(RenderOptions options) {
 
     const InterruptHandler interrupts(stop);
     std::vector<std::string> load_warnings;
-    // A time or an error to reach asks for as many passes as that takes, unless somebody says how many.
-    if (options.timeout || names_setting(options.overrides, "target_error"))
-        options.overrides.insert(options.overrides.begin(), "passes=0");
-    LoadedScene loaded = load(options.scene, options.overrides, &load_warnings);
+    const std::set<std::string> named = named_settings(options.overrides);
+    // An error to reach asks for as many passes as that takes, unless somebody says how many.
+    std::vector<std::string> overrides = options.overrides;
+    const bool in_passes = options.in_time() && (options.team != nullptr || options.keeping.asked());
+    if (named.contains("target_error") || in_passes) overrides.insert(overrides.begin(), "passes=0");
+    LoadedScene loaded = load(options.scene, overrides, &load_warnings);
+    if (!options.quality.empty()) loaded.settings = with_quality(loaded.settings, options.quality, named);
     loaded.settings.save_map = options.save_map;
     loaded.settings.load_map = options.load_map;
     if (!options.user_paths.empty()) loaded.user_paths = load_user_paths(options.user_paths);
@@ -201,9 +231,14 @@ void add_render_command(CLI::App& app, Action& action, const std::string& comman
     command->add_option("--load-map", o->load_map, "take photons from this file instead of sampling any");
     o->keeping.add_options(*command);
     command->add_option("-t,--threads", o->threads, "threads; 0: one for each core")->check(CLI::Range(0, 4096));
-    command->add_option("--timeout", o->timeout, "as many passes as fit in SECONDS; write what there is then")
-        ->check(CLI::Range(0.0, 1e9));
+    auto* timeout = command->add_option("--timeout", o->timeout, "the best picture that can be made in SECONDS")
+                        ->check(CLI::Range(0.0, 1e9));
+    command->add_option("--cpu-time", o->cpu_time, "the same in SECONDS of CPU time, of all threads together")
+        ->check(CLI::Range(0.0, 1e9))
+        ->excludes(timeout);
+    command->add_option("--quality", o->quality, "draft, good or final: how much work, in one word")->excludes(timeout);
     command->add_flag("--strict", o->strict, "exit with 3 where there is a warning: the picture can't be trusted");
+    command->add_option("--display-server", o->display_server, "HOST:PORT of tev, to which the picture so far is sent");
     auto* quiet = command->add_flag("-q,--quiet", o->quiet, "say nothing but errors");
     command->add_flag("-v,--verbose", o->verbose, "print statistics")->excludes(quiet);
     command->footer(settings_help() + "Whole numbers may be written 100k, 2.5M or 1e6.");

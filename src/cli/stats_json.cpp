@@ -22,6 +22,7 @@ Json stats_json(const RenderStats& s) {
                              {"seconds", p.seconds},
                              {"deposited", p.deposited}});
     return {{"complete", s.complete},
+            {"method", s.method},
             {"brightness", s.brightness},
             {"brightness_error", s.brightness_error},
             {"stages", stages},

@@ -1,9 +1,13 @@
 // What a long computation tells the outside, and how the outside stops it.
 #pragma once
 
+#include "core/cpu_time.h"
+
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <limits>
 #include <string_view>
 
 namespace keyhole {
@@ -15,15 +19,28 @@ class StopToken {
 
     void request() noexcept { requested_.store(true, std::memory_order_relaxed); }
     void set_deadline(Clock::time_point t) { deadline_ = t; }
+    /// Ends when the process has used so much CPU time [s], of all threads, since it began.
+    void set_cpu_limit(double seconds) { cpu_limit_ = seconds; }
 
     /// True once somebody called request().
     bool requested() const noexcept { return requested_.load(std::memory_order_relaxed); }
-    /// True once requested or past the deadline.
-    bool stopped() const noexcept { return requested() || Clock::now() >= deadline_; }
+    /// True once requested, past the deadline, or over the limit.
+    bool stopped() const noexcept {
+        return requested() || Clock::now() >= deadline_ || (cpu_limit_ < kNoLimit && cpu_seconds() >= cpu_limit_);
+    }
+    /// What is left until the deadline, or, where there is one, of the CPU time [s]; infinite without either.
+    double seconds_left() const noexcept {
+        if (cpu_limit_ < kNoLimit) return std::max(0.0, cpu_limit_ - cpu_seconds());
+        if (deadline_ == Clock::time_point::max()) return kNoLimit;
+        return std::max(0.0, std::chrono::duration<double>(deadline_ - Clock::now()).count());
+    }
 
   private:
+    static constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+
     std::atomic<bool> requested_{false};
     Clock::time_point deadline_ = Clock::time_point::max();
+    double cpu_limit_ = kNoLimit;
 };
 
 /// Receives the progress of each stage. Calls to advance() come from many threads at once.

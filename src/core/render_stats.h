@@ -24,6 +24,7 @@ struct ProposalStats {
 };
 
 struct RenderStats {
+    std::string method; ///< the setting's, or what `auto` stood for
     std::vector<StageStats> stages;
     double samples = 0; ///< of a pixel, or mutations by pixel of methods that only run chains; of whole units of work
     double brightness = 0, brightness_error = 0; ///< B_eye and its standard error [W/(m^2 sr)]

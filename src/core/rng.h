@@ -37,6 +37,7 @@ enum class StreamPurpose : std::uint64_t {
     primary_chain,
     failure_study,
     bidirectional,
+    survey,
 };
 
 /// PCG32 (O'Neill 2014). One for each chain and each pixel, never for each thread, so that a picture does not

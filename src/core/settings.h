@@ -27,6 +27,7 @@ inline std::string printable(const AutoNumber& setting) {
 /// Settings of a render. Ranges and meanings stand in visit_settings(), the only other place that lists them.
 struct Settings {
     std::string method = "auto";
+    std::string plan = "auto";
     std::int64_t spp = 16;
     std::int64_t seed = 1;
     std::int64_t max_depth = 24;
@@ -72,6 +73,8 @@ template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
     visit("method", s.method,
           std::vector<std::string_view>{"auto", "mps", "ipm", "pm", "mlt", "path", "bdpt", "pssmlt", "mmlt", "rjmlt"},
           "rendering method");
+    visit("plan", s.plan, std::vector<std::string_view>{"auto", "all"},
+          "auto: maps, proposals and stages that the scene has no use for are left out");
     visit("spp", s.spp, I{1}, I{1} << 24, "samples per pixel");
     visit("seed", s.seed, I{0}, I{1} << 53, "seed of all random streams");
     visit("max_depth", s.max_depth, I{1}, I{126}, "most scatterings between light and eye");

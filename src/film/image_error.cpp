@@ -1,7 +1,7 @@
 #include "film/image_error.h"
 
 #include "core/error.h"
-#include "core/vec.h"
+#include "film/grey.h"
 
 #include <fmt/format.h>
 
@@ -12,50 +12,12 @@
 namespace keyhole {
 namespace {
 
-/// Luminance of each pixel.
-struct Grey {
-    std::size_t width, height;
-    std::vector<double> y;
-
-    explicit Grey(const Image& image)
-        : width(static_cast<std::size_t>(image.width)), height(static_cast<std::size_t>(image.height)),
-          y(width * height) {
-        const auto n = static_cast<std::size_t>(image.channels);
-        for (std::size_t i = 0; i < y.size(); ++i) {
-            const float* p = image.data.data() + n * i;
-            y[i] = n < 3 ? double{p[0]} : luminance({p[0], p[1], p[2]});
-        }
-    }
-};
-
-double mean(const std::vector<double>& v) {
-    return std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size());
-}
-
 double trimmed_mean(std::vector<double> v) {
     const auto size = [](double x) { return std::isnan(x) ? INFINITY : std::abs(x); };
     const auto kept = static_cast<std::ptrdiff_t>(static_cast<double>(v.size()) * 0.999);
     std::nth_element(v.begin(), v.begin() + kept, v.end(), [&](double a, double b) { return size(a) < size(b); });
     v.resize(static_cast<std::size_t>(kept));
     return mean(v);
-}
-
-/// Mean over the 3x3 neighbourhood; the border repeats.
-std::vector<double> smooth(const Grey& g) {
-    const auto clamped = [](std::size_t i, std::size_t step, std::size_t n) {
-        return std::min(std::max(i + step, std::size_t{1}) - 1, n - 1);
-    };
-    std::vector<double> out(g.y.size());
-    for (std::size_t row = 0; row < g.height; ++row) {
-        for (std::size_t x = 0; x < g.width; ++x) {
-            double sum = 0;
-            for (std::size_t j = 0; j < 3; ++j)
-                for (std::size_t i = 0; i < 3; ++i)
-                    sum += g.y[clamped(row, j, g.height) * g.width + clamped(x, i, g.width)];
-            out[row * g.width + x] = sum / 9;
-        }
-    }
-    return out;
 }
 
 double block_error(const Grey& picture, const Grey& reference, double mean_reference) {

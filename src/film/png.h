@@ -15,4 +15,8 @@ void write_png(const std::string& path, const Image& image);
 /// Writes a picture as it is.
 void write_png(const std::string& path, const Canvas& canvas);
 
+/// A PNG file's content, of pixels with 3 channels (sRGB) or 1 (grey), 8 bits each.
+/// @throws InputError for a size that PNG can't have.
+std::string png_bytes(int width, int height, int channels, const std::vector<std::uint8_t>& pixels);
+
 } // namespace keyhole

@@ -23,7 +23,8 @@ struct Exposure {
     double scale = 1, white = 1;
 };
 
-Exposure expose(const Image& image, std::size_t pixels) {
+Exposure expose(const Image& image) {
+    const auto pixels = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
     std::vector<double> lit;
     double log_sum = 0;
     for (std::size_t i = 0; i < pixels; ++i) {
@@ -47,9 +48,9 @@ float srgb_encode(float linear) {
     return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
 }
 
-std::vector<std::uint8_t> tonemap(const Image& image) {
+std::vector<std::uint8_t> tonemap(const Image& image, const Image& exposed_for) {
     const auto pixels = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
-    const Exposure exposure = expose(image, pixels);
+    const Exposure exposure = expose(exposed_for);
     std::vector<std::uint8_t> bytes(3 * pixels);
     for (std::size_t i = 0; i < pixels; ++i) {
         const Rgb c = colour(image, i);

@@ -16,6 +16,9 @@ float srgb_encode(float linear);
 /// point is the 99.5th percentile of scaled luminance, so that lamps and single bright pixels don't dim the rest, but
 /// at least 1. Images of one channel are taken as grey.
 /// @returns 3 bytes a pixel, sRGB. Pixels that are not finite become black.
-std::vector<std::uint8_t> tonemap(const Image& image);
+/// @param exposed_for the image whose luminance sets scale and white point: `image` itself, or one that it is to be
+/// compared with.
+std::vector<std::uint8_t> tonemap(const Image& image, const Image& exposed_for);
+inline std::vector<std::uint8_t> tonemap(const Image& image) { return tonemap(image, image); }
 
 } // namespace keyhole

@@ -16,7 +16,7 @@ class EmissionSampler final : public PhotonSampler {
     EmissionSampler(const SamplerContext& context, bool by_importance) : c_(context), by_importance_(by_importance) {}
 
     Photons sample(std::uint64_t seed, RenderStats& stats, const RunContext& context) override {
-        const bool delta = c_.scene.traits().delta;
+        const bool delta = c_.caustics;
         const MemoryPlan plan =
             plan_memory(c_.settings, by_importance_ ? ImportanceUse::guide : ImportanceUse::none, delta ? 2 : 1);
         std::unique_ptr<ImportanceGuide> global, caustic;
@@ -42,7 +42,7 @@ class EmissionSampler final : public PhotonSampler {
     void make_guides(std::uint64_t seed, std::int64_t samples, std::unique_ptr<ImportanceGuide>& global,
                      std::unique_ptr<ImportanceGuide>& caustic, RenderStats& stats, const RunContext& context) const {
         const StageClock clock(stats, "importance");
-        const bool delta = c_.scene.traits().delta;
+        const bool delta = c_.caustics;
         Importons importons = trace_importance(c_.scene,
                                                {.samples = samples,
                                                 .at_d1 = delta,

@@ -16,8 +16,7 @@ namespace {
 
 /// Each photon weighs the same where it is asked, so the maps share the ceiling as they share the light. Either keeps
 /// a little where stage one may have missed its paths.
-std::size_t caustic_share(const StageOne& one, const Scene& scene, std::size_t photons) {
-    if (!scene.traits().delta) return 0;
+std::size_t caustic_share(const StageOne& one, std::size_t photons) {
     const double share = one.caustic.mean() / one.brightness.mean();
     return static_cast<std::size_t>(std::clamp(share, 0.02, 0.98) * static_cast<double>(photons));
 }
@@ -63,7 +62,7 @@ class MetropolisSampler final : public PhotonSampler {
                        const RunContext& context) {
         const Settings& s = c_.settings;
         const ChainSeeds seeds = choose_chain_seeds(c_.scene, first, one, s.chains);
-        const bool delta = c_.scene.traits().delta;
+        const bool delta = c_.caustics;
         const MemoryPlan plan = plan_memory(s, ImportanceUse::beside, delta ? 2 : 1);
         Importons importons = trace_importance(
             c_.scene,
@@ -76,7 +75,7 @@ class MetropolisSampler final : public PhotonSampler {
         stats.importon_bytes = at_d1.bytes() + at_d2.bytes();
 
         const ChainMixtures mixtures({&c_.scene, set_, static_cast<int>(s.max_depth)}, s, c_.user_paths);
-        const std::size_t caustic = caustic_share(one, c_.scene, plan.photons);
+        const std::size_t caustic = c_.caustics ? caustic_share(one, plan.photons) : 0;
         SampledPhotons photons = sample_photons(seeds, mixtures.mixture,
                                                 {.global = &at_d2,
                                                  .caustic = &at_d1,

@@ -7,6 +7,7 @@
 #include "render/photon_report.h"
 #include "render/photon_sampler.h"
 #include "render/pixels.h"
+#include "render/plan.h"
 #include "render/radii.h"
 #include "render/sample_report.h"
 #include "render/sampler_trial.h"
@@ -32,16 +33,34 @@ std::string choose_method(const SamplerContext& c, RenderStats& stats, const Run
     return method;
 }
 
-std::unique_ptr<PhotonSampler> make_sampler(const SamplerContext& c, RenderStats& stats, const RunContext& context) {
+/// Where no light is that photon maps would hold.
+class NoPhotons final : public PhotonSampler {
+  public:
+    Photons sample(std::uint64_t /*seed*/, RenderStats& /*stats*/, const RunContext& /*context*/) override {
+        return {};
+    }
+};
+
+RenderPlan make_plan(const SamplerContext& c, RenderStats& stats, const RunContext& context) {
+    const StageClock clock(stats, "plan");
+    RenderPlan plan = plan_render(c, context);
+    if (!plan.photons) stats.remarks.push_back("stopped before the photons: " + plan.items.front().why);
+    return plan;
+}
+
+std::unique_ptr<PhotonSampler> make_sampler(const SamplerContext& c, const RenderPlan& plan, RenderStats& stats,
+                                            const RunContext& context) {
     if (!c.settings.load_map.empty()) return make_file_sampler(c);
+    if (!plan.photons) return std::make_unique<NoPhotons>();
     const std::string method = c.settings.method == "auto" ? choose_method(c, stats, context) : c.settings.method;
+    stats.method = method;
     if (method == "mps") return make_metropolis_sampler(c);
     return make_emission_sampler(c, method == "ipm");
 }
 
 /// Stage three: what the eye sees, from the photons of a pass. Returns whether it was completed.
-bool gather_pass(const SamplerContext& c, std::int64_t pass, std::uint64_t seed, Photons photons, Film& film,
-                 RunningStats& luminance, RenderStats& stats, const RunContext& context) {
+bool gather_pass(const SamplerContext& c, const RenderPlan& plan, std::int64_t pass, std::uint64_t seed,
+                 Photons photons, Film& film, RunningStats& luminance, RenderStats& stats, const RunContext& context) {
     const StageClock clock(stats, "gather");
     const Settings& s = c.settings;
     const Radii radii(c.scene, pass);
@@ -79,9 +98,9 @@ bool gather_pass(const SamplerContext& c, std::int64_t pass, std::uint64_t seed,
                                 .shrink = radii.shrink};
     const GatherRays rays(c.scene, maps, lookups, static_cast<int>(s.max_depth));
     std::optional<IrradianceCache> cache;
-    if (s.irradiance_cache) cache = fill_cache(rays, cache_options(s, seed), context);
+    if (plan.cache) cache = fill_cache(rays, cache_options(s, seed), context);
     if (cache) stats.values["cached irradiances"] = static_cast<double>(cache->size());
-    const FinalGather gather(rays, cache ? &*cache : nullptr, static_cast<int>(s.gather_rays));
+    const FinalGather gather(rays, cache ? &*cache : nullptr, plan.gather ? static_cast<int>(s.gather_rays) : 1);
     const auto rounds = sample_pass(
         c.scene, film, pass, s.spp, static_cast<std::uint64_t>(s.seed), StreamPurpose::gather, "gather", context,
         luminance, [&](const Vec2& image, SampleSource& source) { return gather.sample(image, source); });
@@ -95,8 +114,10 @@ RenderResult render_photons(const Scene& scene, const Settings& settings, const 
     RenderResult result;
     RenderStats& stats = result.stats;
     const SurfacePatches patches(scene.shapes());
-    const SamplerContext c{scene, settings, patches, paths};
-    const auto sampler = make_sampler(c, stats, context);
+    SamplerContext c{scene, settings, patches, paths};
+    const RenderPlan plan = make_plan(c, stats, context);
+    c.caustics = plan.caustics;
+    const auto sampler = make_sampler(c, plan, stats, context);
     Work work(settings, scene.camera().window(), Exposure::Parts::film, share);
     RunningStats luminance;
     while (const auto pass = work.take(context)) {
@@ -106,7 +127,7 @@ RenderResult render_photons(const Scene& scene, const Settings& settings, const 
             save_photons(settings.save_map, photon_file_key(scene, settings), photons);
         // The photons of a pass that was cut short are good for a first picture, not for one that is there.
         if (!work.is_first() && context.stopped()) break;
-        if (gather_pass(c, *pass, seed, std::move(photons), *work.unit().film, luminance, stats, context))
+        if (gather_pass(c, plan, *pass, seed, std::move(photons), *work.unit().film, luminance, stats, context))
             work.end_unit(stats);
     }
     sampler->finish(stats);

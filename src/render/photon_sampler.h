@@ -31,6 +31,7 @@ struct SamplerContext {
     const Settings& settings;
     const SurfacePatches& patches;
     const UserPaths& user_paths; ///< for chains
+    bool caustics = true;        ///< whether there is to be a caustic map
 };
 
 /// Metropolis photon sampling: Fan, Chenney, Lai 2005.

@@ -7,15 +7,10 @@
 #include <algorithm>
 
 namespace keyhole {
+namespace {
 
-RenderResult render(Scene& scene, const Settings& settings, const RunContext& context, const UserPathFile& user_paths,
-                    const Share& share) {
-    ImageWindow window = scene.camera().window();
-    // Room for the filter, and for photon lookups at the border of the picture.
-    window.margin = std::max({2.0f, 0.03f * static_cast<float>(std::max(window.width, window.height)),
-                              static_cast<float>(PixelFilter(settings).radius())});
-    scene.set_window(window);
-    const UserPaths paths = bind_user_paths(scene, user_paths);
+RenderResult render_by_method(const Scene& scene, const Settings& settings, const UserPaths& paths,
+                              const RunContext& context, const Share& share) {
     if (settings.method == "path") return render_path(scene, settings, context, share);
     if (settings.method == "mlt") return render_mlt(scene, settings, paths, context, share);
     if (settings.method == "bdpt") return render_bdpt(scene, settings, context, share);
@@ -24,6 +19,21 @@ RenderResult render(Scene& scene, const Settings& settings, const RunContext& co
     for (const char* method : {"auto", "mps", "ipm", "pm"})
         if (settings.method == method) return render_photons(scene, settings, paths, context, share);
     throw InputError("unknown method '" + settings.method + "'");
+}
+
+} // namespace
+
+RenderResult render(Scene& scene, const Settings& settings, const RunContext& context, const UserPathFile& user_paths,
+                    const Share& share) {
+    ImageWindow window = scene.camera().window();
+    // Room for the filter, and for photon lookups at the border of the picture.
+    window.margin = std::max({2.0f, 0.03f * static_cast<float>(std::max(window.width, window.height)),
+                              static_cast<float>(PixelFilter(settings).radius())});
+    scene.set_window(window);
+    RenderResult result = render_by_method(scene, settings, bind_user_paths(scene, user_paths), context, share);
+    if (result.stats.method.empty()) result.stats.method = settings.method;
+    result.settings = settings;
+    return result;
 }
 
 } // namespace keyhole

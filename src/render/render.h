@@ -14,6 +14,7 @@ namespace keyhole {
 struct RenderResult {
     Picture picture;
     RenderStats stats;
+    Settings settings; ///< that it was made with
 };
 
 /// Renders by the method that the settings name. The same scene, settings and seed give the same picture, bit for bit,

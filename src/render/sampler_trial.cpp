@@ -19,8 +19,21 @@
 namespace keyhole {
 namespace {
 
-constexpr std::int64_t kImportons = 50'000, kLightPaths = 32'768, kBrightnessSamples = 32'768;
-constexpr std::int64_t kChains = 256, kSteps = 128;
+constexpr std::int64_t kSteps = 128; // of a chain
+
+/// How much is tried: less where the render itself will be short.
+struct Extent {
+    std::int64_t importons, light_paths, brightness_samples, chains;
+
+    explicit Extent(const Settings& s) {
+        const std::int64_t work = std::min<std::int64_t>(std::max(s.light_paths, s.mutations), 500'000);
+        const auto part = [&](std::int64_t most) { return std::max(most * work / 500'000, most / 8); };
+        importons = part(50'000);
+        light_paths = part(32'768);
+        brightness_samples = part(32'768);
+        chains = part(256);
+    }
+};
 
 /// What a mutation does besides tracing rays, measuring paths in the main, costs as much as several rays of light
 /// tracing.
@@ -72,37 +85,40 @@ struct VisiblePower {
 };
 
 double try_emission(const SamplerContext& c, const RunContext& run) {
-    const bool delta = c.scene.traits().delta;
+    const bool delta = c.caustics;
+    const Extent extent(c.settings);
     const auto depth = static_cast<int>(c.settings.max_depth);
     const auto seed = static_cast<std::uint64_t>(c.settings.seed);
-    Importons importons =
-        trace_importance(c.scene, {.samples = kImportons, .at_d1 = delta, .max_scatterings = depth, .seed = seed}, run);
+    Importons importons = trace_importance(
+        c.scene, {.samples = extent.importons, .at_d1 = delta, .max_scatterings = depth, .seed = seed}, run);
     const float radius = Radii(c.scene).importance;
     const ImportanceGuide global(PhotonMap(std::move(importons.second)), radius, c.patches, run);
     const ImportanceGuide caustic(PhotonMap(std::move(importons.first)), radius, c.patches, run);
     const std::uint64_t before = rays_traced();
-    std::vector<Shares> samples(kLightPaths);
-    parallel_for(kLightPaths, [&](std::int64_t i) {
+    std::vector<Shares> samples(static_cast<std::size_t>(extent.light_paths));
+    parallel_for(extent.light_paths, [&](std::int64_t i) {
         Rng rng(seed, StreamPurpose::emission, static_cast<std::uint64_t>(i));
         VisiblePower sink{c.scene, global, delta ? &caustic : nullptr};
         trace_light_path(c.scene, depth, rng, sink);
         samples[static_cast<std::size_t>(i)] = sink.shares;
     });
-    return relative_variance(samples) * static_cast<double>(rays_traced() - before) / kLightPaths;
+    return relative_variance(samples) * static_cast<double>(rays_traced() - before) /
+           static_cast<double>(extent.light_paths);
 }
 
 double try_metropolis(const SamplerContext& c, const RunContext& run) {
     const Settings& s = c.settings;
+    const Extent extent(s);
     const StageOneSettings first{.max_scatterings = static_cast<int>(s.max_depth),
-                                 .samples = kBrightnessSamples,
+                                 .samples = extent.brightness_samples,
                                  .seed = static_cast<std::uint64_t>(s.seed)};
     const std::uint64_t start = rays_traced();
     const StageOne one = run_stage_one(c.scene, first, run);
-    const std::vector<Path> seeds = choose_seeds(c.scene, first, one, one.all_groups(), kChains);
+    const std::vector<Path> seeds = choose_seeds(c.scene, first, one, one.all_groups(), extent.chains);
     if (seeds.empty()) return std::numeric_limits<double>::infinity();
     const double b = one.brightness.mean();
-    const double brightness =
-        one.brightness.variance() / (b * b) * static_cast<double>(rays_traced() - start) / kBrightnessSamples;
+    const double brightness = one.brightness.variance() / (b * b) * static_cast<double>(rays_traced() - start) /
+                              static_cast<double>(extent.brightness_samples);
 
     const Mixture<Path> mixture =
         make_mixture({&c.scene, PathSet::stored, static_cast<int>(s.max_depth)}, s, c.user_paths);

@@ -28,6 +28,10 @@ struct Share {
     std::function<void(const Picture&)> save;
     double save_every = std::numeric_limits<double>::infinity();
 
+    /// Called between units with the picture so far, where `wants_look` says so. Both may be empty.
+    std::function<void(const Picture&)> look;
+    std::function<bool()> wants_look;
+
     /// Tells different processes which units to do: the n-th call made by any of them returns n, from 0. Empty: there
     /// is only this process.
     std::function<std::int64_t()> take_number;

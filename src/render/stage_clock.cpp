@@ -1,21 +1,11 @@
 #include "render/stage_clock.h"
 
+#include "core/cpu_time.h"
 #include "scene/ray_counter.h"
 
 #include <algorithm>
-#include <ctime>
 
 namespace keyhole {
-namespace {
-
-/// CPU time of all threads of the process [s].
-double cpu_seconds() {
-    timespec t{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-} // namespace
 
 StageClock::StageClock(RenderStats& stats, std::string name)
     : stats_(stats), name_(std::move(name)), start_(std::chrono::steady_clock::now()), cpu_(cpu_seconds()),

@@ -92,6 +92,7 @@ void Work::end_unit(const RenderStats& stats) {
         share_.save(snapshot(stats));
         saved_ = std::chrono::steady_clock::now();
     }
+    if (share_.look && share_.wants_look()) share_.look(total_.to_picture());
 }
 
 double Work::samples() const {

@@ -75,9 +75,11 @@ Technique choose_technique(const Scene& scene, const StageOneSettings& settings)
     std::array<RunningStats, 2> found;
     std::array<double, 2> cost{};
     for (const Technique technique : {Technique::path, Technique::bidirectional}) {
-        std::array<RunningStats, 16> parts;
+        // A trial of both takes no more than what follows.
+        const std::int64_t blocks = std::clamp<std::int64_t>(settings.samples / kBlock / 2, 1, 16);
+        std::vector<RunningStats> parts(static_cast<std::size_t>(blocks));
         const std::uint64_t rays = rays_traced();
-        parallel_for(16, [&](std::int64_t b) {
+        parallel_for(blocks, [&](std::int64_t b) {
             parts[static_cast<std::size_t>(b)] =
                 run_block(scene, settings, technique, {b * kBlock, (b + 1) * kBlock}).brightness;
         });

@@ -7,8 +7,8 @@ constexpr ProposalKind kKinds[] = {
     {make_bidirectional, &Settings::p_bidirectional},
     {make_lens_subpath, &Settings::p_lens_subpath},
     {make_lens_perturbation, &Settings::p_lens_perturbation},
-    {make_multi_chain_perturbation, &Settings::p_multi_chain_perturbation},
-    {make_caustic_perturbation, &Settings::p_caustic_perturbation},
+    {make_multi_chain_perturbation, &Settings::p_multi_chain_perturbation, true},
+    {make_caustic_perturbation, &Settings::p_caustic_perturbation, true},
     {make_photon_map_perturbation, &Settings::p_photon_map},
 };
 
@@ -20,8 +20,9 @@ Mixture<Path> make_mixture(const ProposalContext& context, const Settings& setti
     constexpr int kFamily = 0; // of BD and UP, which replace the same vertices
     Mixture<Path> mixture;
     for (const ProposalKind& kind : kKinds)
-        mixture.add(kind.make(context), settings.*kind.weight,
-                    kind.make == make_bidirectional ? kFamily : mixture.kAlone);
+        if (kind.wanted(*context.scene, settings))
+            mixture.add(kind.make(context), settings.*kind.weight,
+                        kind.make == make_bidirectional ? kFamily : mixture.kAlone);
     double total = 0;
     for (const UserPath& path : paths) total += path.weight;
     for (const UserPath& path : paths)

@@ -32,6 +32,12 @@ PathProposal make_user_path(const ProposalContext& context, const UserPath& path
 struct ProposalKind {
     PathProposal (*make)(const ProposalContext&);
     double Settings::*weight;
+    bool needs_specular = false; ///< nothing to do in scenes without mirrors and smooth glass
+
+    /// Whether the mixture for this scene and these settings has it.
+    bool wanted(const Scene& scene, const Settings& settings) const {
+        return !needs_specular || scene.traits().delta || settings.plan == "all";
+    }
 };
 
 /// All kinds but user paths, which a scene has its own of. Statistics, settings and tests read this table.

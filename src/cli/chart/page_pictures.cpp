@@ -1,0 +1,60 @@
+#include "cli/chart/page_pictures.h"
+
+#include "film/grey.h"
+#include "film/png.h"
+#include "film/tonemap.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace keyhole {
+namespace {
+
+std::string base64(const std::string& bytes) {
+    constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    text.reserve(bytes.size() / 3 * 4 + 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        const std::size_t have = std::min<std::size_t>(3, bytes.size() - i);
+        unsigned group = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            group = group << 8 | (k < have ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+        for (std::size_t k = 0; k < 4; ++k) text += k <= have ? kDigits[group >> (18 - 6 * k) & 63U] : '=';
+    }
+    return text;
+}
+
+std::string png_uri(int width, int height, int channels, const std::vector<std::uint8_t>& pixels) {
+    return "data:image/png;base64," + base64(png_bytes(width, height, channels, pixels));
+}
+
+} // namespace
+
+Image shrunk(const Image& image, int factor) {
+    if (factor == 1) return image;
+    Image small(image.width / factor, image.height / factor, image.channels);
+    const float share = 1 / static_cast<float>(factor * factor);
+    for (int y = 0; y < small.height * factor; ++y)
+        for (int x = 0; x < small.width * factor; ++x)
+            for (int k = 0; k < image.channels; ++k) small.at(x / factor, y / factor)[k] += share * image.at(x, y)[k];
+    return small;
+}
+
+std::string picture_uri(const Image& image, const Image& reference) {
+    return png_uri(image.width, image.height, 3, tonemap(image, reference));
+}
+
+std::string error_uri(const Image& image, const Image& reference) {
+    const Grey i(image), r(reference);
+    const double floor = 0.1 * mean(r.y);
+    std::vector<std::uint8_t> bytes(i.y.size(), 128);
+    for (std::size_t p = 0; p < bytes.size(); ++p) {
+        const double e = (i.y[p] - r.y[p]) / (std::abs(r.y[p]) + floor);
+        if (std::isfinite(e))
+            bytes[p] = static_cast<std::uint8_t>(
+                std::lround(128 + 127 * std::copysign(std::sqrt(std::min(std::abs(e), 1.0)), e)));
+    }
+    return png_uri(image.width, image.height, 1, bytes);
+}
+
+} // namespace keyhole

@@ -1,0 +1,134 @@
+#include "cli/chart/reference.h"
+
+#include "cli/beauty.h"
+#include "core/error.h"
+#include "film/grey.h"
+#include "film/image_error.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+namespace keyhole {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<const char*, 3> kCandidates{"path", "bdpt", "mlt"}; // unbiased, and drawn directly
+
+/// Two independent pictures, each the mean of the parts made so far.
+struct Pair {
+    std::string method;
+    Image a, b;
+    double seconds = 0; ///< CPU time of each
+    int parts = 0;
+
+    /// Root of the relative squared error of (a + b) / 2, from how a and b differ.
+    double standard_error() const {
+        Image mean = a;
+        for (std::size_t i = 0; i < mean.data.size(); ++i) mean.data[i] = (a.data[i] + b.data[i]) / 2;
+        return std::sqrt(image_error(a, mean).relmse_trim);
+    }
+    double brightness() const { return (mean(Grey(a).y) + mean(Grey(b).y)) / 2; }
+    /// How much of the brightness may be chance.
+    double brightness_error() const { return std::abs(mean(Grey(a).y) - mean(Grey(b).y)); }
+};
+
+void average_in(Image& sum, const Image& part, double share) {
+    if (sum.data.empty()) sum = Image(part.width, part.height, part.channels);
+    for (std::size_t i = 0; i < sum.data.size(); ++i)
+        sum.data[i] += static_cast<float>(share) * (part.data[i] - sum.data[i]);
+}
+
+class ReferenceMaker {
+  public:
+    ReferenceMaker(const ChartScene& scene, const ChartOptions& options, const Renderer& renderer, int jobs)
+        : scene_(scene), options_(options), renderer_(renderer), jobs_(jobs),
+          folder_(fs::path(options.folder) / "references" / scene.key()) {
+        fs::create_directories(folder_);
+    }
+
+    Reference make() {
+        Pair pair = best_candidate();
+        for (double part = trial_seconds(); !renderer_.stopped() && pair.standard_error() > options_.reference_error &&
+                                            2 * (pair.seconds + part) <= options_.reference_time;
+             part *= 1.5)
+            extend(pair, part);
+        const double error = pair.standard_error();
+        return {std::move(pair.a), std::move(pair.b), pair.method, error, 2 * pair.seconds};
+    }
+
+  private:
+    double trial_seconds() const { return std::min(options_.longest_time(), options_.reference_time / 12); }
+
+    /// The method of least difference between two of its pictures, among those that miss no light.
+    Pair best_candidate() {
+        std::array<Pair, kCandidates.size()> pairs;
+        double brightest = 0;
+        for (std::size_t i = 0; i < pairs.size(); ++i) {
+            pairs[i].method = kCandidates[i];
+            extend(pairs[i], trial_seconds());
+            if (renderer_.stopped()) return pairs[0];
+            brightest = std::max(brightest, pairs[i].brightness() - 3 * pairs[i].brightness_error());
+        }
+        const Pair* best = nullptr;
+        for (const Pair& pair : pairs) {
+            const bool misses_light = pair.brightness() < 0.97 * brightest;
+            if (!misses_light && (best == nullptr || pair.standard_error() < best->standard_error())) best = &pair;
+        }
+        return *best;
+    }
+
+    /// Renders another part of both pictures, or takes it from an earlier chart.
+    void extend(Pair& pair, double seconds) {
+        std::array<Image, 2> parts;
+        run_jobs(std::min(jobs_, 2), 2, [&](std::size_t side) {
+            const std::string file =
+                (folder_ / fmt::format("{}-{:g}s-{}{}.exr", pair.method, seconds, pair.parts, "ab"[side])).string();
+            // Seeds that no run of the chart has.
+            const std::size_t seed = 1'000'000 + 2 * static_cast<std::size_t>(pair.parts) + side;
+            if (!fs::exists(file)) {
+                const RunResult result =
+                    renderer_.render(scene_, seconds, {"method=" + pair.method, fmt::format("seed={}", seed)}, file);
+                if (!result.failure.empty() && !renderer_.stopped())
+                    throw InputError(
+                        fmt::format("{}: no reference by {}: {}", scene_.path, pair.method, result.failure));
+            }
+            if (!renderer_.stopped()) parts[side] = read_beauty(file);
+        });
+        if (renderer_.stopped()) return;
+        pair.seconds += seconds;
+        ++pair.parts;
+        average_in(pair.a, parts[0], seconds / pair.seconds);
+        average_in(pair.b, parts[1], seconds / pair.seconds);
+    }
+
+    const ChartScene& scene_;
+    const ChartOptions& options_;
+    const Renderer& renderer_;
+    int jobs_;
+    fs::path folder_;
+};
+
+Image read_reference(const std::string& path, const ChartScene& scene) {
+    Image image = read_beauty(path);
+    if (image.width != scene.width || image.height != scene.height)
+        throw InputError(fmt::format("{}: found a picture of {} x {} pixels, expected {} x {} as the scene has", path,
+                                     image.width, image.height, scene.width, scene.height));
+    return image;
+}
+
+} // namespace
+
+Reference make_reference(const ChartScene& scene, const ChartOptions& options, const Renderer& renderer, int jobs) {
+    if (options.references.empty()) return ReferenceMaker(scene, options, renderer, jobs).make();
+    Reference reference;
+    reference.first = read_reference(options.references[0], scene);
+    if (options.references.size() > 1) reference.second = read_reference(options.references[1], scene);
+    return reference;
+}
+
+} // namespace keyhole

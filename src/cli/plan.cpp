@@ -1,0 +1,137 @@
+// keyhole plan: what a scene holds, what its render leaves out because of that, and what it will cost.
+#include "render/plan.h"
+
+#include "cli/command.h"
+#include "cli/resolution.h"
+#include "cli/units.h"
+#include "render/expected_cost.h"
+#include "scene/load/load.h"
+#include "scene/texture.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace keyhole {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct PlanCommand {
+    std::string scene, resolution;
+    std::vector<std::string> settings;
+    bool json = false;
+};
+
+Json share(double part, double whole) { return whole > 0 ? Json(part / whole) : Json(); }
+
+Json found_json(const Scene& scene, const SceneSurvey& survey) {
+    Json emitters = Json::array();
+    double power = 0;
+    for (const auto& emitter : scene.emitters()) power += emitter->power();
+    for (std::size_t i = 0; i < scene.emitters().size(); ++i)
+        emitters.push_back({{"kind", scene.emitters()[i]->kind()},
+                            {"power", share(scene.emitters()[i]->power(), power)},
+                            {"seen", share(survey.by_emitter[i], survey.total())}});
+    const auto light = [&](LightClass c) { return share(survey.of(c).mean(), survey.total()); };
+    return {{"surfaces",
+             {{"specular", survey.specular},
+              {"glossy", survey.glossy},
+              {"diffuse", survey.diffuse},
+              {"none", survey.nothing}}},
+            {"light",
+             {{"emission", light(LightClass::emission)},
+              {"direct", light(LightClass::direct)},
+              {"second", light(LightClass::second)},
+              {"indirect", light(LightClass::indirect)},
+              {"caustic", light(LightClass::caustic)}}},
+            {"emitters", emitters},
+            {"textures", loaded_images().size()},
+            {"paths", survey.samples}};
+}
+
+Json plan_json(const PlanCommand& o) {
+    LoadedScene loaded = load(o.scene, o.settings);
+    if (!o.resolution.empty()) set_resolution(loaded.description.window, o.resolution);
+    Scene scene(std::move(loaded.description));
+    const UserPaths paths = bind_user_paths(scene, loaded.user_paths);
+    const SurfacePatches patches(scene.shapes());
+    const RenderPlan plan = plan_render({scene, loaded.settings, patches, paths}, {}, 1 << 16);
+    const ExpectedCost cost = expect_cost(scene, loaded.settings, {}, loaded.user_paths);
+    Json choices = Json::array(), stages = Json::object();
+    for (const PlanItem& item : plan.items)
+        choices.push_back({{"name", item.name}, {"on", item.on}, {"why", item.why}});
+    for (const auto& [name, seconds] : cost.stages) stages[name] = seconds;
+    return {{"scene", o.scene},
+            {"found", found_json(scene, plan.survey)},
+            {"choices", choices},
+            {"method", cost.method},
+            {"remarks", cost.remarks},
+            {"photon_bytes", cost.photon_bytes},
+            {"cpu_seconds", cost.cpu_seconds()},
+            {"stages", stages}};
+}
+
+std::string percent(const Json& share) {
+    return share.is_null() ? "-" : fmt::format("{:.2g} %", 100 * share.get<double>());
+}
+
+void print_shares(const char* name, const Json& shares) {
+    std::string text;
+    for (const auto& [key, value] : shares.items())
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", key, percent(value));
+    fmt::print("{:<12}{}\n", name, text);
+}
+
+/// Lists longer than this end in a summary; --json has all of it.
+constexpr std::size_t kMostEmitters = 8;
+
+void print_plan(const Json& plan) {
+    const Json& found = plan["found"];
+    print_shares("surfaces", found["surfaces"]);
+    print_shares("light", found["light"]);
+    std::vector<Json> emitters(found["emitters"].begin(), found["emitters"].end());
+    const auto seen = [](const Json& e) { return e["seen"].is_null() ? 0.0 : e["seen"].get<double>(); };
+    std::ranges::stable_sort(emitters, [&](const Json& a, const Json& b) { return seen(a) > seen(b); });
+    for (std::size_t i = 0; i < std::min(emitters.size(), kMostEmitters); ++i)
+        fmt::print("{:<12}{}: {} of the power, {} of the light that is seen\n", i == 0 ? "emitters" : "",
+                   emitters[i]["kind"].get<std::string>(), percent(emitters[i]["power"]), percent(emitters[i]["seen"]));
+    if (emitters.size() > kMostEmitters) fmt::print("{:<12}and {} more\n", "", emitters.size() - kMostEmitters);
+    fmt::print("{:<12}{}\n", "textures", found["textures"].get<int>());
+    for (const Json& item : plan["choices"])
+        fmt::print("{:<12}{}: {}\n", item["on"].get<bool>() ? "on" : "off", item["name"].get<std::string>(),
+                   item["why"].get<std::string>());
+    fmt::print("{:<12}{}\n", "method", plan["method"].get<std::string>());
+    for (const Json& remark : plan["remarks"]) fmt::print("{:<12}{}\n", "", remark.get<std::string>());
+    fmt::print("{:<12}{}B for photons and what serves them\n", "memory",
+               with_prefix(plan["photon_bytes"].get<double>()));
+    std::string stages;
+    for (const auto& [name, seconds] : plan["stages"].items())
+        stages += fmt::format("{}{} {}", stages.empty() ? "" : ", ", name, duration(seconds.get<double>()));
+    fmt::print("{:<12}about {} of CPU time: {}\n", "time", duration(plan["cpu_seconds"].get<double>()), stages);
+}
+
+} // namespace
+
+void add_plan_command(CLI::App& app, Action& action) {
+    CLI::App* command = app.add_subcommand("plan", "Print what a render of a scene would do, and what it would cost");
+    auto o = std::make_shared<PlanCommand>();
+    command->add_option("SCENE", o->scene, "scene file (YAML, or .pbrt)")->required();
+    command->add_option("--resolution", o->resolution, "WIDTHxHEIGHT in pixels");
+    command->add_option("-D", o->settings, "any setting of render, KEY=VALUE; may be repeated")
+        ->allow_extra_args(false);
+    command->add_flag("--json", o->json, "print one JSON object");
+    command->callback([&action, o] {
+        action = [o] {
+            const Json plan = plan_json(*o);
+            if (o->json)
+                fmt::print("{}\n", plan.dump(2));
+            else
+                print_plan(plan);
+            return kSuccess;
+        };
+    });
+}
+
+} // namespace keyhole

@@ -1,0 +1,40 @@
+#include "film/grey.h"
+
+#include "core/vec.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace keyhole {
+
+Grey::Grey(const Image& image)
+    : width(static_cast<std::size_t>(image.width)), height(static_cast<std::size_t>(image.height)), y(width * height) {
+    const auto n = static_cast<std::size_t>(image.channels);
+    for (std::size_t i = 0; i < y.size(); ++i) {
+        const float* p = image.data.data() + n * i;
+        y[i] = n < 3 ? double{p[0]} : luminance({p[0], p[1], p[2]});
+    }
+}
+
+double mean(const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+std::vector<double> smooth(const Grey& g) {
+    const auto clamped = [](std::size_t i, std::size_t step, std::size_t n) {
+        return std::min(std::max(i + step, std::size_t{1}) - 1, n - 1);
+    };
+    std::vector<double> out(g.y.size());
+    for (std::size_t row = 0; row < g.height; ++row) {
+        for (std::size_t x = 0; x < g.width; ++x) {
+            double sum = 0;
+            for (std::size_t j = 0; j < 3; ++j)
+                for (std::size_t i = 0; i < 3; ++i)
+                    sum += g.y[clamped(row, j, g.height) * g.width + clamped(x, i, g.width)];
+            out[row * g.width + x] = sum / 9;
+        }
+    }
+    return out;
+}
+
+} // namespace keyhole

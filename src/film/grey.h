@@ -1,0 +1,25 @@
+// Luminance of pictures, for measures of error.
+#pragma once
+
+#include "film/picture.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace keyhole {
+
+/// Rec. 709 luminance of each pixel, row by row; of pictures of one channel, that channel.
+struct Grey {
+    std::size_t width, height;
+    std::vector<double> y;
+
+    explicit Grey(const Image& image);
+};
+
+/// Mean of the values; NaN without any.
+double mean(const std::vector<double>& values);
+
+/// Mean over the 3x3 neighbourhood of each pixel; the border repeats.
+std::vector<double> smooth(const Grey& g);
+
+} // namespace keyhole

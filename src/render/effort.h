@@ -1,0 +1,32 @@
+// How much effort a render makes, as one number; and the number that fits a time.
+#pragma once
+
+#include "core/settings.h"
+#include "render/render.h"
+
+#include <set>
+#include <string>
+
+namespace keyhole {
+
+/// `settings` with everything that makes a render longer and better set by `effort`: 1 takes about 5 s of CPU time on
+/// the scenes of scenes/ at 320x240. More effort is more samples, more photons, a finer cache, in proportions that were
+/// found by sweeps (docs/charts.md); photons grow more slowly than the paths that bring them, so that bias and noise of
+/// lookups shrink together. Settings named in `given` stay as they are. Photons that the memory can't hold at once are
+/// spread over passes.
+/// @param pixels of the picture.
+Settings with_effort(const Settings& settings, double effort, std::int64_t pixels, const std::set<std::string>& given);
+
+/// What `--quality` names: the effort that makes a draft, a good picture, or a final one, at any size of the picture.
+/// @throws InputError for other words.
+Settings with_quality(const Settings& settings, const std::string& quality, const std::set<std::string>& given);
+
+/// Renders with as much effort as fits in context.stop->seconds_left(): short trials tell what effort costs here, and
+/// are thrown away. Where even those don't fit, the result is what there was when time was up.
+/// @param given settings that stay as they are.
+/// @param share for its look(); all passes are done here.
+/// @throws as render().
+RenderResult render_in_time(Scene& scene, const Settings& settings, const std::set<std::string>& given,
+                            const RunContext& context, const UserPathFile& user_paths = {}, const Share& share = {});
+
+} // namespace keyhole

@@ -1,0 +1,35 @@
+// What a scene needs of the methods that render from photon maps, and what is left out.
+#pragma once
+
+#include "core/progress.h"
+#include "render/photon_sampler.h"
+#include "render/scene_survey.h"
+
+#include <string>
+#include <vector>
+
+namespace keyhole {
+
+/// One choice.
+struct PlanItem {
+    std::string name;
+    bool on;
+    std::string why;
+};
+
+struct RenderPlan {
+    SceneSurvey survey;
+    bool photons = true;  ///< photon maps, importance maps, chains
+    bool caustics = true; ///< a caustic map, importance and proposals for it
+    bool gather = true;   ///< gather rays for indirect light, more than one for each visible point
+    bool cache = true;    ///< of irradiance
+    std::vector<PlanItem> items;
+};
+
+/// Decides what is left out, by what the materials can do, and by light that the eye can't see: photons are given up
+/// only if neither paths from the eye, nor paths from both ends, nor light paths that look for where the eye looks find
+/// any light that photon maps would hold. With settings.plan = all everything is on.
+/// @param survey_samples paths that the survey traces.
+RenderPlan plan_render(const SamplerContext& c, const RunContext& run, std::int64_t survey_samples = 4096);
+
+} // namespace keyhole
