@@ -10,8 +10,8 @@
 namespace keyhole {
 
 /// `settings` with everything that makes a render longer and better set by `effort`: 1 takes about 5 s of CPU time on
-/// the scenes of scenes/ at 320x240. More effort is more samples, more photons, a finer cache, in proportions that were
-/// found by sweeps (docs/charts.md); photons grow more slowly than the paths that bring them, so that bias and noise of
+/// the scenes of scenes/ at 320x240. More effort is more samples, more photons, a finer cache, in proportions that
+/// served well there; photons grow more slowly than the paths that bring them, so that bias and noise of
 /// lookups shrink together. Settings named in `given` stay as they are. Photons that the memory can't hold at once are
 /// spread over passes.
 /// @param pixels of the picture.

@@ -76,7 +76,7 @@ bool gather_pass(const SamplerContext& c, const RenderPlan& plan, std::int64_t p
     // An estimate made beforehand is asked from a little way off. Once regions get as small as that, each is made where
     // it is asked.
     std::optional<IrradianceMap> irradiance;
-    if (static_cast<float>(s.nearest) * radii.shrink * radii.shrink > 2.0f * kScoutEvery)
+    if (plan.photons && static_cast<float>(s.nearest) * radii.shrink * radii.shrink > 2.0f * kScoutEvery)
         irradiance.emplace(global.scouts(), global.carriers(), estimates, context);
     if (irradiance)
         report_lookups(irradiance->mean_photons(), static_cast<double>(s.nearest) * radii.shrink * radii.shrink, stats);
@@ -85,8 +85,10 @@ bool gather_pass(const SamplerContext& c, const RenderPlan& plan, std::int64_t p
     if (irradiance) {
         sites.emplace(c.scene, irradiance->places(), SiteOptions{.seed = seed}, context);
     }
-    stats.photon_bytes = std::max<std::uint64_t>(
-        stats.photon_bytes, global.bytes() + caustic.bytes() + (irradiance ? irradiance->bytes() + sites->bytes() : 0));
+    if (plan.photons)
+        stats.photon_bytes =
+            std::max<std::uint64_t>(stats.photon_bytes, global.bytes() + caustic.bytes() +
+                                                            (irradiance ? irradiance->bytes() + sites->bytes() : 0));
     const GatherMaps maps{.global = global.carriers().photons().empty() ? nullptr : &global,
                           .irradiance = irradiance ? &*irradiance : nullptr,
                           .sites = sites ? &*sites : nullptr,

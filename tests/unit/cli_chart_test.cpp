@@ -1,0 +1,82 @@
+// The program from outside: time budgets, the picture so far, plans, charts that go on where they stopped.
+#include "film/exr.h"
+#include "support/program.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <csignal>
+
+using namespace keyhole;
+using testing::HasSubstr;
+
+TEST_F(Program, HangupWritesThePictureSoFarAndTheRenderGoesOn) {
+    const pid_t pid = start("render scene.yaml -o a.exr --spp 10M");
+    const auto running = [&] { return waitpid(pid, nullptr, WNOHANG) == 0; };
+    while (read("err").find("path tracing") == std::string::npos && running()) usleep(20'000);
+    kill(pid, SIGHUP);
+    while (!exists("a.png") && running()) usleep(20'000);
+    EXPECT_TRUE(running());
+    const Picture so_far = read_exr(scratch.path("a.exr"));
+    EXPECT_EQ(so_far.metadata.at("complete"), "no");
+    EXPECT_TRUE(so_far.layers.contains("beauty"));
+    kill(pid, SIGINT);
+    EXPECT_EQ(wait(pid), 130) << read("err");
+}
+
+TEST_F(Program, CpuTimeSetsSamplesAndPhotons) {
+    ASSERT_EQ(run("render scene.yaml -o a.exr --cpu-time 0.5 --method ipm --stats s.json --no-png"), 0) << read("err");
+    const auto stats = nlohmann::json::parse(read("s.json"));
+    EXPECT_THAT(stats["remarks"].dump(), HasSubstr("set by the time:"));
+    EXPECT_GT(stats["values"]["effort"], 0);
+    const std::string settings = read_exr(scratch.path("a.exr")).metadata.at("settings");
+    EXPECT_THAT(settings, testing::Not(HasSubstr("light_paths=1000000 ")));
+    // What the command line names stays.
+    ASSERT_EQ(run("render scene.yaml -o b.exr --cpu-time 0.5 --method ipm --spp 3 --no-png -q"), 0) << read("err");
+    EXPECT_THAT(read_exr(scratch.path("b.exr")).metadata.at("settings"), HasSubstr("spp=3 "));
+}
+
+TEST_F(Program, QualityIsEffortInOneWord) {
+    std::int64_t before = 0;
+    for (const char* quality : {"draft", "good"}) {
+        ASSERT_EQ(run(std::string("render scene.yaml -o a.exr -q --no-png --quality ") + quality), 0) << read("err");
+        const std::string settings = read_exr(scratch.path("a.exr")).metadata.at("settings");
+        const std::int64_t spp = std::stoll(settings.substr(settings.find("spp=") + 4));
+        EXPECT_GT(spp, before);
+        before = spp;
+    }
+}
+
+TEST_F(Program, PlanTellsWhatIsLeftOutAndWhy) {
+    ASSERT_EQ(run("plan scene.yaml --json -D method=ipm -D light_paths=20k"), 0) << read("err");
+    const auto plan = nlohmann::json::parse(read("out"));
+    EXPECT_EQ(plan["method"], "ipm");
+    bool caustics = true;
+    for (const auto& choice : plan["choices"]) {
+        EXPECT_FALSE(choice["why"].get<std::string>().empty());
+        if (choice["name"] == "caustic map and proposals") caustics = choice["on"];
+    }
+    EXPECT_FALSE(caustics);
+    EXPECT_EQ(plan["found"]["emitters"].size(), 1u);
+    EXPECT_GT(plan["found"]["light"]["direct"], 0.1);
+    EXPECT_GT(plan["cpu_seconds"], 0);
+    ASSERT_EQ(run("plan scene.yaml -D light_paths=20k"), 0);
+    EXPECT_THAT(read("out"), HasSubstr("off         caustic map and proposals: "));
+}
+
+TEST_F(Program, ChartGoesOnWhereItStopped) {
+    const std::string chart = "chart scene.yaml --times 0.1 --repeats 2 --reference-time 1 -j 2 -o report --methods ";
+    ASSERT_EQ(run(chart + "path"), 0) << read("err");
+    EXPECT_THAT(read("err"), HasSubstr("2 runs, 2 of them to be made"));
+    ASSERT_EQ(run(chart + "path,ipm"), 0) << read("err");
+    EXPECT_THAT(read("err"), HasSubstr("4 runs, 2 of them to be made"));
+    for (const char* file : {"points.csv", "runs.csv", "stages.csv", "methods.csv", "index.html"})
+        EXPECT_TRUE(exists(std::string("report/") + file)) << file;
+    const std::string page = read("report/index.html");
+    EXPECT_THAT(page, HasSubstr("data:image/png;base64,"));
+    EXPECT_LT(page.size(), 5'000'000u);
+    // Other settings make other pictures.
+    ASSERT_EQ(run(chart + "path -D max_depth=2"), 0) << read("err");
+    EXPECT_THAT(read("err"), HasSubstr("2 runs, 2 of them to be made"));
+}
