@@ -38,6 +38,7 @@ enum class StreamPurpose : std::uint64_t {
     failure_study,
     bidirectional,
     survey,
+    bright_spots,
 };
 
 /// PCG32 (O'Neill 2014). One for each chain and each pixel, never for each thread, so that a picture does not

@@ -1,0 +1,64 @@
+#include "gather/compute_record.h"
+
+#include "core/kronecker.h"
+#include "scene/warp.h"
+
+#include <algorithm>
+
+namespace keyhole {
+namespace {
+
+/// Whether the surface itself bars the way: a shading normal may look into it.
+bool leaves(const VisiblePoint& c, const Vec3& w) { return w.dot(facing(c.vertex.point.ng, c.back)) > 0; }
+
+} // namespace
+
+IrradianceRecord RecordMaker::compute(const VisiblePoint& c, std::uint64_t index) const {
+    Rng rng(options_.seed, StreamPurpose::cache, index);
+    const Frame frame(cache_normal(c.vertex, c.back));
+    const auto min_radius = static_cast<float>(options_.min_radius * c.pixel);
+    const std::vector<SpotCone> cones = spots_.cones_from(c.vertex.point.p, frame.n, options_.rays / 2);
+    const auto has_rays = [&](int spot) {
+        return std::any_of(cones.begin(), cones.end(), [&](const SpotCone& cone) { return cone.spot == spot; });
+    };
+    std::vector<HemisphereRay> found(static_cast<std::size_t>(grid_.size()));
+    for (int i = 0; i < grid_.size(); ++i) {
+        const double u0 = rng.next(), u1 = rng.next();
+        const Vec3 local = grid_.direction(i, u0, u1), w = frame.to_world(local);
+        HemisphereRay& ray = found[static_cast<std::size_t>(i)];
+        ray.distance = std::numeric_limits<float>::infinity();
+        if (!leaves(c, w)) continue;
+        const auto arrival = rays_.trace(c.vertex, w, local.z * kInvPi, c.scatterings, rng);
+        // What lies nearer than the least reach can't be told apart anyway.
+        ray.distance = std::max(arrival.distance, min_radius);
+        if (!has_rays(spots_.spot_at(c.vertex.point.p + w * arrival.distance))) ray.radiance = arrival.indirect;
+    }
+    HemisphereEstimate light = grid_.estimate(found, frame);
+    for (const SpotCone& cone : cones) add_spot(c, frame, cone, rng, light);
+    return {c.vertex.point.p, frame.n, light, min_radius, static_cast<float>(options_.max_radius * c.pixel)};
+}
+
+void RecordMaker::add_spot(const VisiblePoint& c, const Frame& frame, const SpotCone& cone, Rng& rng,
+                           HemisphereEstimate& sum) const {
+    const Frame around(cone.axis);
+    const double shift0 = rng.next(), shift1 = rng.next(), share = cone.solid_angle() / cone.rays;
+    for (int i = 0; i < cone.rays; ++i) {
+        const Vec3 w = around.to_world(
+            uniform_cone(kronecker(shift0, i, kR2[0]), kronecker(shift1, i, kR2[1]), cone.cos_half_angle));
+        const float z = w.dot(frame.n);
+        if (!(z > 0) || !leaves(c, w)) continue;
+        const auto arrival = rays_.trace(c.vertex, w, z * kInvPi, c.scatterings, rng);
+        if (spots_.spot_at(c.vertex.point.p + w * arrival.distance) != cone.spot) continue;
+        const Rgb brought = arrival.indirect * share;
+        sum.irradiance += brought * static_cast<double>(z);
+        const Vec3 tangent = w - frame.n * z;
+        for (int k = 0; k < 3; ++k) {
+            const auto radiance = static_cast<float>(brought[k]);
+            sum.rotation[static_cast<std::size_t>(k)] += tangent * radiance;
+            // A small patch that turns its face this way brings cos / r^2 of its light.
+            sum.translation[static_cast<std::size_t>(k)] += tangent * (3 * radiance * z / arrival.distance);
+        }
+    }
+}
+
+} // namespace keyhole

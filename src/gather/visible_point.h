@@ -1,0 +1,23 @@
+// Where the eye meets surfaces that an irradiance cache may know.
+#pragma once
+
+#include "gather/gather_rays.h"
+
+#include <optional>
+
+namespace keyhole {
+
+struct VisiblePoint {
+    Vertex vertex;
+    Vec3 back;       ///< unit
+    double pixel;    ///< width of a pixel there [m]
+    int scatterings; ///< from the eye, this one included
+};
+
+/// The near-Lambertian point that is seen at `image` (window coordinates), by specular events chosen at random.
+std::optional<VisiblePoint> visible_point(const GatherRays& rays, const Vec2& image, SampleSource& source);
+
+/// Shading normal on the side of `back`: what irradiance records are kept by.
+Vec3 cache_normal(const Vertex& v, const Vec3& back);
+
+} // namespace keyhole
