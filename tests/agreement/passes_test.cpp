@@ -21,6 +21,7 @@ class Passes : public testing::TestWithParam<const char*> {
         s.light_paths = 10'000;
         s.mutations = 20'000;
         s.brightness_samples = 10'000;
+        s.importons = 20'000;
         s.power = "reciprocal"; // of mps: passes can't average the error of an importance map away
         return s;
     }

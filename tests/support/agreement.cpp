@@ -38,22 +38,30 @@ double incomplete_beta(double a, double b, double x) {
 
 double student_p_value(double t, double dof) { return incomplete_beta(dof / 2, 0.5, dof / (dof + t * t)); }
 
+int blocks_across(int pixels) { return (pixels + kBlock - 1) / kBlock; }
+
+std::vector<double> block_means(const Image& image) {
+    const auto across = static_cast<std::size_t>(blocks_across(image.width));
+    std::vector<RunningStats> blocks(across * static_cast<std::size_t>(blocks_across(image.height)));
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) {
+            const float* p = image.at(x, y);
+            blocks[static_cast<std::size_t>(y / kBlock) * across + static_cast<std::size_t>(x / kBlock)].add(
+                luminance(Rgb(p[0], p[1], p[2])));
+        }
+    std::vector<double> means;
+    for (const RunningStats& b : blocks) means.push_back(b.mean());
+    return means;
+}
+
 Blocks render_blocks(Scene& scene, Settings settings, int runs, const std::string& layer,
                      const UserPathFile& user_paths) {
     Blocks blocks;
     for (int run = 0; run < runs; ++run, ++settings.seed) {
         const Picture picture = render(scene, settings, {}, user_paths).picture;
-        const Image& image = picture.layers.at(layer);
-        const int across = image.width / kBlock, down = image.height / kBlock;
-        blocks.resize(static_cast<std::size_t>(across * down));
-        for (int b = 0; b < across * down; ++b) {
-            double sum = 0;
-            for (int i = 0; i < kBlock * kBlock; ++i) {
-                const float* p = image.at(b % across * kBlock + i % kBlock, b / across * kBlock + i / kBlock);
-                sum += luminance(Rgb(p[0], p[1], p[2]));
-            }
-            blocks[static_cast<std::size_t>(b)].add(sum / (kBlock * kBlock));
-        }
+        const std::vector<double> means = block_means(picture.layers.at(layer));
+        blocks.resize(means.size());
+        for (std::size_t b = 0; b < means.size(); ++b) blocks[b].add(means[b]);
     }
     return blocks;
 }

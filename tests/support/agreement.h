@@ -3,6 +3,7 @@
 
 #include "core/settings.h"
 #include "core/statistics.h"
+#include "film/picture.h"
 #include "scene/load/user_path_file.h"
 #include "scene/scene.h"
 
@@ -13,6 +14,12 @@ namespace keyhole::test {
 
 /// Mean luminance of each 16 x 16 block, one entry an independent run.
 using Blocks = std::vector<RunningStats>;
+
+/// Blocks along a side of so many pixels, the last perhaps cut by the border.
+int blocks_across(int pixels);
+
+/// Mean luminance of each block, row by row.
+std::vector<double> block_means(const Image& image);
 
 /// Renders `runs` pictures of `scene` with consecutive seeds and collects the blocks of `layer`.
 Blocks render_blocks(Scene& scene, Settings settings, int runs, const std::string& layer = "beauty",
