@@ -26,9 +26,17 @@ std::optional<Image> image_of(const Scene& scene, const Emitter& emitter) {
     const auto bounds = emitter.bounds();
     if (!bounds || emitter.is_delta()) return std::nullopt;
     Rng rng(0, StreamPurpose::path_tracing, 0);
-    const SurfacePoint eye = scene.camera().eye(0.5, 0.5), point = emitter.sample_point(rng).point;
+    const SurfacePoint eye = scene.camera().eye(0.5, 0.5);
+    SurfacePoint point = emitter.sample_point(rng).point;
+    const auto is_seen = [&] {
+        const Vec3 to = direction(eye, point);
+        return scene.camera().image_point(eye, to) && luminance(emitter.radiance(point, -to)) > 0 &&
+               scene.visible(eye, point);
+    };
+    // Half of a closed emitter's points lie on its far side.
+    for (int i = 1; i < 16 && !is_seen(); ++i) point = emitter.sample_point(rng).point;
+    if (!is_seen()) return std::nullopt;
     const Vec3 w = direction(eye, point);
-    if (!scene.camera().image_point(eye, w) || !scene.visible(eye, point)) return std::nullopt;
     const double distance2 = (point.p - eye.p).length2(), radius2 = (bounds->upper - bounds->lower).length2() / 4.0;
     const double pdf = scene.camera().direction_pdf(w);
     return Image{kPi * radius2 / distance2 * pdf, bounds->intensity / distance2 * pdf};
