@@ -94,11 +94,13 @@ Share Keeping::share(const std::string& exr, const Picture& render, const Settin
     const int rank = team != nullptr ? team->rank() : 0;
     if (resume) {
         if (rank == 0) read(exr, {"the render", render});
-        if (team != nullptr) team->wait_for_first();
+        if (team != nullptr) team->wait_for_all(); // until the first has made one file of all
         if (rank > 0 && fs::exists(file(exr))) {
             done_ = {file(exr), read_exr(file(exr))};
             done_.picture.sums.clear(); // the first process has them
         }
+        // Whoever goes on before all have read would write over it, and its new units would be done twice.
+        if (team != nullptr) team->wait_for_all();
         if (!done_.name.empty()) share.done = &done_.picture;
     }
     share.save_every = checkpoint.value_or(kSeconds);

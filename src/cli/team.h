@@ -18,8 +18,8 @@ class Team {
     /// The n-th call made by any process returns n, from 0.
     virtual std::int64_t take_number() = 0;
 
-    /// Waits until rank 0 has got here.
-    virtual void wait_for_first() = 0;
+    /// Waits until all have got here.
+    virtual void wait_for_all() = 0;
 
     /// To be called when nobody of this process takes numbers any more. On rank 0 `join` is called with the metadata
     /// and sums of every other process' `part`, in the order of their ranks.

@@ -47,13 +47,13 @@ bool GatherRays::too_near(const Leg& leg, std::uint32_t place) const {
 }
 
 Rgb GatherRays::reflected(const Vertex& v, const Vec3& back, const Leg& leg, SampleSource& source) const {
-    const auto known = maps_.irradiance != nullptr && v.bsdf.traits().near_lambertian
-                           ? maps_.irradiance->irradiance(v.point.p, facing(v.point.ng, back))
-                           : IrradianceMap::Answer{};
-    if (!known.known) {
+    if (maps_.irradiance == nullptr || maps_.irradiance->places().empty() || !v.bsdf.traits().near_lambertian) {
         const Rgb direct = direct_light(scene_, v, back, source);
         return maps_.global != nullptr ? direct + estimate(*maps_.global, options_.max_radius, v, back) : direct;
     }
+    const auto known = maps_.irradiance->irradiance(v.point.p, facing(v.point.ng, back));
+    // Photons may be near, but none that this place sees: those of the other side of a wall.
+    if (!known.known) return direct_light(scene_, v, back, source);
     const Rgb f = v.bsdf.eval(back, back);
     const auto near = maps_.sites->direct(known.place, v.point.p);
     const Rgb direct = near ? f * *near : direct_light(scene_, v, back, source);

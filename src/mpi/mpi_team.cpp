@@ -9,7 +9,7 @@
 namespace keyhole {
 namespace {
 
-enum Tag : int { kAsk, kNumber, kNoMore, kGo, kStart, kSize, kBytes };
+enum Tag : int { kAsk, kNumber, kNoMore, kGo, kSize, kBytes };
 
 constexpr std::size_t kMostBytes = std::size_t{1} << 30; // of a message
 
@@ -88,10 +88,7 @@ std::int64_t MpiTeam::take_number() {
     return number;
 }
 
-void MpiTeam::wait_for_first() {
-    if (rank_ > 0) receive_signal(0, kStart);
-    for (int r = 1; rank_ == 0 && r < size_; ++r) send_signal(r, kStart);
-}
+void MpiTeam::wait_for_all() { MPI_Barrier(MPI_COMM_WORLD); }
 
 void MpiTeam::collect(const Picture& part, const std::function<void(Picture)>& join) {
     finish();

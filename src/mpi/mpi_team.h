@@ -22,7 +22,7 @@ class MpiTeam final : public Team {
 
     int rank() const override { return rank_; }
     std::int64_t take_number() override;
-    void wait_for_first() override;
+    void wait_for_all() override;
     void collect(const Picture& part, const std::function<void(Picture)>& join) override;
 
   private:

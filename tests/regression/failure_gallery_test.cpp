@@ -3,6 +3,7 @@
 #include "render/render.h"
 #include "scene/load/load.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -53,7 +54,7 @@ double mean_luminance(const Picture& picture) {
 }
 
 RenderResult make(const Case& c, const std::string& method) {
-    LoadedScene loaded = load(std::string(KEYHOLE_SOURCE_DIR) + "/scenes/failures/" + c.scene + ".yaml",
+    LoadedScene loaded = load(fmt::format("{}/scenes/failures/{}.yaml", KEYHOLE_SOURCE_DIR, c.scene),
                               {"method=" + method, "spp=8", "mutations=20k", "chains=64", "brightness_samples=10k",
                                "light_paths=20k", "importons=10k", "photon_memory=2MiB", "cache_rays=100"});
     if (loaded.description.window.width > 1) {
@@ -68,14 +69,13 @@ class FailureGallery : public testing::TestWithParam<Case> {};
 
 TEST_P(FailureGallery, EveryMethodIsRightOrSaysThatItIsNot) {
     const Case& c = GetParam();
-    std::string line = std::string("| ") + c.scene + " |";
+    std::string line = fmt::format("| {} |", c.scene);
     for (const char* method : kMethods) {
         const RenderResult result = make(c, method);
         const double mean = mean_luminance(result.picture);
         ASSERT_TRUE(std::isfinite(mean)) << method;
         const bool right = std::abs(mean - c.mean) <= c.bound * c.mean, alarmed = !result.stats.warnings.empty();
-        const bool known =
-            (" " + std::string(c.wrong) + " ").find(std::string(" ") + method + " ") != std::string::npos;
+        const bool known = fmt::format(" {} ", c.wrong).find(fmt::format(" {} ", method)) != std::string::npos;
         EXPECT_TRUE(right || alarmed || known)
             << method << ": " << mean << " instead of " << c.mean << ", and no word of it";
         line += right ? alarmed ? " right, alarmed |" : " right |" : alarmed ? " alarmed |" : " **wrong** |";

@@ -8,14 +8,14 @@
 namespace keyhole {
 namespace {
 
-/// A room of 4 m; in one corner a lamp shines into a white box that is open at one side only.
+/// A room of 4 m; close to one wall a small lamp shines on a white card.
 std::unique_ptr<Scene> room_with_a_bright_card() {
     const auto gray = make_diffuse(Rgb(0.5)), black = make_diffuse(Rgb(0.0));
     test::SceneMaker m;
     m.room({0, 0, 0}, {4, 4, 4}, gray)
         .rectangle({3.5f, 3.5f, 0.2f}, {0.1f, 0, 0}, {0, 0.1f, 0}, make_diffuse(Rgb(0.8)))
-        // Faces the card at a distance of 5 cm, and nothing else.
-        .rectangle({3.5f, 3.5f, 0.25f}, {0, 0.1f, 0}, {0.1f, 0, 0}, black, Rgb(100.0))
+        // Faces the card at a distance of 15 cm.
+        .rectangle({3.53f, 3.53f, 0.35f}, {0, 0.04f, 0}, {0.04f, 0, 0}, black, Rgb(100.0))
         .camera({2, 2, 3.9f}, {2, 1, 0}, 90)
         .window(64, 64);
     return m.build();
@@ -26,15 +26,17 @@ struct Records {
     double slope = 0; ///< mean of the derivative of the irradiance along x
 };
 
-constexpr int kRecords = 400;
+constexpr int kRecords = 1600;
 
 class SpotRecords : public testing::Test {
   protected:
-    SpotRecords() : from_(*visible_point(rays_, {0.5f, 0.3f}, rng_)) {}
+    SpotRecords() : from_(*visible_point(rays_, {0.5f, 0.8f}, rng_)) {
+        EXPECT_GT(from_.vertex.point.ng.y, 0.9f) << "that is not the floor";
+    }
 
     Records make(const BrightSpots& spots, const VisiblePoint& at) const {
         CacheOptions options;
-        options.rays = 100;
+        options.rays = 400;
         const RecordMaker maker(rays_, spots, options);
         Records r;
         for (std::uint64_t i = 0; i < kRecords; ++i) {
@@ -54,7 +56,6 @@ class SpotRecords : public testing::Test {
 
 TEST_F(SpotRecords, FindWhatIsBrightAndSmall) {
     EXPECT_GE(spots_.size(), 1u);
-    EXPECT_LE(spots_.size(), 12u);
     EXPECT_GE(spots_.spot_at({3.55f, 3.55f, 0.2f}), 0);
     EXPECT_EQ(spots_.spot_at({0.5f, 0.5f, 0}), -1);
     EXPECT_EQ(spots_.spot_at(Vec3(std::numeric_limits<float>::infinity())), -1);
@@ -70,10 +71,10 @@ TEST_F(SpotRecords, HaveTheSameMeanAndLessVariance) {
 
 TEST_F(SpotRecords, HaveTheSlopeThatTheirNeighboursShow) {
     VisiblePoint left = from_, right = from_;
-    left.vertex.point.p.x -= 0.1f;
-    right.vertex.point.p.x += 0.1f;
+    left.vertex.point.p.x -= 0.4f;
+    right.vertex.point.p.x += 0.4f;
     const Records a = make(spots_, left), b = make(spots_, right), middle = make(spots_, from_);
-    const double difference = (b.irradiance.mean() - a.irradiance.mean()) / 0.2;
+    const double difference = (b.irradiance.mean() - a.irradiance.mean()) / 0.8;
     EXPECT_NEAR(middle.slope, difference, 0.25 * std::abs(difference));
 }
 
