@@ -74,7 +74,9 @@ Json plan_json(const PlanCommand& o) {
 }
 
 std::string percent(const Json& share) {
-    return share.is_null() ? "-" : fmt::format("{:.2g} %", 100 * share.get<double>());
+    if (share.is_null()) return "-";
+    const double percent = 100 * share.get<double>();
+    return percent < 10 ? fmt::format("{:.2g} %", percent) : fmt::format("{:.0f} %", percent);
 }
 
 void print_shares(const char* name, const Json& shares) {

@@ -78,6 +78,7 @@ BrightSpots::BrightSpots(const GatherRays& rays, std::uint64_t seed, const RunCo
         if (c.sum2 / sum2 < kContrast * c.rays / met) continue;
         const Vec3 in_cells = (c.place - origin_) / width_;
         const Vec3 corner(std::floor(in_cells.x), std::floor(in_cells.y), std::floor(in_cells.z));
+        share_ += c.sum2 / sum2;
         index_.emplace(c.key, static_cast<int>(spots_.size()));
         spots_.push_back({origin_ + (corner + Vec3(0.5f)) * width_, c.sum / c.rays});
     }
@@ -114,7 +115,7 @@ std::vector<SpotCone> BrightSpots::cones_from(const Vec3& p, const Vec3& n, int 
         total += worth.back();
     }
     for (std::size_t i = 0; i < cones.size(); ++i)
-        cones[i].rays = static_cast<int>(std::lround(rays * worth[i] / total));
+        cones[i].rays = static_cast<int>(std::lround(rays * share_ * worth[i] / total));
     std::erase_if(cones, [](const SpotCone& cone) { return cone.rays == 0; });
     return cones;
 }

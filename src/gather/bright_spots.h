@@ -33,8 +33,9 @@ class BrightSpots {
     /// The spot that a place belongs to; -1: none.
     int spot_at(const Vec3& place) const;
 
-    /// Cones of the spots that are worth aiming at from `p` with normal `n`, and `rays` rays shared among them by what
-    /// they may bring. Spots that surround `p` are left out.
+    /// Cones of the spots that are worth aiming at from `p` with normal `n`, and at most `rays` rays shared among them
+    /// by what they may bring: fewer where spots are the lesser part of what makes rays differ. Spots that surround `p`
+    /// are left out.
     std::vector<SpotCone> cones_from(const Vec3& p, const Vec3& n, int rays) const;
 
     std::size_t size() const { return spots_.size(); }
@@ -51,6 +52,7 @@ class BrightSpots {
     float radius_ = 1; ///< of the sphere around it [m]
     std::unordered_map<std::uint64_t, int> index_;
     std::vector<Spot> spots_;
+    double share_ = 0; ///< of the second moment of what rays bring
 };
 
 } // namespace keyhole

@@ -219,7 +219,7 @@ std::vector<Reference> references() {
              .ratio = 0.02,
              .block = 0.1,
              .settings = {"method=path", "spp=2"},
-             .exceptions = {{2, 7, 7, 8, 0.6, "bump of the floor: pbrt takes slopes over a pixel, we at the point"}}},
+             .exceptions = {{2, 7, 7, 8, 0.6, "bump of the floor, whose slopes the two find differently"}}},
             {.name = "water_caustic",
              .scene = scene("water-caustic"),
              .files = {"scenes/water-caustic/TungstenRender.exr"},
