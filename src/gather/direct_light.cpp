@@ -9,9 +9,10 @@ Rgb next_event(const Scene& scene, const Vertex& v, const Vec3& back, SampleSour
 
 Rgb direct_light(const Scene& scene, const Vertex& v, const Vec3& back, SampleSource& source) {
     Rgb sum(0.0);
-    sample_both_techniques(scene, v, back, source, [&](const SurfacePoint& /*emitter*/, const Rgb& value, bool visible) {
-        if (visible) sum += value;
-    });
+    sample_both_techniques(scene, v, back, source,
+                           [&](const SurfacePoint& /*emitter*/, const Rgb& value, bool visible) {
+                               if (visible) sum += value;
+                           });
     return sum;
 }
 

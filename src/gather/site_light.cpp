@@ -44,11 +44,10 @@ SiteLight direct_irradiance(const Scene& scene, const SurfacePoint& point, const
     MeanDistance distance(point.p);
     Rgb sum(0.0);
     for (int i = 0; i < samples; ++i)
-        sample_both_techniques(scene, v, n, source,
-                               [&](const SurfacePoint& emitter, const Rgb& value, bool visible) {
-                                   distance.add(emitter, value);
-                                   if (visible) sum += value;
-                               });
+        sample_both_techniques(scene, v, n, source, [&](const SurfacePoint& emitter, const Rgb& value, bool visible) {
+            distance.add(emitter, value);
+            if (visible) sum += value;
+        });
     return {sum * (kPi / samples), static_cast<float>(kReach * distance.get())};
 }
 

@@ -104,7 +104,8 @@ TEST_F(SceneYaml, RectangleFacesPlusZAndUCrossV) {
 }
 
 TEST_F(SceneYaml, BoxEnclosesItsVolumeOutsideOutward) {
-    EXPECT_NEAR(test::signed_volume(load_mesh("{type: box, material: white, min: [1, 2, 3], max: [2, 4, 6]}")), 6, 1e-5);
+    EXPECT_NEAR(test::signed_volume(load_mesh("{type: box, material: white, min: [1, 2, 3], max: [2, 4, 6]}")), 6,
+                1e-5);
     EXPECT_NEAR(test::signed_volume(load_mesh("{type: box, material: white, flip: true}")), -8, 1e-5);
 }
 
@@ -126,7 +127,8 @@ TEST_F(SceneYaml, MatrixActsOnColumnsAsInTextbooks) {
 }
 
 TEST_F(SceneYaml, MirroredTransformKeepsTheOutsideOutside) {
-    EXPECT_NEAR(test::signed_volume(load_mesh("{type: box, material: white, transform: [{scale: [-1, 2, 1]}]}")), 16, 1e-5);
+    EXPECT_NEAR(test::signed_volume(load_mesh("{type: box, material: white, transform: [{scale: [-1, 2, 1]}]}")), 16,
+                1e-5);
     EXPECT_NEAR(test::signed_volume(load_mesh("{type: box, material: white, transform: [{scale: -1}]}")), 8, 1e-5);
     const auto ball = load_mesh("{type: sphere, material: white, transform: [{scale: [-1, 2, 3]}]}");
     EXPECT_NEAR(test::signed_volume(ball), 4 * kPi / 3 * 6, 0.02);
