@@ -90,6 +90,7 @@ void join_team(Team& team, RenderResult& result) {
     team.collect(own, join);
     if (parts.empty()) return;
     result.picture = join_pictures(parts);
+    result.stats.values.erase("empty pixels"); // those of this process' own part, which may have none at all
     const auto& metadata = result.picture.metadata;
     result.stats.complete = metadata.at("complete") == "yes";
     result.stats.samples = std::stod(metadata.at("samples"));
