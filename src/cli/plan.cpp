@@ -4,6 +4,7 @@
 #include "cli/command.h"
 #include "cli/resolution.h"
 #include "cli/units.h"
+#include "core/percent.h"
 #include "render/expected_cost.h"
 #include "scene/load/load.h"
 #include "scene/texture.h"
@@ -73,16 +74,12 @@ Json plan_json(const PlanCommand& o) {
             {"stages", stages}};
 }
 
-std::string percent(const Json& share) {
-    if (share.is_null()) return "-";
-    const double percent = 100 * share.get<double>();
-    return percent < 10 ? fmt::format("{:.2g} %", percent) : fmt::format("{:.0f} %", percent);
-}
+std::string share_text(const Json& share) { return share.is_null() ? "-" : percent(share.get<double>()); }
 
 void print_shares(const char* name, const Json& shares) {
     std::string text;
     for (const auto& [key, value] : shares.items())
-        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", key, percent(value));
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", key, share_text(value));
     fmt::print("{:<12}{}\n", name, text);
 }
 
@@ -98,7 +95,8 @@ void print_plan(const Json& plan) {
     std::ranges::stable_sort(emitters, [&](const Json& a, const Json& b) { return seen(a) > seen(b); });
     for (std::size_t i = 0; i < std::min(emitters.size(), kMostEmitters); ++i)
         fmt::print("{:<12}{}: {} of the power, {} of the light that is seen\n", i == 0 ? "emitters" : "",
-                   emitters[i]["kind"].get<std::string>(), percent(emitters[i]["power"]), percent(emitters[i]["seen"]));
+                   emitters[i]["kind"].get<std::string>(), share_text(emitters[i]["power"]),
+                   share_text(emitters[i]["seen"]));
     if (emitters.size() > kMostEmitters) fmt::print("{:<12}and {} more\n", "", emitters.size() - kMostEmitters);
     fmt::print("{:<12}{}\n", "textures", found["textures"].get<int>());
     for (const Json& item : plan["choices"])

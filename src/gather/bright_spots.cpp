@@ -30,7 +30,7 @@ Finding find(const GatherRays& rays, std::uint64_t seed, std::int64_t i) {
     const Frame frame(cache_normal(from->vertex, from->back));
     const double u0 = rng.next(), u1 = rng.next();
     const Vec3 local = cosine_hemisphere(u0, u1), w = frame.to_world(local);
-    if (!(w.dot(facing(from->vertex.point.ng, from->back)) > 0)) return {};
+    if (!from->leaves(w)) return {};
     const auto arrival = rays.trace(from->vertex, w, local.z * kInvPi, from->scatterings, rng);
     if (!std::isfinite(arrival.distance)) return {};
     return {from->vertex.point.p + w * arrival.distance, luminance(arrival.indirect)};

@@ -6,12 +6,6 @@
 #include <algorithm>
 
 namespace keyhole {
-namespace {
-
-/// Whether the surface itself bars the way: a shading normal may look into it.
-bool leaves(const VisiblePoint& c, const Vec3& w) { return w.dot(facing(c.vertex.point.ng, c.back)) > 0; }
-
-} // namespace
 
 IrradianceRecord RecordMaker::compute(const VisiblePoint& c, std::uint64_t index) const {
     Rng rng(options_.seed, StreamPurpose::cache, index);
@@ -19,7 +13,8 @@ IrradianceRecord RecordMaker::compute(const VisiblePoint& c, std::uint64_t index
     const auto min_radius = static_cast<float>(options_.min_radius * c.pixel);
     const std::vector<SpotCone> cones = spots_.cones_from(c.vertex.point.p, frame.n, options_.rays / 2);
     const auto has_rays = [&](int spot) {
-        return std::any_of(cones.begin(), cones.end(), [&](const SpotCone& cone) { return cone.spot == spot; });
+        return spot >= 0 &&
+               std::any_of(cones.begin(), cones.end(), [&](const SpotCone& cone) { return cone.spot == spot; });
     };
     std::vector<HemisphereRay> found(static_cast<std::size_t>(grid_.size()));
     for (int i = 0; i < grid_.size(); ++i) {
@@ -27,7 +22,7 @@ IrradianceRecord RecordMaker::compute(const VisiblePoint& c, std::uint64_t index
         const Vec3 local = grid_.direction(i, u0, u1), w = frame.to_world(local);
         HemisphereRay& ray = found[static_cast<std::size_t>(i)];
         ray.distance = std::numeric_limits<float>::infinity();
-        if (!leaves(c, w)) continue;
+        if (!c.leaves(w)) continue;
         const auto arrival = rays_.trace(c.vertex, w, local.z * kInvPi, c.scatterings, rng);
         // What lies nearer than the least reach can't be told apart anyway.
         ray.distance = std::max(arrival.distance, min_radius);
@@ -46,7 +41,7 @@ void RecordMaker::add_spot(const VisiblePoint& c, const Frame& frame, const Spot
         const Vec3 w = around.to_world(
             uniform_cone(kronecker(shift0, i, kR2[0]), kronecker(shift1, i, kR2[1]), cone.cos_half_angle));
         const float z = w.dot(frame.n);
-        if (!(z > 0) || !leaves(c, w)) continue;
+        if (!(z > 0) || !c.leaves(w)) continue;
         const auto arrival = rays_.trace(c.vertex, w, z * kInvPi, c.scatterings, rng);
         if (spots_.spot_at(c.vertex.point.p + w * arrival.distance) != cone.spot) continue;
         const Rgb brought = arrival.indirect * share;

@@ -28,6 +28,8 @@ class Sites {
     std::optional<Rgb> direct(std::uint32_t i, const Vec3& position) const;
 
     std::size_t bytes() const { return sites_.capacity() * sizeof(Entry); }
+    /// Of it, for one place [bytes].
+    static constexpr std::size_t bytes_per_place() { return sizeof(Entry); }
 
   private:
     struct Entry {

@@ -12,6 +12,9 @@ struct VisiblePoint {
     Vec3 back;       ///< unit
     double pixel;    ///< width of a pixel there [m]
     int scatterings; ///< from the eye, this one included
+
+    /// Whether a ray along `w` starts outwards: a shading normal may look into the surface.
+    bool leaves(const Vec3& w) const { return w.dot(facing(vertex.point.ng, back)) > 0; }
 };
 
 /// The near-Lambertian point that is seen at `image` (window coordinates), by specular events chosen at random.

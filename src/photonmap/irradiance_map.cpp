@@ -9,8 +9,7 @@ namespace keyhole {
 
 IrradianceMap::IrradianceMap(const PhotonMap& scouts, const PhotonMap& carriers, const IrradianceOptions& options,
                              const RunContext& context)
-    : scouts_(scouts), estimates_(scouts.photons().size()), obstructed_(scouts.photons().size()),
-      max_radius_(options.max_radius), scene_(options.scene) {
+    : scouts_(scouts), estimates_(scouts.photons().size()), max_radius_(options.max_radius), scene_(options.scene) {
     constexpr std::int64_t kBlock = 256;
     const auto count = static_cast<std::int64_t>(estimates_.size());
     std::vector<std::int64_t> used(static_cast<std::size_t>((count + kBlock - 1) / kBlock), 0);
@@ -44,8 +43,7 @@ int IrradianceMap::estimate(std::uint32_t i, const PhotonMap& carriers, const Ir
             e.value /= seen;
         }
     }
-    estimates_[i] = {SharedExponentRgb(e.value), r};
-    obstructed_[i] = obstructed ? 1 : 0;
+    estimates_[i] = {SharedExponentRgb(e.value), obstructed, r};
     return e.photons;
 }
 
@@ -56,7 +54,7 @@ IrradianceMap::Answer IrradianceMap::irradiance(const Vec3& position, const Vec3
     const Neighbourhood near = scouts_.nearest(query);
     if (near.found.empty()) return {};
     std::uint32_t place = near.found[0].index;
-    if (scene_ != nullptr && obstructed_[place] != 0) {
+    if (scene_ != nullptr && estimates_[place].obstructed) {
         const auto visible = [&](const Photon& p) {
             const float lift = 0.25f * (p.position() - position).length();
             return in_sight(*scene_, query.region, lift, p.position());

@@ -39,13 +39,16 @@ class IrradianceMap {
     float radius(std::uint32_t i) const { return estimates_[i].radius; }
 
     /// Memory without that of the scouts [bytes].
-    std::size_t bytes() const { return estimates_.capacity() * sizeof(Estimate) + obstructed_.capacity() / 8; }
+    std::size_t bytes() const { return estimates_.capacity() * sizeof(Estimate); }
+    /// Of it, for one scout [bytes].
+    static constexpr std::size_t bytes_per_place() { return sizeof(Estimate); }
     /// Mean number of photons that went into an estimate.
     double mean_photons() const { return mean_photons_; }
 
   private:
     struct Estimate {
         SharedExponentRgb irradiance;
+        bool obstructed; ///< whether something stands within the region
         float radius;
     };
     /// Fills in place i; returns the number of photons that it is made from.
@@ -53,7 +56,6 @@ class IrradianceMap {
 
     const PhotonMap& scouts_;
     std::vector<Estimate> estimates_;
-    std::vector<char> obstructed_; ///< whether something stands within the region of a place
     float max_radius_;
     const Scene* scene_;
     double mean_photons_ = 0;

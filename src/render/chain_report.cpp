@@ -61,10 +61,7 @@ void report_chains(RenderStats& stats, const Mixture<Path>& mixture, const Chain
     stats.values["chains, stuck"] = static_cast<double>(chains.stuck);
     if (all.proposed > 0)
         stats.values["chains, acceptance"] = static_cast<double>(all.accepted) / static_cast<double>(all.proposed);
-    if (chains.agreement) {
-        stats.values["chains, agreement (split R-hat)"] = chains.agreement->r_hat;
-        stats.values["chains, error of block brightness"] = chains.agreement->error;
-    }
+    report_agreement(stats, chains.agreement);
     if (chains.guidance) {
         stats.values["user paths, variance of block brightness with"] = chains.guidance->with;
         stats.values["user paths, variance of block brightness without"] = chains.guidance->without;
@@ -74,6 +71,12 @@ void report_chains(RenderStats& stats, const Mixture<Path>& mixture, const Chain
 }
 
 } // namespace
+
+void report_agreement(RenderStats& stats, const std::optional<Agreement>& agreement) {
+    if (!agreement) return;
+    stats.values["chains, agreement (split R-hat)"] = agreement->r_hat;
+    stats.values["chains, error of block brightness"] = agreement->error;
+}
 
 void warn_of_agreement(RenderStats& stats, const std::optional<Agreement>& agreement, std::int64_t steps) {
     if (!agreement) {

@@ -28,6 +28,9 @@ class ChainReports {
     bool first_ = true;
 };
 
+/// Says how far groups of chains agree, where that is known.
+void report_agreement(RenderStats& stats, const std::optional<Agreement>& agreement);
+
 /// Warns where groups of chains disagree, or `steps` of each were too few to tell.
 void warn_of_agreement(RenderStats& stats, const std::optional<Agreement>& agreement, std::int64_t steps);
 

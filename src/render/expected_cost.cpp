@@ -28,7 +28,6 @@ Settings part_of(const Settings& settings) {
     for (const Driver& d : kDrivers) part.*d.setting = std::max<std::int64_t>(1, settings.*d.setting / kPart);
     part.brightness_samples = std::max<std::int64_t>(part.brightness_samples, 1000);
     part.importons = std::max<std::int64_t>(part.importons, 1000);
-    part.mutations = std::max<std::int64_t>(1, settings.mutations / kPart);
     part.passes = 1;
     return part;
 }

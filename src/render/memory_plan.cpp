@@ -1,7 +1,8 @@
 #include "render/memory_plan.h"
 
+#include "gather/sites.h"
+#include "photonmap/irradiance_map.h"
 #include "photonmap/photon_store.h"
-#include "photonmap/photons.h"
 
 #include <algorithm>
 
@@ -11,7 +12,8 @@ namespace {
 // Bytes. An index takes 8 to 9 on top of a photon's 24, by how its places cluster.
 constexpr double kFixed = 64 * 1024; // first blocks of small indices
 constexpr double kIndexed = sizeof(Photon) + 10.0;
-constexpr double kInStageThree = kIndexed + (9.0 + 8.0) / kScoutEvery;   // irradiance and direct light at scouts
+constexpr double kEstimate = IrradianceMap::bytes_per_place(); // what each scout of a map adds
+constexpr double kInStageThree = kIndexed + (kEstimate + Sites::bytes_per_place()) / kScoutEvery;
 constexpr double kInStageTwo = PhotonStore::bytes_per_photon() * 1.0625; // buffers on their way to the stores
 
 } // namespace
@@ -24,7 +26,7 @@ MemoryPlan plan_memory(const Settings& settings, ImportanceUse use, int maps) {
     double importons = 0;
     if (use == ImportanceUse::beside) importons = (memory - photons * kInStageTwo) / (kIndexed * maps);
     // All importons, and the index and the places of one map; later the places of all, beside the stores.
-    constexpr double places = (kIndexed + 9) / kScoutEvery;
+    constexpr double places = (kIndexed + kEstimate) / kScoutEvery;
     if (use == ImportanceUse::guide)
         importons = std::min(memory / (sizeof(Photon) * maps + 10.0 + places),
                              (memory - photons * kInStageTwo) / (places * maps));

@@ -1,9 +1,8 @@
 #include "render/plan.h"
 
+#include "core/percent.h"
 #include "render/sampler_trial.h"
 #include "sampling/brightness.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,16 +10,13 @@
 namespace keyhole {
 namespace {
 
-std::string percent_of(double part, double whole) { return fmt::format("{:.2g} %", 100 * part / whole); }
-
 /// Whether anything at all finds light that photon maps would hold.
 PlanItem plan_photons(const SamplerContext& c, const SceneSurvey& survey, const RunContext& run) {
     const char* name = "photon maps";
     if (!c.settings.load_map.empty()) return {name, true, "they come from a file"};
     if (c.scene.emitter_distribution().empty()) return {name, false, "nothing emits light"};
     if (survey.stored() > 0)
-        return {name, true,
-                percent_of(survey.stored(), survey.total()) + " of the light that is seen would be in them"};
+        return {name, true, percent(survey.stored() / survey.total()) + " of the light that is seen would be in them"};
     // What paths from the eye meet by chance only may be easy to find from both ends, or from the light.
     const SamplerTrial trial = try_samplers(c, run);
     if (std::isfinite(std::min(trial.emission, trial.metropolis)))

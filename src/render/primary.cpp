@@ -99,10 +99,7 @@ class PassReports {
         add_ledger(pass.proposals, stats.proposals);
         stats.proposals = pass.proposals;
         for (const auto& [name, value] : pass.values) stats.values[name] = value;
-        if (const auto agreement = chains.agreement()) {
-            stats.values["chains, agreement (split R-hat)"] = agreement->r_hat;
-            stats.values["chains, error of block brightness"] = agreement->error;
-        }
+        report_agreement(stats, chains.agreement());
         if (passes_ == 0) warn_of_agreement(stats, chains.agreement(), chains.steps());
         broken_ += chains.broken();
         brightness_ += chains.brightness();

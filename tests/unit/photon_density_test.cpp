@@ -20,12 +20,6 @@ DensityEstimate count_density(const PhotonMap& map, const PhotonQuery& q, Unbias
     return estimate_density(map, q, unbiased, patches, one);
 }
 
-void expect_mean(const RunningStats& stats, double expected) {
-    EXPECT_LT(std::abs(stats.mean() - expected), 4 * stats.standard_error())
-        << stats.mean() << " +- " << stats.standard_error() << ", expected " << expected;
-    EXPECT_LT(stats.standard_error(), 0.02 * std::abs(expected)) << "too noisy to mean anything";
-}
-
 TEST(DensityEstimate, IsUnbiasedForTheDensityWithAndWithoutARadiusBound) {
     constexpr int n = 300, k = 6;
     // The second radius expects k photons, so that the bound cuts in half of the time.

@@ -2,14 +2,25 @@
 #pragma once
 
 #include "core/rng.h"
+#include "core/statistics.h"
 #include "photonmap/photon.h"
 #include "scene/shape.h"
 
+#include <gtest/gtest.h>
+
+#include <cmath>
 #include <vector>
 
 namespace keyhole::photon_test {
 
 inline Rng make_rng(std::uint64_t index) { return {1, StreamPurpose::test, index}; }
+
+/// The mean is within 4 standard errors, and these are below 2 % of it.
+inline void expect_mean(const RunningStats& stats, double expected) {
+    EXPECT_LT(std::abs(stats.mean() - expected), 4 * stats.standard_error())
+        << stats.mean() << " +- " << stats.standard_error() << ", expected " << expected;
+    EXPECT_LT(stats.standard_error(), 0.02 * std::abs(expected)) << "too noisy to mean anything";
+}
 
 /// A parallelogram; its normal is that of u x v.
 struct Rectangle {

@@ -1,5 +1,4 @@
 // Estimates from photons that come in clumps, as those of a chain do.
-#include "core/statistics.h"
 #include "photon_support.h"
 #include "photonmap/irradiance_map.h"
 
@@ -33,12 +32,6 @@ PhotonSet clumped_set(Rng& rng) {
     set.scouts = clumped(kClumps / (kScoutEvery - 1), rng);
     set.carriers = clumped(kClumps, rng);
     return set;
-}
-
-void expect_mean(const RunningStats& stats, double expected) {
-    EXPECT_LT(std::abs(stats.mean() - expected), 4 * stats.standard_error())
-        << stats.mean() << " +- " << stats.standard_error() << ", expected " << expected;
-    EXPECT_LT(stats.standard_error(), 0.02 * std::abs(expected)) << "too noisy to mean anything";
 }
 
 TEST(ScoutedMap, HasTheRightExpectationForClumpedPhotons) {
