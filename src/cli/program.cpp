@@ -1,6 +1,7 @@
 #include "cli/program.h"
 
 #include "cli/command.h"
+#include "cli/team.h"
 #include "core/error.h"
 
 #include <fmt/format.h>
@@ -69,6 +70,8 @@ int run_program(int argc, char** argv, Team* team) {
         return run(argc, argv, team);
     } catch (const InputError& e) {
         return fail(kBadInput, e.what());
+    } catch (const TeamLost& e) {
+        return fail(kInternalError, e.what());
     } catch (const std::bad_alloc&) {
         return fail(kInternalError, "out of memory");
     } catch (const std::exception& e) {

@@ -20,6 +20,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <optional>
 #include <set>
@@ -73,23 +74,27 @@ std::set<std::string> named_settings(const std::vector<std::string>& overrides) 
     return keys;
 }
 
+/// Shares of one render, of which either may hold no unit at all, as one.
+Picture join_parts(Picture a, Picture b) {
+    if (b.metadata["units"].empty()) return a;
+    if (a.metadata["units"].empty()) return b;
+    return join_shares(std::array{NamedPicture{"one part", std::move(a)}, NamedPicture{"another part", std::move(b)}});
+}
+
 /// Joins what all processes have done, on the first of them.
-void join_team(Team& team, RenderResult& result) {
-    std::vector<NamedPicture> parts;
-    const auto join = [&](Picture part) {
-        if (part.metadata["units"].empty()) return;
-        parts.push_back({fmt::format("part {}", parts.size()), std::move(part)});
-        if (parts.size() < 2) return;
-        // One after the other, so that two films are the most that is held.
-        Picture joined = join_pictures(parts);
-        parts = {{"what was joined", std::move(joined)}};
-    };
-    Picture own = std::move(result.picture);
+void join_team(Team& team, RenderResult& result, const std::string& checkpoint) {
+    Picture all;
+    try {
+        all = team.collect(std::move(result.picture), join_parts);
+    } catch (const TeamLost& e) {
+        throw TeamLost(fmt::format("{}; {}", e.what(),
+                                   checkpoint.empty() ? "nothing is kept without --checkpoint"
+                                                      : "what is done is in checkpoints: go on with --resume"));
+    }
+    if (team.rank() > 0) return;
     result.picture = {};
-    if (team.rank() == 0) join(own);
-    team.collect(own, join);
-    if (parts.empty()) return;
-    result.picture = join_pictures(parts);
+    if (all.metadata["units"].empty()) return;
+    result.picture = join_pictures(std::array{NamedPicture{"all parts", std::move(all)}});
     result.stats.values.erase("empty pixels"); // those of this process' own part, which may have none at all
     const auto& metadata = result.picture.metadata;
     result.stats.complete = metadata.at("complete") == "yes";
@@ -132,7 +137,7 @@ RenderResult render_scene(LoadedScene& loaded, RenderOptions& options, StopToken
         if (options.keeping.resume && share.done == nullptr)
             result.stats.remarks.emplace_back("found no checkpoint to go on from: started from the beginning");
     });
-    if (options.team != nullptr) join_team(*options.team, result);
+    if (options.team != nullptr) join_team(*options.team, result, options.keeping.file(options.outputs.exr));
     if (!result.picture.layers.empty()) view.show(result.picture);
     return result;
 }

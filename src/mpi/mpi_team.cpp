@@ -1,106 +1,60 @@
 #include "mpi/mpi_team.h"
 
+#include "mpi/messages.h"
 #include "mpi/parcel.h"
 
-#include <algorithm>
 #include <chrono>
 #include <mpi.h>
+#include <thread>
 
 namespace keyhole {
 namespace {
 
-enum Tag : int { kAsk, kNumber, kNoMore, kGo, kSize, kBytes };
-
-constexpr std::size_t kMostBytes = std::size_t{1} << 30; // of a message
-
-/// Sleeps until a message is there.
-MPI_Status wait_for(int source, int tag) {
-    MPI_Status status;
-    for (int there = 0;;) {
-        MPI_Iprobe(source, tag, MPI_COMM_WORLD, &there, &status);
-        if (there != 0) return status;
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-}
-
-void send_signal(int to, int tag) { MPI_Send(nullptr, 0, MPI_BYTE, to, tag, MPI_COMM_WORLD); }
-
-/// Waits for a signal. @returns who sent it.
-int receive_signal(int source, int tag) {
-    const MPI_Status status = wait_for(source, tag);
-    MPI_Recv(nullptr, 0, MPI_BYTE, status.MPI_SOURCE, status.MPI_TAG, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
-    return status.MPI_SOURCE;
-}
-
-void send_bytes(const std::vector<char>& bytes, int to) {
-    const std::uint64_t size = bytes.size();
-    MPI_Send(&size, 1, MPI_UINT64_T, to, kSize, MPI_COMM_WORLD);
-    for (std::size_t at = 0; at < size; at += kMostBytes)
-        MPI_Send(bytes.data() + at, static_cast<int>(std::min(kMostBytes, bytes.size() - at)), MPI_BYTE, to, kBytes,
-                 MPI_COMM_WORLD);
-}
-
-std::vector<char> receive_bytes(int from) {
-    std::uint64_t size = 0;
-    MPI_Recv(&size, 1, MPI_UINT64_T, from, kSize, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
-    std::vector<char> bytes(size);
-    for (std::size_t at = 0; at < size; at += kMostBytes)
-        MPI_Recv(bytes.data() + at, static_cast<int>(std::min(kMostBytes, bytes.size() - at)), MPI_BYTE, from, kBytes,
-                 MPI_COMM_WORLD, MPI_STATUS_IGNORE);
-    return bytes;
-}
+constexpr int kGo = 2; // a tag; messages.cpp has 0 and 1
 
 } // namespace
 
-MpiTeam::MpiTeam() {
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
-    MPI_Comm_size(MPI_COMM_WORLD, &size_);
-    if (rank_ == 0 && size_ > 1) counter_ = std::thread([this] { hand_out(); });
+std::optional<std::int64_t> MpiTeam::take_number() {
+    try {
+        return pulse_.take_number();
+    } catch (const TeamLost&) {
+        return std::nullopt; // collect() says so, once what is done has been written
+    }
 }
 
-MpiTeam::~MpiTeam() { finish(); }
-
-void MpiTeam::finish() {
-    if (rank_ > 0 && !is_finished_) send_signal(0, kNoMore);
-    is_finished_ = true;
-    if (counter_.joinable()) counter_.join();
+void MpiTeam::wait_for_all() {
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Ibarrier(MPI_COMM_WORLD, &request);
+    wait_for(request, [this] { pulse_.check(); });
 }
 
-void MpiTeam::hand_out() {
-    for (int working = size_ - 1; working > 0;) {
-        const MPI_Status status = wait_for(MPI_ANY_SOURCE, MPI_ANY_TAG);
-        receive_signal(status.MPI_SOURCE, status.MPI_TAG);
-        if (status.MPI_TAG == kNoMore) {
-            --working;
-            continue;
+/// On rank 0; the others wait for it. A process that is lost is told of only when the others have written what they
+/// have, since the end of one process is that of all.
+void MpiTeam::wait_until_all_are_done() {
+    const Check check = [this] { pulse_.check(); };
+    pulse_.stop_taking();
+    if (pulse_.rank() > 0) {
+        wait_for(MPI_COMM_WORLD, 0, kGo, check);
+        return take_signal(MPI_COMM_WORLD, 0, kGo);
+    }
+    while (pulse_.others_work()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    check();
+    for (int r = 1; r < pulse_.size(); ++r) send_signal(MPI_COMM_WORLD, r, kGo);
+}
+
+Picture MpiTeam::collect(Picture part, const std::function<Picture(Picture, Picture)>& join) {
+    const Check check = [this] { pulse_.check(); };
+    const int rank = pulse_.rank();
+    wait_until_all_are_done();
+    for (int step = 1; step < pulse_.size(); step *= 2) {
+        if (rank % (2 * step) != 0) {
+            send_bytes(MPI_COMM_WORLD, rank - step, pack(part), check);
+            return {};
         }
-        const std::int64_t number = next_++;
-        MPI_Send(&number, 1, MPI_INT64_T, status.MPI_SOURCE, kNumber, MPI_COMM_WORLD);
+        if (rank + step < pulse_.size())
+            part = join(std::move(part), unpack(receive_bytes(MPI_COMM_WORLD, rank + step, check)));
     }
-}
-
-std::int64_t MpiTeam::take_number() {
-    if (rank_ == 0) return next_++;
-    send_signal(0, kAsk);
-    wait_for(0, kNumber);
-    std::int64_t number = 0;
-    MPI_Recv(&number, 1, MPI_INT64_T, 0, kNumber, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
-    return number;
-}
-
-void MpiTeam::wait_for_all() { MPI_Barrier(MPI_COMM_WORLD); }
-
-void MpiTeam::collect(const Picture& part, const std::function<void(Picture)>& join) {
-    finish();
-    if (rank_ > 0) {
-        receive_signal(0, kGo);
-        send_bytes(pack(part), 0);
-        return;
-    }
-    for (int r = 1; r < size_; ++r) {
-        send_signal(r, kGo);
-        join(unpack(receive_bytes(r)));
-    }
+    return part;
 }
 
 } // namespace keyhole

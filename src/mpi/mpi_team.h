@@ -2,37 +2,26 @@
 #pragma once
 
 #include "cli/team.h"
-
-#include <atomic>
-#include <thread>
+#include "mpi/pulse.h"
 
 namespace keyhole {
 
-/// All processes of MPI_COMM_WORLD. Numbers are handed out by a thread of rank 0. Waiting sleeps in between, since MPI
-/// itself waits by asking again and again, on cores that others need.
+/// All processes of MPI_COMM_WORLD. Rank 0 hands out numbers; films come together in a binary tree.
 ///
-/// Not thread-safe: one thread calls at a time. MPI itself has to be (MPI_THREAD_MULTIPLE).
+/// Not thread-safe: one thread calls at a time.
 class MpiTeam final : public Team {
   public:
-    /// MPI must be initialised.
-    MpiTeam();
-    ~MpiTeam() override;
-    MpiTeam(const MpiTeam&) = delete;
-    MpiTeam& operator=(const MpiTeam&) = delete;
-
-    int rank() const override { return rank_; }
-    std::int64_t take_number() override;
+    int rank() const override { return pulse_.rank(); }
+    /// Whether this process has lost touch with rank 0.
+    bool is_cut_off() const { return rank() > 0 && pulse_.lost(); }
+    std::optional<std::int64_t> take_number() override;
     void wait_for_all() override;
-    void collect(const Picture& part, const std::function<void(Picture)>& join) override;
+    Picture collect(Picture part, const std::function<Picture(Picture, Picture)>& join) override;
 
   private:
-    void hand_out();
-    void finish();
+    void wait_until_all_are_done();
 
-    int rank_ = 0, size_ = 1;
-    std::atomic<std::int64_t> next_{0}; // of rank 0
-    std::thread counter_;               // likewise
-    bool is_finished_ = false;          // of the others: takes no more numbers
+    Pulse pulse_;
 };
 
 } // namespace keyhole

@@ -32,9 +32,9 @@ struct Share {
     std::function<void(const Picture&)> look;
     std::function<bool()> wants_look;
 
-    /// Tells different processes which units to do: the n-th call made by any of them returns n, from 0. Empty: there
-    /// is only this process.
-    std::function<std::int64_t()> take_number;
+    /// Tells different processes which units to do: the n-th call made by any of them returns n, from 0; none: it is
+    /// time to stop. Empty: there is only this process.
+    std::function<std::optional<std::int64_t>()> take_number;
 };
 
 } // namespace keyhole

@@ -72,8 +72,9 @@ bool Work::enough() const {
 
 std::optional<std::int64_t> Work::take(const RunContext& context) {
     if ((context.stopped() && taken_ + done_.size() > 0) || enough()) return std::nullopt;
-    const std::int64_t k = share_.take_number ? share_.take_number() : taken_;
-    const std::int64_t unit = before_.missing(k, begin_);
+    const std::optional<std::int64_t> k = share_.take_number ? share_.take_number() : taken_;
+    if (!k) return std::nullopt;
+    const std::int64_t unit = before_.missing(*k, begin_);
     if (unit >= end_) return std::nullopt;
     ++taken_;
     under_way_ = unit;

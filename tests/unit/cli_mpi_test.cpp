@@ -31,19 +31,56 @@ class Ranks : public Program {
     }
 };
 
+class RanksOfAScene : public Ranks, public testing::WithParamInterface<const char*> {};
+
 } // namespace
 
-TEST_F(Ranks, MakeThePictureThatOneMakes) {
-    const std::string render = "render scene.yaml --no-png -t 1 --method mps --passes 4 --mutations 5k -D chains=50 "
-                               "-D brightness_samples=2000 -D importons=2000 -D photon_memory=512KiB ";
+TEST_P(RanksOfAScene, MakeThePictureThatOneMakes) {
+    const std::string render = "render " KEYHOLE_SOURCE_DIR "/scenes/" + std::string(GetParam()) +
+                               ".yaml --resolution 24x16 --no-png -q -t 1 --method mps --spp 1 --passes 6 "
+                               "--mutations 3k -D chains=50 -D brightness_samples=2000 -D importons=2000 "
+                               "-D photon_memory=512KiB ";
     ASSERT_EQ(run(render + "-o whole.exr"), 0);
-    for (const int ranks : {1, 3}) {
+    for (const int ranks : {1, 2, 3, 5}) {
         ASSERT_EQ(run_ranks(ranks, render + "-o a.exr"), 0) << read("err");
         expect_same("whole.exr", "a.exr");
         EXPECT_EQ(read_exr(scratch.path("a.exr")).metadata.at("complete"), "yes");
     }
-    EXPECT_EQ(run_ranks(3, "diff whole.exr a.exr"), 0) << read("err");
+    for (const auto& [name, range] : {std::pair("b", "0:1"), {"c", "4:6"}, {"d", "1:4"}})
+        ASSERT_EQ(run(render + "-o " + name + ".exr --pass-range " + range), 0) << read("err");
+    ASSERT_EQ(run("merge b.exr c.exr d.exr -o merged.exr"), 0) << read("err");
+    expect_same("whole.exr", "merged.exr");
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, RanksOfAScene, testing::Values("box", "rooms", "lantern"),
+                         [](const auto& info) { return std::string(info.param); });
+
+TEST_F(Ranks, RunWhatIsNoRender) {
     EXPECT_EQ(run_ranks(2, "render none.yaml"), 2);
+    EXPECT_EQ(run_ranks(3, "render scene.yaml --no-png --passes 3 -o a.exr"), 0) << read("err");
+    EXPECT_EQ(run_ranks(3, "diff a.exr a.exr"), 0) << read("err");
+}
+
+TEST_F(Ranks, EndWhereOneIsSilent) {
+    scratch.write("rank", "#!/bin/sh\necho $$ >pid.$OMPI_COMM_WORLD_RANK\nexec " KEYHOLE_MPI_EXECUTABLE " \"$@\"\n");
+    const std::string render = "render scene.yaml --no-png -q -t 1 --spp 50 --passes 100 -o a.exr ";
+    const pid_t pid =
+        start_line("mpirun --oversubscribe -np 3 -x KEYHOLE_MPI_PATIENCE=1 sh ./rank " + render + "--checkpoint 0");
+    while (!exists("a.checkpoint.exr") && waitpid(pid, nullptr, WNOHANG) == 0) usleep(1000);
+    const pid_t silent = std::stoi(read("pid.2"));
+    kill(silent, SIGSTOP);
+    EXPECT_EQ(wait(pid), 1);
+    EXPECT_THAT(read("err"), HasSubstr("rank 0 has heard nothing of rank 2 on "));
+    EXPECT_THAT(read("err"), HasSubstr("go on with --resume"));
+    EXPECT_FALSE(exists("a.exr"));
+    ASSERT_EQ(run(render + "--resume"), 0) << read("err");
+    ASSERT_EQ(run("render scene.yaml --no-png -q --spp 50 --passes 100 -o whole.exr"), 0);
+    expect_same("whole.exr", "a.exr");
+
+    setenv("KEYHOLE_MPI_PATIENCE", "long", 1);
+    EXPECT_EQ(run_ranks(2, render), 2);
+    EXPECT_THAT(read("err"), HasSubstr("KEYHOLE_MPI_PATIENCE: found 'long'"));
+    unsetenv("KEYHOLE_MPI_PATIENCE");
 }
 
 TEST_F(Ranks, KilledGoOnWithAnotherNumberOfThem) {
