@@ -12,7 +12,10 @@ namespace keyhole {
 class FixedSum {
   public:
     /// Thread-safe. `x` must be finite.
-    void add(double x) { units_.fetch_add(std::llround(x * kUnit), std::memory_order_relaxed); }
+    void add(double x) {
+        const double units = x * kUnit; // rounded by hand: std::llround() is a call
+        units_.fetch_add(static_cast<std::int64_t>(units + std::copysign(0.5, units)), std::memory_order_relaxed);
+    }
 
     double value() const { return static_cast<double>(units_.load(std::memory_order_relaxed)) / kUnit; }
 

@@ -28,11 +28,12 @@ class PixelFilter {
     /// The filter at an offset from a pixel's centre, per pixel area; 0 outside its support. A sample drawn uniformly
     /// over the film weighs this much in each pixel that it splats to.
     double density(const Vec2& offset) const;
+    /// Of its two factors, the one of an offset along one axis.
+    double density_1d(double x) const;
 
   private:
     enum class Shape { box, triangle, gaussian };
 
-    double density_1d(double x) const;
     double sample_1d(double u) const;
 
     Shape shape_;

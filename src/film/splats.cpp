@@ -21,10 +21,11 @@ void SplatFilm::add(const Vec2& position, Layer layer, const Rgb& value) {
     const double reach = filter_.radius();
     const auto first = [reach](float x) { return static_cast<int>(std::ceil(x - 0.5 - reach)); };
     const auto last = [reach](float x) { return static_cast<int>(std::floor(x - 0.5 + reach)); };
+    const auto centre = [](int x) { return static_cast<float>(x) + 0.5f; };
     for (int y = std::max(0, first(position.y)); y <= std::min(height_ - 1, last(position.y)); ++y) {
+        const double row = filter_.density_1d(position.y - centre(y));
         for (int x = std::max(0, first(position.x)); x <= std::min(width_ - 1, last(position.x)); ++x) {
-            const Vec2 centre(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-            const Rgb share = value * filter_.density(position - centre);
+            const Rgb share = value * (filter_.density_1d(position.x - centre(x)) * row);
             const std::size_t pixel =
                 static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
             FixedSum* sum = &sums_[pixel * kPerPixel + static_cast<std::size_t>(layer) * kChannels];

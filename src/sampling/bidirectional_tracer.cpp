@@ -21,23 +21,35 @@ struct Departure {
 
 double& density(Vertex& v, From from) { return from == From::eye ? v.pdf_from_eye : v.pdf_from_light; }
 
+/// Appends the next vertex, made in its place: vertices are large. False, and nothing appended, where there is none.
+bool append_next(const Scene& scene, const Departure& ray, TracedSubPath& walk) {
+    // Vertices closer than floats can tell apart leave no direction between them.
+    if (!(ray.w.length2() > 0.5f)) return false;
+    const auto hit = scene.trace(ray.from, ray.w);
+    if (!hit) return false;
+    walk.throughput.push_back(ray.throughput);
+    walk.vertices.resize(walk.vertices.size() + 1);
+    Vertex& v = walk.vertices.back();
+    v.point = *hit;
+    if (hit->material != nullptr) v.bsdf = hit->material->bsdf(*hit);
+    return true;
+}
+
 /// Goes on from the last vertex until the walk is lost or full.
 void extend(const Scene& scene, TracedSubPath& walk, From from, Departure ray, std::size_t most, SampleSource& source,
             SampleSource* roulette) {
     const From other = from == From::eye ? From::light : From::eye;
     Rgb carried(1.0); // since the start
     while (walk.vertices.size() < most) {
-        auto hit = next_vertex(scene, ray.from, ray.w);
-        if (!hit) return;
-        const Rgb clear = scene.transmittance(ray.from, hit->point);
-        density(*hit, from) = solid_angle_to_area(ray.pdf, walk.vertices.back().point, hit->point);
-        walk.push_back(*hit, ray.throughput * clear);
-        if (hit->point.site == Site::infinite || walk.vertices.size() == most) return;
-        Vertex& v = walk.vertices.back();
+        if (!append_next(scene, ray, walk)) return;
+        Vertex &v = walk.vertices.back(), &before = walk.vertices[walk.vertices.size() - 2];
+        const Rgb clear = scene.transmittance(ray.from, v.point);
+        walk.throughput.back() *= clear;
+        density(v, from) = solid_angle_to_area(ray.pdf, before.point, v.point);
+        if (v.point.site == Site::infinite || walk.vertices.size() == most) return;
         const auto next = continue_walk(v, -ray.w, from, source);
         if (!next) return;
         v.event = next->event;
-        Vertex& before = walk.vertices[walk.vertices.size() - 2];
         density(before, other) = solid_angle_to_area(next->backward, v.point, before.point);
         carried *= clear * next->weight;
         const double q = roulette != nullptr ? survival_probability(carried, walk.vertices.size()) : 1.0;

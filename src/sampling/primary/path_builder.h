@@ -44,8 +44,8 @@ std::unique_ptr<PathBuilder> make_bidirectional_builder(const BuilderContext& co
 /// (Hachisuka, Kaplanyan and Dachsbacher 2014).
 std::unique_ptr<PathBuilder> make_multiplexed_builder(const BuilderContext& context, int scatterings);
 
-/// The joint of what the numbers of a multiplexed builder make. None if a sub-path ends too early. Refers to the
-/// thread's SubPathPair::scratch().
+/// The joint of what the numbers of a multiplexed builder make. None if a sub-path ends too early or the eye's ends
+/// where nothing can be joined. Refers to the thread's SubPathPair::scratch().
 std::optional<Joint> multiplexed_joint(const Scene& scene, int scatterings, PrimarySources sources);
 
 /// Of a multiplexed builder: the number of techniques, and that which a number in [0,1) chooses, by its s.

@@ -25,6 +25,13 @@ class PathTracingBuilder final : public PathBuilder {
     BuilderContext c_;
 };
 
+/// Whether the end of a whole eye sub-path can be joined to s vertices from the light at all. Asked before those are
+/// traced: many candidates fail here.
+bool can_be_joined(const TracedSubPath& eye, int s) {
+    const Vertex& end = eye.vertices.back();
+    return s == 0 ? end.point.is_emitter() : eye.size() == 1 || end.bsdf.traits().finite;
+}
+
 /// Adds what one joint carries, divided by the probability of having chosen it.
 void add_joint(Joint& joint, MisHeuristic heuristic, double probability, PathSample& sample) {
     if (!joint.possible()) return;
@@ -44,7 +51,7 @@ class EndpointBuilder final : public PathBuilder {
         const Vec2 image = window_point(sources.eye);
         auto& [eye, light] = SubPathPair::scratch();
         trace_eye_subpath(*c_.scene, image, t, sources.eye, nullptr, eye);
-        if (eye.size() < t) return;
+        if (eye.size() < t || !can_be_joined(eye, s)) return;
         trace_light_subpath(*c_.scene, s, sources.light, nullptr, light);
         if (light.size() < s) return;
         Joint joint(*c_.scene, light, s, eye, t, image);
@@ -105,7 +112,7 @@ std::optional<Joint> multiplexed_joint(const Scene& scene, int scatterings, Prim
     const Vec2 image = window_point(sources.eye);
     auto& [eye, light] = SubPathPair::scratch();
     trace_eye_subpath(scene, image, t, sources.eye, nullptr, eye);
-    if (eye.size() < t) return std::nullopt;
+    if (eye.size() < t || !can_be_joined(eye, s)) return std::nullopt;
     trace_light_subpath(scene, s, sources.light, nullptr, light);
     if (light.size() < s) return std::nullopt;
     return Joint(scene, light, s, eye, t, image);

@@ -26,8 +26,10 @@ class Fixed final : public SampleSource {
 /// A chain as the kernel's space. What it stays at a state is deposited at once when it leaves.
 class PrimaryChains::Depositing {
   public:
-    Depositing(Chain& chain, const Weights& weights, const Deposit& deposit)
-        : chain_(&chain), weights_(weights), deposit_(&deposit) {}
+    Depositing(PrimaryChains& chains, std::int64_t index, const Weights& weights, double brightness,
+               const Deposit& deposit)
+        : chain_(chains.chains_[static_cast<std::size_t>(index)].get()), index_(index), monitor_(&chains.monitor_),
+          weights_(weights), brightness_(brightness), deposit_(&deposit) {}
 
     double propose(Step step) { return chain_->state.propose(step); }
     double target() const { return chain_->state.target(); }
@@ -54,11 +56,17 @@ class PrimaryChains::Depositing {
     void splat(const PathSample& sample, double weight) const {
         if (!*deposit_) return;
         const double factor = weight * weights_.factor(sample.target());
-        for (const Splat& s : sample.splats()) (*deposit_)(s, factor);
+        for (const Splat& s : sample.splats()) {
+            monitor_->add(index_, s.image, luminance(s.value) * factor / brightness_);
+            (*deposit_)(s, factor);
+        }
     }
 
     Chain* chain_;
+    std::int64_t index_;
+    AgreementMonitor* monitor_;
     Weights weights_;
+    double brightness_; ///< of the picture
     const Deposit* deposit_;
     double stay_ = 0;
 };
@@ -109,11 +117,7 @@ void PrimaryChains::advance(const PrimaryKernel& kernel, std::int64_t steps, con
         chain.changes = {};
         const auto& change = (*strata_)[chain.stratum].change;
         chain.large = {};
-        const Deposit watched = [&](const Splat& splat, double factor) {
-            monitor_.add(c, splat.image, luminance(splat.value) * factor / brightness);
-            deposit(splat, factor);
-        };
-        Depositing space(chain, by_stratum[chain.stratum], deposit ? watched : deposit);
+        Depositing space(*this, c, by_stratum[chain.stratum], brightness, deposit);
         int left_out = 0;
         for (std::int64_t done = 0; done < steps;) {
             if (change && chain.rng.next() < kChange) {

@@ -9,6 +9,7 @@ constexpr double kMostShift = 1 / SmallStep::kOctaves;
 } // namespace
 
 void PrimaryStream::bring_up_to_date(Coordinate& c) {
+    if (c.moved == clock_->now) return;
     if (c.moved < clock_->last_large)
         c.value = rng_->next(); // whatever small steps followed, it would be uniform, and nothing depends on it yet
     else
@@ -35,10 +36,11 @@ double PrimaryStream::second(Coordinate& c) {
 double PrimaryStream::next() {
     if (used_ == coordinates_.size()) push(rng_->next());
     Coordinate& c = coordinates_[used_++];
+    if (clock_->step == Step::large) return c.candidate = rng_->next(); // whatever its value would be by now
     bring_up_to_date(c);
     switch (clock_->step) {
     case Step::large:
-        return c.candidate = rng_->next();
+        break;
     case Step::small:
         return c.candidate = small(c);
     case Step::second:
