@@ -28,7 +28,7 @@ void SplatFilm::add(const Vec2& position, Layer layer, const Rgb& value) {
             const Rgb share = value * (filter_.density_1d(position.x - centre(x)) * row);
             const std::size_t pixel =
                 static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
-            FixedSum* sum = &sums_[pixel * kPerPixel + static_cast<std::size_t>(layer) * kChannels];
+            FixedSum* sum = &sums_[(static_cast<std::size_t>(layer) * pixels() + pixel) * kChannels];
             for (int c = 0; c < static_cast<int>(kChannels); ++c) sum[c].add(share[c]);
         }
     }
@@ -36,7 +36,8 @@ void SplatFilm::add(const Vec2& position, Layer layer, const Rgb& value) {
 
 std::array<double, SplatFilm::kPerPixel> SplatFilm::sums(std::size_t pixel) const {
     std::array<double, kPerPixel> values{};
-    for (std::size_t c = 0; c < kPerPixel; ++c) values[c] = sums_[pixel * kPerPixel + c].value();
+    for (std::size_t i = 0; i < kPerPixel; ++i)
+        values[i] = sums_[(i / kChannels * pixels() + pixel) * kChannels + i % kChannels].value();
     return values;
 }
 

@@ -47,7 +47,7 @@ class SplatFilm {
   private:
     int width_, height_;
     PixelFilter filter_;
-    std::vector<FixedSum> sums_; ///< by pixel, layer and channel
+    std::vector<FixedSum> sums_; ///< by layer, pixel and channel: a splat meets few cache lines
 };
 
 } // namespace keyhole
