@@ -47,6 +47,7 @@ struct Settings {
     double target_error = 0;
     std::string save_map, load_map; ///< files of photons; empty: none. Not in the table: they belong to a run
     std::int64_t nearest = 60;
+    std::int64_t light_samples = 4;
     std::int64_t gather_rays = 4;
     std::string mis = "power";
     std::string builder = "bidirectional";
@@ -96,6 +97,7 @@ template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
     visit("passes", s.passes, I{0}, I{1} << 40, "passes of photons and gather; 0: until time or target_error is up");
     visit("target_error", s.target_error, 0.0, 1.0, "relative error at which passes end; 0: none");
     visit("nearest", s.nearest, I{1}, I{10'000}, "photons in a radiance estimate");
+    visit("light_samples", s.light_samples, I{1}, I{1} << 16, "samples of emitters per sample of a pixel");
     visit("gather_rays", s.gather_rays, I{1}, I{1} << 16, "gather rays per sample of a pixel");
     visit("mis", s.mis, std::vector<std::string_view>{"balance", "power", "maximum"},
           "how the techniques of bidirectional paths share them");

@@ -7,23 +7,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace keyhole {
 namespace {
 
-constexpr std::int64_t kRays = 32'768;
-constexpr float kCellsAcross = 96; // the scene's diagonal
+constexpr std::int64_t kRays = 65'536;
+constexpr int kDepth = 8;            // of the tree: cells are at least 1/256 of the scene's width
+constexpr double kEnough = 10;       // bright rays that tell how light is spread over a cell's children
+constexpr double kFew = 8;           // bright rays that don't tell where in the cell it ends
+constexpr double kDim = 0.005;       // share of a cell's second moment that a ray needs to be one of its bright ones
+constexpr float kMargin = 1.5f;      // of the ball around the bright places that were found
+constexpr float kLeastBall = 0.125f; // its radius over that of the cell
 constexpr std::size_t kMostSpots = 64;
 constexpr double kLeastShare = 0.002; // of the second moment of what rays bring
 constexpr double kContrast = 10;      // that share over the share of the rays
 
-/// What one ray brought, and from where.
-struct Finding {
-    Vec3 place{0, 0, 0};
-    double radiance = -1; ///< luminance; negative: nothing was met
-};
+} // namespace
 
-Finding find(const GatherRays& rays, std::uint64_t seed, std::int64_t i) {
+BrightSpots::Finding BrightSpots::find(const GatherRays& rays, std::uint64_t seed, std::int64_t i) {
     Rng rng(seed, StreamPurpose::bright_spots, static_cast<std::uint64_t>(i));
     const auto from = visible_point(rays, lattice_image_point(seed, StreamPurpose::bright_spots, i), rng);
     if (!from) return {};
@@ -36,19 +38,19 @@ Finding find(const GatherRays& rays, std::uint64_t seed, std::int64_t i) {
     return {from->vertex.point.p + w * arrival.distance, luminance(arrival.indirect)};
 }
 
-struct Cell {
-    std::uint64_t key;
-    Vec3 place; ///< any in it
-    double sum = 0, sum2 = 0;
-    double rays = 0;
-};
+std::size_t BrightSpots::Cell::octant(const Vec3& place) const {
+    return (place.x >= centre.x ? 1 : 0) + (place.y >= centre.y ? 2 : 0) + (place.z >= centre.z ? 4 : 0);
+}
 
-} // namespace
+BrightSpots::Cell BrightSpots::Cell::child(std::size_t octant) const {
+    const auto side = [&](std::size_t bit) { return (octant & bit) != 0 ? width / 4 : -width / 4; };
+    return {centre + Vec3(side(1), side(2), side(4)), width / 2};
+}
 
-BrightSpots::BrightSpots(const GatherRays& rays, std::uint64_t seed, const RunContext& context)
-    : origin_(rays.scene().lower()),
-      width_(std::max((rays.scene().upper() - rays.scene().lower()).length() / kCellsAcross, 1e-20f)),
-      radius_(width_ * std::sqrt(3.0f) / 2) {
+BrightSpots::BrightSpots(const GatherRays& rays, std::uint64_t seed, const RunContext& context) : nodes_(1) {
+    const Vec3 lower = rays.scene().lower(), extent = rays.scene().upper() - lower;
+    root_ = {lower + extent / 2, std::max({extent.x, extent.y, extent.z})};
+
     std::vector<Finding> findings(kRays);
     context.begin("bright spots", kRays, "rays");
     parallel_for(kRays / 64, [&](std::int64_t b) {
@@ -58,44 +60,96 @@ BrightSpots::BrightSpots(const GatherRays& rays, std::uint64_t seed, const RunCo
     });
     context.end();
 
-    std::unordered_map<std::uint64_t, std::size_t> places;
-    std::vector<Cell> cells;
-    double sum2 = 0, met = 0;
+    std::erase_if(findings, [](const Finding& f) { return f.radiance < 0; });
+    Whole whole;
+    for (const Finding& f : findings) whole.sum2 += f.radiance * f.radiance;
+    whole.rays = static_cast<double>(findings.size());
+    if (whole.sum2 > 0) divide(0, root_, findings, whole, 0);
+    keep_the_brightest();
+}
+
+void BrightSpots::divide(std::size_t node, const Cell& cell, std::span<Finding> findings, const Whole& whole,
+                         int depth) {
+    double sum2 = 0, sum4 = 0;
     for (const Finding& f : findings) {
-        if (f.radiance < 0) continue;
-        const auto [at, is_new] = places.try_emplace(cell(f.place), cells.size());
-        if (is_new) cells.push_back({at->first, f.place});
-        Cell& c = cells[at->second];
-        c.sum += f.radiance;
-        c.sum2 += f.radiance * f.radiance;
-        ++c.rays;
         sum2 += f.radiance * f.radiance;
-        ++met;
+        sum4 += std::pow(f.radiance, 4);
     }
-    std::stable_sort(cells.begin(), cells.end(), [](const Cell& a, const Cell& b) { return a.sum2 > b.sum2; });
-    for (const Cell& c : cells) {
-        if (spots_.size() == kMostSpots || !(c.sum2 > kLeastShare * sum2)) break;
-        if (c.sum2 / sum2 < kContrast * c.rays / met) continue;
-        const Vec3 in_cells = (c.place - origin_) / width_;
-        const Vec3 corner(std::floor(in_cells.x), std::floor(in_cells.y), std::floor(in_cells.z));
-        share_ += c.sum2 / sum2;
-        index_.emplace(c.key, static_cast<int>(spots_.size()));
-        spots_.push_back({origin_ + (corner + Vec3(0.5f)) * width_, c.sum / c.rays});
+    if (!(sum2 > kLeastShare * whole.sum2)) return;
+    const double effective = sum2 * sum2 / sum4; // rays that the second moment comes from
+    if (depth == kDepth || effective < kEnough) {
+        const double rays = static_cast<double>(findings.size()), share = sum2 / whole.sum2;
+        if (share < kContrast * rays / whole.rays) return;
+        nodes_[node].spot = static_cast<int>(spots_.size());
+        spots_.push_back(spot_of(cell, findings, sum2, effective, share));
+        return;
+    }
+    const std::size_t first = nodes_.size();
+    nodes_[node].children = static_cast<int>(first);
+    nodes_.resize(first + 8);
+    std::ranges::stable_sort(findings, {}, [&](const Finding& f) { return cell.octant(f.place); });
+    auto rest = findings.begin();
+    for (std::size_t k = 0; k < 8; ++k) {
+        const auto end =
+            std::find_if(rest, findings.end(), [&](const Finding& f) { return cell.octant(f.place) != k; });
+        divide(first + k, cell.child(k), std::span(rest, end), whole, depth + 1);
+        rest = end;
     }
 }
 
-std::uint64_t BrightSpots::cell(const Vec3& place) const {
-    const Vec3 in_cells = (place - origin_) / width_;
-    std::uint64_t key = 0;
-    for (int k = 0; k < 3; ++k)
-        key = key << 20 | (static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(in_cells[k]))) & 0xFFFFF);
-    return key;
+BrightSpots::Spot BrightSpots::spot_of(const Cell& cell, std::span<const Finding> findings, double sum2,
+                                       double effective, double share) {
+    const float around = cell.width * std::sqrt(3.0f) / 2;
+    Spot spot{cell.centre, around, 0, share};
+    if (effective >= kFew) {
+        Vec3 middle(0);
+        for (const Finding& f : findings) middle += f.place * static_cast<float>(f.radiance * f.radiance / sum2);
+        float reach = kLeastBall * around / kMargin;
+        for (const Finding& f : findings)
+            if (f.radiance * f.radiance > kDim * sum2) reach = std::max(reach, (f.place - middle).length());
+        if (kMargin * reach < around) spot = {middle, kMargin * reach, 0, share};
+    }
+    double inside2 = 0, inside = 0;
+    for (const Finding& f : findings) {
+        if ((f.place - spot.centre).length() > spot.radius) continue;
+        inside2 += f.radiance * f.radiance;
+        ++inside;
+    }
+    spot.radiance = std::sqrt(inside2 / std::max(inside, 1.0));
+    return spot;
+}
+
+void BrightSpots::keep_the_brightest() {
+    std::vector<int> order(spots_.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::stable_sort(order, std::ranges::greater{},
+                             [&](int i) { return spots_[static_cast<std::size_t>(i)].share; });
+    order.resize(std::min(order.size(), kMostSpots));
+    std::vector<int> renamed(spots_.size(), -1);
+    std::vector<Spot> kept;
+    for (const int i : order) {
+        renamed[static_cast<std::size_t>(i)] = static_cast<int>(kept.size());
+        kept.push_back(spots_[static_cast<std::size_t>(i)]);
+        share_ += kept.back().share;
+    }
+    for (Node& n : nodes_)
+        if (n.spot >= 0) n.spot = renamed[static_cast<std::size_t>(n.spot)];
+    spots_ = std::move(kept);
 }
 
 int BrightSpots::spot_at(const Vec3& place) const {
-    if (spots_.empty() || !std::isfinite(place.length2())) return -1;
-    const auto found = index_.find(cell(place));
-    return found == index_.end() ? -1 : found->second;
+    const Vec3 d = place - root_.centre;
+    if (spots_.empty() || !(std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}) <= root_.width / 2)) return -1;
+    Cell cell = root_;
+    const Node* node = nodes_.data();
+    while (node->children >= 0) {
+        const std::size_t k = cell.octant(place);
+        node = &nodes_[static_cast<std::size_t>(node->children) + k];
+        cell = cell.child(k);
+    }
+    if (node->spot < 0) return -1;
+    const Spot& spot = spots_[static_cast<std::size_t>(node->spot)];
+    return (place - spot.centre).length2() <= spot.radius * spot.radius ? node->spot : -1;
 }
 
 std::vector<SpotCone> BrightSpots::cones_from(const Vec3& p, const Vec3& n, int rays) const {
@@ -105,8 +159,9 @@ std::vector<SpotCone> BrightSpots::cones_from(const Vec3& p, const Vec3& n, int 
     for (std::size_t i = 0; i < spots_.size(); ++i) {
         const Vec3 to = spots_[i].centre - p;
         const double distance = static_cast<double>(to.length());
-        if (distance < 1.2 * static_cast<double>(radius_)) continue;
-        const double sine = static_cast<double>(radius_) / distance;
+        const auto radius = static_cast<double>(spots_[i].radius);
+        if (distance < 1.2 * radius) continue;
+        const double sine = radius / distance;
         const double cosine = static_cast<double>(to.dot(n)) / distance;
         if (cosine <= -sine) continue; // below the horizon
         const Vec3 axis = to.normalized();

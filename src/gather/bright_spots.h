@@ -4,9 +4,8 @@
 #include "core/progress.h"
 #include "gather/gather_rays.h"
 
-#include <array>
 #include <cstdint>
-#include <unordered_map>
+#include <span>
 #include <vector>
 
 namespace keyhole {
@@ -21,9 +20,10 @@ struct SpotCone {
     double solid_angle() const { return 2 * kPi * (1 - cos_half_angle); }
 };
 
-/// Cells of a grid from which gather rays brought far more than their share, found by some thousands of rays from what
-/// the eye sees. Only where rays go depends on them, so that a spot which was missed costs noise, and no light.
-/// Immutable and thread-safe.
+/// Cells of an octree from which gather rays brought far more than their share, found by some thousands of rays from
+/// what the eye sees. A cell is as small as the findings in it can tell: a lampshade behind slits, of which few rays
+/// see anything, is one cell; the patch of sun that many see is several. Only where rays go depends on them, so that a
+/// spot which was missed costs noise, and no light. Immutable and thread-safe.
 class BrightSpots {
   public:
     /// None.
@@ -41,18 +41,43 @@ class BrightSpots {
     std::size_t size() const { return spots_.size(); }
 
   private:
+    /// What one ray brought, and from where.
+    struct Finding {
+        Vec3 place{0, 0, 0};
+        double radiance = -1; ///< luminance; negative: nothing was met
+    };
+    struct Cell {
+        Vec3 centre;
+        float width; ///< [m]
+
+        std::size_t octant(const Vec3& place) const;
+        Cell child(std::size_t octant) const;
+    };
+    /// Children of a node follow each other from `children` on; a leaf has none (-1), but may be a spot.
+    struct Node {
+        int children = -1, spot = -1;
+    };
+    /// What lies in a leaf's cell and in a ball.
     struct Spot {
         Vec3 centre;
-        double radiance; ///< mean of what rays brought from there [W/(m^2 sr)]
+        float radius;    ///< [m]
+        double radiance; ///< root of the mean square of what rays brought from there [W/(m^2 sr)]
+        double share;    ///< of the second moment of what rays bring
     };
-    std::uint64_t cell(const Vec3& place) const;
+    static Finding find(const GatherRays& rays, std::uint64_t seed, std::int64_t i);
+    /// Moments of what all rays brought.
+    struct Whole {
+        double sum2 = 0, rays = 0;
+    };
+    static Spot spot_of(const Cell& cell, std::span<const Finding> findings, double sum2, double effective,
+                        double share);
+    void divide(std::size_t node, const Cell& cell, std::span<Finding> findings, const Whole& whole, int depth);
+    void keep_the_brightest();
 
-    Vec3 origin_{0, 0, 0};
-    float width_ = 1;  ///< of a cell [m]
-    float radius_ = 1; ///< of the sphere around it [m]
-    std::unordered_map<std::uint64_t, int> index_;
+    Cell root_{Vec3(0), 0};
+    std::vector<Node> nodes_;
     std::vector<Spot> spots_;
-    double share_ = 0; ///< of the second moment of what rays bring
+    double share_ = 0; ///< that all spots have of the second moment
 };
 
 } // namespace keyhole

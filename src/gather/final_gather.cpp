@@ -62,14 +62,14 @@ void FinalGather::follow(EyeRay ray, int scatterings, int splits, SampleSource& 
 void FinalGather::shade(const Vertex& v, const Vec3& back, const Rgb& throughput, int scatterings, SampleSource& source,
                         PixelSample& out) const {
     if (const auto cached = ask_cache(v, back)) {
-        out.direct += throughput * direct_light(scene_, v, back, source);
+        out.direct += throughput * direct_light(scene_, v, back, samples_.light, source);
         out.indirect += throughput * *cached;
     } else {
-        Rgb direct = next_event(scene_, v, back, source), indirect(0.0);
-        for (int i = 0; i < rays_per_point_; ++i) {
+        Rgb direct = next_event(scene_, v, back, samples_.light, source), indirect(0.0);
+        for (int i = 0; i < samples_.rays; ++i) {
             Rgb emitted(0.0);
-            indirect += gather(v, back, scatterings, source, emitted) / rays_per_point_;
-            direct += emitted / rays_per_point_;
+            indirect += gather(v, back, scatterings, source, emitted) / samples_.rays;
+            direct += emitted / samples_.rays;
         }
         out.direct += throughput * direct;
         out.indirect += throughput * indirect;

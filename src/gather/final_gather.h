@@ -7,13 +7,18 @@
 
 namespace keyhole {
 
+/// At each visible point.
+struct GatherSamples {
+    int light; ///< of emitters
+    int rays;  ///< gather rays, where the cache doesn't serve
+};
+
 /// Immutable and thread-safe.
 class FinalGather {
   public:
-    /// `cache` may be null: gather rays from every sample. `rays_per_point` gather rays from each visible point that
-    /// the cache doesn't serve.
-    FinalGather(const GatherRays& rays, const IrradianceCache* cache, int rays_per_point)
-        : scene_(rays.scene()), rays_(rays), cache_(cache), rays_per_point_(rays_per_point) {}
+    /// `cache` may be null: gather rays from every sample.
+    FinalGather(const GatherRays& rays, const IrradianceCache* cache, const GatherSamples& samples)
+        : scene_(rays.scene()), rays_(rays), cache_(cache), samples_(samples) {}
 
     /// Estimates what arrives at the eye through window point `image`. Unbiased but for the maps and the cache.
     PixelSample sample(const Vec2& image, SampleSource& source) const;
@@ -37,7 +42,7 @@ class FinalGather {
     const Scene& scene_;
     const GatherRays& rays_;
     const IrradianceCache* cache_;
-    int rays_per_point_;
+    GatherSamples samples_;
 };
 
 } // namespace keyhole

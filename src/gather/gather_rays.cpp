@@ -48,15 +48,15 @@ bool GatherRays::too_near(const Leg& leg, std::uint32_t place) const {
 
 Rgb GatherRays::reflected(const Vertex& v, const Vec3& back, const Leg& leg, SampleSource& source) const {
     if (maps_.irradiance == nullptr || maps_.irradiance->places().empty() || !v.bsdf.traits().near_lambertian) {
-        const Rgb direct = direct_light(scene_, v, back, source);
+        const Rgb direct = direct_light(scene_, v, back, 1, source);
         return maps_.global != nullptr ? direct + estimate(*maps_.global, options_.max_radius, v, back) : direct;
     }
     const auto known = maps_.irradiance->irradiance(v.point.p, facing(v.point.ng, back));
     // Photons may be near, but none that this place sees: those of the other side of a wall.
-    if (!known.known) return direct_light(scene_, v, back, source);
+    if (!known.known) return direct_light(scene_, v, back, 1, source);
     const Rgb f = v.bsdf.eval(back, back);
     const auto near = maps_.sites->direct(known.place, v.point.p);
-    const Rgb direct = near ? f * *near : direct_light(scene_, v, back, source);
+    const Rgb direct = near ? f * *near : direct_light(scene_, v, back, 1, source);
     if (!too_near(leg, known.place)) return direct + f * known.irradiance;
     const auto next = continue_walk(v, back, From::eye, source);
     if (!next || is_specular(next->event)) return direct;

@@ -43,11 +43,16 @@ SiteLight direct_irradiance(const Scene& scene, const SurfacePoint& point, const
     const Vertex v = white_vertex(point, n);
     MeanDistance distance(point.p);
     Rgb sum(0.0);
-    for (int i = 0; i < samples; ++i)
-        sample_both_techniques(scene, v, n, source, [&](const SurfacePoint& emitter, const Rgb& value, bool visible) {
+    for (int i = 0; i < samples; ++i) {
+        if (const auto light = sample_direct_light(scene, v, n, source)) {
+            distance.add(light->x0.point, light->value);
+            if (scene.visible(point, light->x0.point)) sum += light->value;
+        }
+        sample_emission(scene, v, n, source, [&](const SurfacePoint& emitter, const Rgb& value) {
             distance.add(emitter, value);
-            if (visible) sum += value;
+            sum += value;
         });
+    }
     return {sum * (kPi / samples), static_cast<float>(kReach * distance.get())};
 }
 

@@ -102,7 +102,9 @@ bool gather_pass(const SamplerContext& c, const RenderPlan& plan, std::int64_t p
     std::optional<IrradianceCache> cache;
     if (plan.cache) cache = fill_cache(rays, cache_options(s, seed), context);
     if (cache) stats.values["cached irradiances"] = static_cast<double>(cache->size());
-    const FinalGather gather(rays, cache ? &*cache : nullptr, plan.gather ? static_cast<int>(s.gather_rays) : 1);
+    const FinalGather gather(
+        rays, cache ? &*cache : nullptr,
+        {.light = static_cast<int>(s.light_samples), .rays = plan.gather ? static_cast<int>(s.gather_rays) : 1});
     const auto rounds = sample_pass(
         c.scene, film, pass, s.spp, static_cast<std::uint64_t>(s.seed), StreamPurpose::gather, "gather", context,
         luminance, [&](const Vec2& image, SampleSource& source) { return gather.sample(image, source); });
