@@ -5,6 +5,7 @@
 #include "scene/load/mesh_mend.h"
 #include "scene/load/ply.h"
 
+#include <assimp/BaseImporter.h>
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
@@ -16,6 +17,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 namespace keyhole {
 namespace {
@@ -119,11 +121,25 @@ class Collector {
     TriangleMesh all_;
 };
 
+/// Assimp tries all of its readers on what the right one refuses, and some of them take minutes over junk.
+void keep_readers_of(const std::string& extension, Assimp::Importer& importer) {
+    for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
+        Assimp::BaseImporter* reader = importer.GetImporter(i);
+        std::set<std::string> extensions;
+        reader->GetExtensionList(extensions);
+        if (extensions.contains(extension.substr(1))) continue;
+        importer.UnregisterLoader(reader);
+        delete reader; // who takes a reader away owns it
+    }
+}
+
 } // namespace
 
 TriangleMesh import_mesh(const std::string& path) {
-    if (check_file(path) == ".ply") return read_ply(path);
+    const std::string extension = check_file(path);
+    if (extension == ".ply") return read_ply(path);
     Assimp::Importer importer;
+    keep_readers_of(extension, importer);
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
     const auto checked = [&](const aiScene* scene) {
         if (scene == nullptr)
