@@ -1,6 +1,7 @@
 // keyhole info: what a scene consists of, as text or JSON.
 #include "cli/command.h"
 #include "cli/scene_info.h"
+#include "cli/stats_json.h"
 #include "cli/units.h"
 
 #include <fmt/format.h>
@@ -86,7 +87,7 @@ void add_info_command(CLI::App& app, Action& action) {
         action = [o] {
             const Json info = scene_info(o->scene);
             if (o->json)
-                fmt::print("{}\n", info.dump(2));
+                fmt::print("{}\n", json_text(info));
             else
                 print_text(info);
             return kSuccess;

@@ -3,6 +3,7 @@
 
 #include "cli/command.h"
 #include "cli/resolution.h"
+#include "cli/stats_json.h"
 #include "cli/units.h"
 #include "core/percent.h"
 #include "render/expected_cost.h"
@@ -126,7 +127,7 @@ void add_plan_command(CLI::App& app, Action& action) {
         action = [o] {
             const Json plan = plan_json(*o);
             if (o->json)
-                fmt::print("{}\n", plan.dump(2));
+                fmt::print("{}\n", json_text(plan));
             else
                 print_plan(plan);
             return kSuccess;

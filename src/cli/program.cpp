@@ -73,7 +73,7 @@ int run_program(int argc, char** argv, Team* team) {
     } catch (const TeamLost& e) {
         return fail(kInternalError, e.what());
     } catch (const std::bad_alloc&) {
-        return fail(kInternalError, "out of memory");
+        return fail(kBadInput, "not enough memory for what is asked: try fewer pixels, samples or threads");
     } catch (const std::exception& e) {
         return fail(kInternalError, fmt::format("internal error: {}", e.what()));
     }

@@ -180,7 +180,7 @@ int run(RenderOptions options) {
         return kInterrupted;
     }
     result.picture.metadata.merge(picture_metadata(options.command_line, options.scene, result.stats));
-    options.outputs.write(result.picture, stats_json(result.stats).dump(2) + "\n");
+    options.outputs.write(result.picture, json_text(stats_json(result.stats)) + "\n");
     if (options.verbose) print_report(result.stats);
     if (!options.quiet)
         fmt::print(stderr, "{}: {} x {} pixels{}\n", options.outputs.exr, result.picture.width, result.picture.height,

@@ -5,9 +5,16 @@
 
 #include <nlohmann/json.hpp>
 
+#include <string>
+
 namespace keyhole {
 
 /// Keys are the members' names; numbers that are not finite become null.
 nlohmann::ordered_json stats_json(const RenderStats& stats);
+
+/// JSON for people. Files may have names, and hold words, that are not UTF-8: what isn't is replaced.
+template <class Json> std::string json_text(const Json& json) {
+    return json.dump(2, ' ', false, Json::error_handler_t::replace);
+}
 
 } // namespace keyhole

@@ -24,6 +24,14 @@ constexpr std::int64_t kStretch = 32;
 /// Rounds of the rest: the brightness that weights refer to is brought up to date between them.
 constexpr std::int64_t kRounds = 64;
 
+/// Steps of all chains that a stop waits for, at most: a second or two.
+constexpr std::int64_t kMostSteps = 1 << 20;
+
+/// In how many parts so many steps of each chain are done, of `least` at least.
+std::int64_t parts_of(std::int64_t steps, std::int64_t chains, std::int64_t least) {
+    return std::min(steps, std::max(least, steps / std::max<std::int64_t>(1, kMostSteps / chains) + 1));
+}
+
 Failures failures_of(std::string_view word) {
     return word == "exclude"         ? Failures::exclude
            : word == "exclude_large" ? Failures::exclude_large
@@ -49,7 +57,9 @@ std::vector<PrimaryStratum> start(const Scene& scene, const Settings& settings, 
 /// Learns p_large where it is not prescribed.
 double learn_p_large(PrimaryChains& chains, const Settings& settings, std::int64_t steps, RenderStats& stats,
                      const RunContext& context) {
-    chains.advance({failures_of(settings.failures), 0.5}, steps, context, nullptr);
+    const std::int64_t parts = parts_of(steps, chains.size(), 1);
+    for (std::int64_t i = 0; i < parts && (i == 0 || !context.stopped()); ++i)
+        chains.advance({failures_of(settings.failures), 0.5}, split(steps, parts, i).size(), context, nullptr);
     const LargeStepRule rule = large_step_rule(chains.counts());
     const double p = settings.p_large.value.value_or(rule.p_large);
     stats.values["p_large"] = p;
@@ -146,7 +156,8 @@ bool draw(PrimaryChains& chains, const Scene& scene, const Settings& settings, W
     const std::int64_t stretch = std::max<std::int64_t>(1, per_chain / kStretch);
     PrimaryKernel kernel{failures_of(settings.failures), learn_p_large(chains, settings, stretch, stats, context)};
     std::int64_t drawn = 0;
-    const std::int64_t rest = std::max<std::int64_t>(1, per_chain - stretch), rounds = std::min(kRounds, rest);
+    const std::int64_t rest = std::max<std::int64_t>(1, per_chain - stretch),
+                       rounds = parts_of(rest, chains.size(), kRounds);
     for (std::int64_t r = 0; r < rounds && (r == 0 || !context.stopped()); ++r) {
         const std::int64_t steps = split(rest, rounds, r).size();
         chains.advance(kernel, steps, context, deposit);

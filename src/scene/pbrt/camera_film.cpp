@@ -90,7 +90,11 @@ void read_camera(Parameters& p, const Transform& camera_to_world, View& view) {
         std::abs(forward.dot(right)) > tolerance)
         p.fail("found a transform that stretches the camera, expected moves, turns, mirrors and even scales");
     CameraParameters& camera = view.camera;
-    camera.origin = Vec3(row(camera_to_world, 3));
+    const Imath::V3d origin = row(camera_to_world, 3);
+    for (const double x : {origin.x, origin.y, origin.z})
+        if (!(std::abs(x) <= 1e12))
+            p.fail(fmt::format("found the camera at the coordinate {}, expected one within 1e12", x));
+    camera.origin = Vec3(origin);
     const Imath::V3d f = forward.normalized(), r = (right - f * right.dot(f)).normalized();
     camera.forward = Vec3(f);
     camera.right = Vec3(r);
