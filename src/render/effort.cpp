@@ -131,9 +131,10 @@ Settings with_effort(const Settings& settings, double effort, std::int64_t pixel
     // Samples of all techniques, which stage one of these takes, cost as much as many of their steps.
     const bool multiplexed = s.method == "mmlt" || s.method == "rjmlt";
     set("mutations", &Settings::mutations, (multiplexed ? 1500e3 : 500e3) * effort / passes, 1000, 0x1p50);
-    set("brightness_samples", &Settings::brightness_samples, (multiplexed ? 50e3 : 100e3) * effort / passes, 2000,
+    set("brightness_samples", &Settings::brightness_samples, (multiplexed ? 50e3 : 100e3) * effort / passes, 5000,
         0x1p40);
-    set("importons", &Settings::importons, 100e3 * effort / passes, 2000, 1 << 30);
+    // However short the render: without them photons would be weighed, or looked for, by chance, which costs more.
+    set("importons", &Settings::importons, 100e3 * effort / passes, 50e3, 1 << 30);
     set("cache_rays", &Settings::cache_rays, 1600 * std::pow(effort, 0.7) / std::sqrt(passes), 64, 1 << 20);
     return s;
 }
