@@ -99,6 +99,13 @@ TEST_F(Program, BadInputExitsWithTwoAndOneLine) {
     }
 }
 
+TEST_F(Program, WordsThatAreNotUtf8AreWarnedOf) {
+    scratch.write("a.pbrt",
+                  "Integrator \"path\" \"integer \xFFx\" 3 Camera \"perspective\" WorldBegin Shape \"sphere\"");
+    EXPECT_EQ(run("render a.pbrt --resolution 8x6 --spp 1 --no-png --stats s.json -o a.exr"), 0) << read("err");
+    EXPECT_THAT(read("s.json"), HasSubstr("\xEF\xBF\xBDx")) << read("s.json");
+}
+
 TEST_F(Program, ATimeoutLeavesWhatThereIs) {
     ASSERT_EQ(run("render scene.yaml -o a.exr --spp 10M --timeout 0.5"), 0) << read("err");
     EXPECT_EQ(read_exr(scratch.path("a.exr")).metadata.at("complete"), "no");

@@ -61,6 +61,13 @@ TEST(PbrtBroken, EveryTokenReplacedIsAnErrorOrAScene) {
     EXPECT_GT(refused, total / 2);
 }
 
+TEST(PbrtBroken, ACameraOutOfBoundsIsRefused) {
+    const ScratchDirectory directory;
+    const std::string camera = "Camera \"perspective\" WorldBegin Shape \"sphere\"";
+    EXPECT_FALSE(is_refused(directory, "Transform [1 0 0 0 0 1 0 0 0 0 1 0 0 0 5 1] " + camera));
+    EXPECT_TRUE(is_refused(directory, "Transform [1 0 0 0 0 1 0 0 0 0 1 0 0 1e20 5 1] " + camera));
+}
+
 TEST(PbrtBroken, MissingAndBrokenMeshesAreNamed) {
     const ScratchDirectory directory;
     directory.write("walls.pbrt", read("walls.pbrt"));
