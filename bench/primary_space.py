@@ -215,7 +215,8 @@ def failures(bench):
 
 
 def plot(bench):
-    """Error against time of the rows that `failures` left, by scene; lines are their split into bias and deviation."""
+    """Error times the root of time, against time, of the rows that `failures` left, by scene: noise alone lies level. Lines: the bias that all rows together tell, if it is
+    distinguishable from 0, and a deviation that falls with the root of time, by their median."""
     import matplotlib
     matplotlib.use('Agg')
     matplotlib.rcParams.update({'svg.hashsalt': 'keyhole', 'svg.fonttype': 'none', 'font.size': 9})
@@ -225,27 +226,32 @@ def plot(bench):
     for axis, scene in zip(numpy.atleast_1d(axes), bench.scenes()):
         for mode, colour, marker in zip(MODES, ('#444444', '#d62728', '#1f77b4', '#2ca02c'), 'osv^'):
             mine = sorted((r for r in rows if r['scene'] == scene and r['failures'] == mode), key=lambda r: r['seconds'])
-            axis.errorbar([r['seconds'] for r in mine], [r['rmse'] for r in mine], [r['rmse_error'] for r in mine],
+            axis.errorbar([r['seconds'] for r in mine], *([r[k] * r['seconds'] ** 0.5 for r in mine]
+                                                          for k in ('rmse', 'rmse_error')),
                           color=colour, marker=marker, markersize=4, linewidth=0, elinewidth=1, label=mode)
-            last = mine[-1]
-            times = numpy.geomspace(mine[0]['seconds'], 16 * last['seconds'], 50)
-            bias2 = last['bias2'] if last['bias2'] > 2 * last['bias2_error'] else 0
-            axis.plot(times, (bias2 + last['deviation'] ** 2 * last['seconds'] / times) ** 0.5, color=colour, linewidth=1)
-        axis.set(xscale='log', yscale='log', title=scene, xlabel='CPU seconds')
-    numpy.atleast_1d(axes)[0].set_ylabel('relative RMSE')
+            trust = [r['bias2_error'] ** -2 for r in mine]
+            bias2 = numpy.average([r['bias2'] for r in mine], weights=trust)
+            if bias2 < 2 * sum(trust) ** -0.5:
+                bias2 = 0
+            times = numpy.geomspace(mine[0]['seconds'], 4 * mine[-1]['seconds'], 50)
+            variance = numpy.median([r['deviation'] ** 2 * r['seconds'] for r in mine])
+            axis.plot(times, (bias2 * times + variance) ** 0.5, color=colour, linewidth=1)
+        axis.set(xscale='log', title=scene, xlabel='CPU seconds')
+    numpy.atleast_1d(axes)[0].set_ylabel('relative RMSE × √(CPU seconds)')
     numpy.atleast_1d(axes)[0].legend(frameon=False)
     figure.savefig(bench.arguments.figure, metadata={'Date': None})
 
 
 def speed(bench):
-    """Thousand mutations for each second of CPU time, chains only."""
+    """Thousand mutations for each second of CPU time, chains only: the best of the runs, as of seconds_a_step()."""
     print('| scene | ' + ' | '.join(name for name, _ in METHODS) + ' |')
     print('| --- |' + ' --- |' * len(METHODS))
     for scene in bench.scenes():
         cells = []
         for _, settings in METHODS:
-            stats = bench.render(scene, mutations=bench.arguments.mutations, **settings)[1]
-            cells.append(f'{stats["values"]["mutations"] / chain_seconds(stats) / 1000:.0f}')
+            runs = [bench.render(scene, seed, mutations=bench.arguments.mutations, **settings)[1]
+                    for seed in range(1, bench.arguments.runs + 1)]
+            cells.append(f'{max(r["values"]["mutations"] / chain_seconds(r) for r in runs) / 1000:.0f}')
         print(f'| {scene} | ' + ' | '.join(cells) + ' |', flush=True)
 
 
