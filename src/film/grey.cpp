@@ -3,6 +3,7 @@
 #include "core/vec.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace keyhole {
@@ -35,6 +36,16 @@ std::vector<double> smooth(const Grey& g) {
         }
     }
     return out;
+}
+
+std::vector<std::size_t> without_outliers(const std::vector<double>& values) {
+    const auto size = [&](std::size_t i) { return std::isnan(values[i]) ? INFINITY : std::abs(values[i]); };
+    std::vector<std::size_t> order(values.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const auto kept = static_cast<std::ptrdiff_t>(static_cast<double>(order.size()) * 0.999);
+    std::ranges::nth_element(order, order.begin() + kept, {}, size);
+    order.resize(static_cast<std::size_t>(kept));
+    return order;
 }
 
 } // namespace keyhole

@@ -19,6 +19,9 @@ struct Grey {
 /// Mean of the values; NaN without any.
 double mean(const std::vector<double>& values);
 
+/// Indices of the values that are left without the 0.1 % largest in size, NaN being the largest of all.
+std::vector<std::size_t> without_outliers(const std::vector<double>& values);
+
 /// Mean over the 3x3 neighbourhood of each pixel; the border repeats.
 std::vector<double> smooth(const Grey& g);
 

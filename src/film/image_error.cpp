@@ -7,17 +7,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace keyhole {
 namespace {
 
-double trimmed_mean(std::vector<double> v) {
-    const auto size = [](double x) { return std::isnan(x) ? INFINITY : std::abs(x); };
-    const auto kept = static_cast<std::ptrdiff_t>(static_cast<double>(v.size()) * 0.999);
-    std::nth_element(v.begin(), v.begin() + kept, v.end(), [&](double a, double b) { return size(a) < size(b); });
-    v.resize(static_cast<std::size_t>(kept));
-    return mean(v);
+double trimmed_mean(const std::vector<double>& values) {
+    const std::vector<std::size_t> kept = without_outliers(values);
+    double sum = 0;
+    for (const std::size_t i : kept) sum += values[i];
+    return sum / static_cast<double>(kept.size());
 }
 
 double block_error(const Grey& picture, const Grey& reference, double mean_reference) {

@@ -4,10 +4,8 @@
 #include "core/statistics.h"
 #include "film/grey.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace keyhole {
 namespace {
@@ -19,17 +17,6 @@ Grey finite_grey(const Image& image, const Image& reference) {
     for (double& y : grey.y)
         if (!std::isfinite(y)) y = 0;
     return grey;
-}
-
-/// Indices of the pixels that are left without the 0.1 % largest in size.
-std::vector<std::size_t> kept_pixels(const std::vector<double>& errors) {
-    std::vector<std::size_t> order(errors.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    const auto kept = static_cast<std::ptrdiff_t>(static_cast<double>(order.size()) * 0.999);
-    std::nth_element(order.begin(), order.begin() + kept, order.end(),
-                     [&](std::size_t a, std::size_t b) { return std::abs(errors[a]) < std::abs(errors[b]); });
-    order.resize(static_cast<std::size_t>(kept));
-    return order;
 }
 
 } // namespace
@@ -51,7 +38,7 @@ RepeatError repeat_error(const std::vector<Image>& repeats, const Image& referen
     for (std::size_t p = 0; p < errors.size(); ++p)
         for (const Grey& picture : pictures) errors[p] += error_of(picture, p) / static_cast<double>(pictures.size());
 
-    const std::vector<std::size_t> kept = kept_pixels(errors);
+    const std::vector<std::size_t> kept = without_outliers(errors);
     RepeatError result{.each = std::vector<double>(pictures.size(), 0.0)};
     const double share = 1 / static_cast<double>(kept.size());
     for (const std::size_t p : kept) {

@@ -2,7 +2,6 @@
 
 #include "core/error.h"
 #include "render/memory_plan.h"
-#include "render/stage_clock.h"
 
 #include <fmt/format.h>
 
@@ -46,64 +45,50 @@ std::string differences(const Settings& a, const Settings& b) {
     return text;
 }
 
-/// What effort costs here: a part that is always the same, and a share for each unit.
-struct Cost {
-    double fixed = 0, per_effort = 0; // [s]
+/// What a render with some effort cost.
+struct Experience {
+    double effort, seconds;
 };
 
-/// Effort of the two trials, as a share of what should fill the time. The first shows what is always the same.
-constexpr double kFirstTrial = 0.005, kSecondTrial = 0.04;
-/// Share of the time that a first trial may take if there is to be a second.
-constexpr double kAffordable = 0.08;
-/// Of the time that is left after them, so that a render that costs a little more than they said is done in time.
+constexpr double kFirst = 0.02; // effort of the first render, as a share of what should fill the time
+/// Of the time that is left, so that a render that costs a little more than was foreseen is done in time.
 constexpr double kUse = 0.93;
+/// A render is worth its time if it has so much more effort than the one before it.
+constexpr double kWorthwhile = 1.5;
 
-/// Renders with little effort that tell what effort costs; their pictures are thrown away, unless there is no other.
-class Trials {
-  public:
-    Trials(Scene& scene, const std::set<std::string>& given, const RunContext& context, const UserPathFile& user_paths)
-        : scene_(scene), given_(given), context_(context), user_paths_(user_paths) {}
-
-    /// Puts what `auto` stands for into `settings`. None if time was up: then last() is what there is.
-    std::optional<Cost> run(Settings& settings) {
-        const double total = context_.stop->seconds_left(), unit = total / kSecondsOfEffort;
-        const StageClock clock(stats_, "trials of settings");
-        const double first = render_with(settings, kFirstTrial * unit);
-        if (context_.stopped()) return std::nullopt;
-        // Without time for another trial, effort costs what it usually does, and a little more.
-        if (first > kAffordable * total) return Cost{0.85 * first, 1.3 * kSecondsOfEffort};
-        const double second = render_with(settings, kSecondTrial * unit);
-        if (context_.stopped()) return std::nullopt;
-        const double slope =
-            std::max(0.1 * second / (kSecondTrial * unit), (second - first) / ((kSecondTrial - kFirstTrial) * unit));
-        return Cost{std::max(0.0, second - slope * kSecondTrial * unit), slope};
+/// The most effort that `seconds` are enough for, by the last two renders. After a first one that was short, a somewhat
+/// longer one shows what effort costs; one that took a good part of the time did so by what comes once, for the most
+/// part: what each pixel costs.
+double affordable(const std::vector<Experience>& past, double seconds) {
+    const Experience& last = past.back();
+    if (past.size() == 1) {
+        const double times = seconds / last.seconds;
+        return last.effort * (times > 10 ? 3 : 2 * times - 1);
     }
-    RenderResult& last() { return last_; }
-    const RenderStats& stats() const { return stats_; }
+    const Experience& before = past[past.size() - 2];
+    const double slope =
+        std::max(0.3 * last.seconds / last.effort, (last.seconds - before.seconds) / (last.effort - before.effort));
+    return last.effort + (seconds - last.seconds) / slope;
+}
 
-  private:
-    /// What it cost, without the choice of a method, which is made once.
-    double render_with(Settings& settings, double effort) {
-        const double start = context_.stop->seconds_left();
-        const ImageWindow& window = scene_.camera().window();
-        const Settings trial = with_effort(settings, effort, std::int64_t{window.width} * window.height, given_);
-        last_ = render(scene_, trial, context_, user_paths_);
-        settings.method = last_.stats.method;
-        double all = 0, choice = 0;
-        for (const StageStats& stage : last_.stats.stages) {
-            all += stage.wall_seconds;
-            if (stage.name == "trial of samplers") choice = stage.wall_seconds;
-        }
-        return (start - context_.stop->seconds_left()) * (all > 0 ? 1 - choice / all : 1);
+/// What all stages but the choice of a method, which is made once, took [s].
+double without_choice(const RenderStats& stats, double seconds) {
+    double all = 0, choice = 0;
+    for (const StageStats& stage : stats.stages) {
+        all += stage.wall_seconds;
+        if (stage.name == "trial of samplers") choice += stage.wall_seconds;
     }
+    return all > 0 ? seconds * (1 - choice / all) : seconds;
+}
 
-    Scene& scene_;
-    const std::set<std::string>& given_;
-    const RunContext& context_;
-    const UserPathFile& user_paths_;
-    RenderResult last_;
-    RenderStats stats_;
-};
+/// One line of all stages of a render that a better one takes the place of.
+void add_stages(StageStats& sum, const RenderStats& stats) {
+    for (const StageStats& stage : stats.stages) {
+        sum.wall_seconds += stage.wall_seconds;
+        sum.cpu_seconds += stage.cpu_seconds;
+        sum.rays += stage.rays;
+    }
+}
 
 bool has_empty_pixels(const RenderStats& stats) {
     const auto empty = stats.values.find("empty pixels");
@@ -118,7 +103,7 @@ Settings with_effort(const Settings& settings, double effort, std::int64_t pixel
         if (!given.contains(key)) s.*member = static_cast<std::int64_t>(std::clamp(value, least, most));
     };
     // Small pictures get more samples a pixel, large ones fewer, so that photons and pixels share the time alike.
-    const double spp = 4 * effort * std::sqrt(kPixels / static_cast<double>(pixels));
+    const double spp = 8 * std::sqrt(effort * kPixels / static_cast<double>(pixels));
     const double photons = 80e3 * std::pow(effort, 0.6);
     const double passes =
         given.contains("passes") || !draws_photons(s.method)
@@ -152,19 +137,35 @@ RenderResult render_in_time(Scene& scene, const Settings& settings, const std::s
         if (!given.contains("spp")) s.spp = 1 << 24; // as many as there is time for
         return render(scene, s, context, user_paths, share);
     }
-    Trials trials(scene, given, context, user_paths);
-    const std::optional<Cost> cost = trials.run(s);
-    if (!cost) return std::move(trials.last());
-    const double effort = std::max(1e-3, (kUse * context.stop->seconds_left() - cost->fixed) / cost->per_effort);
     const ImageWindow& window = scene.camera().window();
-    const Settings chosen = with_effort(s, effort, std::int64_t{window.width} * window.height, given);
-    RenderResult result = render(scene, chosen, context, user_paths, share);
-    if (has_empty_pixels(result.stats)) return std::move(trials.last()); // even the first round took too long
-    RenderStats& stats = result.stats;
-    stats.stages.insert(stats.stages.begin(), trials.stats().stages.begin(), trials.stats().stages.end());
-    stats.values["effort"] = effort;
-    stats.remarks.push_back("set by the time:" + differences(settings, chosen));
-    return result;
+    const std::int64_t pixels = std::int64_t{window.width} * window.height;
+    std::vector<Experience> past;
+    std::optional<RenderResult> best;
+    StageStats others{.name = "trials of settings"};
+    double effort = kFirst * context.stop->seconds_left() / kSecondsOfEffort;
+    while (true) {
+        const double start = context.stop->seconds_left();
+        const Settings chosen = with_effort(s, effort, pixels, given);
+        RenderResult result = render(scene, chosen, context, user_paths, share);
+        s.method = result.stats.method; // what `auto` stands for
+        const double left = context.stop->seconds_left();
+        // Where time was up before each pixel had a sample, the picture before is the better one.
+        if (best && has_empty_pixels(result.stats)) {
+            add_stages(others, result.stats);
+            break;
+        }
+        result.stats.values["effort"] = effort;
+        result.stats.remarks.push_back("set by the time:" + differences(settings, chosen));
+        if (best) add_stages(others, best->stats);
+        past.push_back({effort, without_choice(result.stats, start - left)});
+        best = std::move(result);
+        const double next = affordable(past, kUse * left);
+        if (context.stopped() || next < kWorthwhile * effort) break;
+        effort = next;
+    }
+    auto& stages = best->stats.stages;
+    if (others.wall_seconds > 0) stages.insert(stages.begin(), others);
+    return std::move(*best);
 }
 
 } // namespace keyhole

@@ -21,8 +21,10 @@ Settings with_effort(const Settings& settings, double effort, std::int64_t pixel
 /// @throws InputError for other words.
 Settings with_quality(const Settings& settings, const std::string& quality, const std::set<std::string>& given);
 
-/// Renders with as much effort as fits in context.stop->seconds_left(): short trials tell what effort costs here, and
-/// are thrown away. Where even those don't fit, the result is what there was when time was up.
+/// Renders with as much effort as fits in context.stop->seconds_left(): again and again, each time with what the
+/// renders before say that the rest of the time is enough for, until there is none for a picture that would be better.
+/// Short ones come first, so that there is a picture whatever happens; the best is the result. Where even the first
+/// doesn't fit, the result is what there was when time was up.
 /// @param given settings that stay as they are.
 /// @param share for its look(); all passes are done here.
 /// @throws as render().
