@@ -72,7 +72,8 @@ struct Settings {
 template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
     using I = std::int64_t;
     visit("method", s.method,
-          std::vector<std::string_view>{"auto", "mps", "ipm", "pm", "mlt", "path", "bdpt", "pssmlt", "mmlt", "rjmlt"},
+          std::vector<std::string_view>{"auto", "mps", "ipm", "pm", "pss", "mlt", "path", "bdpt", "pssmlt", "mmlt",
+                                        "rjmlt"},
           "rendering method");
     visit("plan", s.plan, std::vector<std::string_view>{"auto", "all"},
           "auto: maps, proposals and stages that the scene has no use for are left out");
@@ -105,7 +106,7 @@ template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
           "how pssmlt makes paths");
     visit("failures", s.failures, std::vector<std::string_view>{"exclude", "reject", "exclude_large", "delay"},
           "what pssmlt and mmlt do with proposals that make no path; exclude is biased");
-    visit("p_large", s.p_large, 0.0, 1.0, "probability of large steps of pssmlt and mmlt");
+    visit("p_large", s.p_large, 0.0, 1.0, "probability of large steps of pssmlt, mmlt and pss");
     visit("large_step_mis", s.large_step_mis, std::vector<std::string_view>{"on", "off"},
           "whether large steps deposit as samples on their own account");
     visit("irradiance_cache", s.irradiance_cache, "cache irradiance on diffuse surfaces");

@@ -10,49 +10,23 @@
 namespace keyhole {
 namespace {
 
-/// What decides whether a photon is kept: importance where it is known, a small multiple of power elsewhere.
-struct Weighing {
-    EmissionGuide guide;
-    double unknown_scale = 0; ///< weight of a photon of unknown importance over the luminance of its power
-
-    struct Weight {
-        double value;
-        bool known;
-    };
-    Weight operator()(PhotonKind kind, const Vertex& v, const Vec3& to_light, const Rgb& power) const {
-        const ImportanceGuide* map = kind == PhotonKind::global ? guide.global : guide.caustic;
-        if (map == nullptr) return {1, true};
-        if (const auto visible = map->visible_power(v, to_light, power)) return {*visible, true};
-        return {luminance(power) * unknown_scale, false};
-    }
-};
-
 /// Photons of a block of paths, and what the weighing of later ones learns from them.
 struct Block {
     MapBuffers scouts, carriers;
-    double known_global = 0, known_caustic = 0; ///< weight
-    double unknown = 0;                         ///< luminance of power
+    PhotonWeights weights;
     std::uint64_t arrivals = 0;
 
     void learn(const Block& o) {
-        known_global += o.known_global;
-        known_caustic += o.known_caustic;
-        unknown += o.unknown;
+        weights += o.weights;
         arrivals += o.arrivals;
-    }
-    /// Photons of unknown importance together weigh a twentieth of the others: few enough to cost little, enough for
-    /// none to become an outlier where the guide is wrong.
-    double unknown_scale() const {
-        const double known = known_global + known_caustic;
-        return known > 0 && unknown > 0 ? 0.05 * known / unknown : 1.0;
     }
 };
 
 /// Receives the arrivals of one light path after the other.
 class Collector {
   public:
-    Collector(const Weighing& weighing, const MapStores::Thresholds& scouts, const MapStores::Thresholds& carriers,
-              int max_scatterings)
+    Collector(const PhotonWeighing& weighing, const MapStores::Thresholds& scouts,
+              const MapStores::Thresholds& carriers, int max_scatterings)
         : weighing_(weighing), scouts_(scouts), carriers_(carriers), max_scatterings_(max_scatterings) {}
 
     void begin(PhotonRole role, Rng& rng) {
@@ -76,21 +50,19 @@ class Collector {
     void store(PhotonKind kind, const Vertex& v, const Vec3& to_light, const Rgb& power) {
         if (!(luminance(power) > 0)) return;
         const bool global = kind == PhotonKind::global;
-        const auto [weight, known] = weighing_(kind, v, to_light, power);
+        const PhotonWeighing::Weight weight = weighing_(kind, v, to_light, power);
         ++block.arrivals;
-        (!known   ? block.unknown
-         : global ? block.known_global
-                  : block.known_caustic) += known ? weight : luminance(power);
+        block.weights.add(kind, weight, luminance(power));
         const MapStores::Thresholds& least = role_ == PhotonRole::scout ? scouts_ : carriers_;
-        const double kept = roulette(weight, global ? least.global : least.caustic, *rng_);
+        const double kept = roulette(weight.value, global ? least.global : least.caustic, *rng_);
         if (!(kept > 0)) return;
         MapBuffers& buffers = role_ == PhotonRole::scout ? block.scouts : block.carriers;
         PhotonBuffer& buffer = global ? buffers.global : buffers.caustic;
-        buffer.photons.emplace_back(v.point.p, v.point.ng, to_light, power / weight);
+        buffer.photons.emplace_back(v.point.p, v.point.ng, to_light, power / weight.value);
         buffer.weights.push_back(static_cast<float>(kept));
     }
 
-    Weighing weighing_;
+    PhotonWeighing weighing_;
     MapStores::Thresholds scouts_, carriers_;
     int max_scatterings_;
     PhotonRole role_ = PhotonRole::carrier;
@@ -138,14 +110,6 @@ Block learn_from_pilot(const Scene& scene, const EmissionGuide& guide, const Emi
     return sum;
 }
 
-/// How many of the photons are for the caustic map, from the weights that arrive at either.
-std::size_t caustic_part(const Scene& scene, const Block& pilot, std::size_t photons) {
-    if (!scene.traits().delta) return 0;
-    const double all = pilot.known_global + pilot.known_caustic;
-    const double share = all > 0 ? std::clamp(pilot.known_caustic / all, 0.02, 0.98) : 0.5;
-    return static_cast<std::size_t>(share * static_cast<double>(photons));
-}
-
 } // namespace
 
 EmittedPhotons emit_photons(const Scene& scene, const EmissionGuide& guide, const EmissionOptions& options,
@@ -153,8 +117,8 @@ EmittedPhotons emit_photons(const Scene& scene, const EmissionGuide& guide, cons
     EmittedPhotons out;
     if (scene.emitter_distribution().empty()) return out;
     Block learnt = learn_from_pilot(scene, guide, options);
-    const std::size_t for_caustic = caustic_part(scene, learnt, options.photons);
-    MapStores stores(options.photons - for_caustic, for_caustic, 0, options.seed);
+    const std::size_t for_caustic = scene.traits().delta ? learnt.weights.for_caustic(options.photons) : 0;
+    MapStores stores(options.photons - for_caustic, for_caustic, {}, options.seed);
 
     // In rounds, so that buffers stay small beside the stores, and thresholds follow what is stored.
     const std::int64_t round =
@@ -162,7 +126,7 @@ EmittedPhotons emit_photons(const Scene& scene, const EmissionGuide& guide, cons
     context.begin("photons", static_cast<std::uint64_t>(options.paths), "light paths");
     while (out.paths < options.paths && !(context.stopped() && out.paths > 0)) {
         const Range range{out.paths, std::min(options.paths, out.paths + round)};
-        const Weighing weighing{guide, learnt.unknown_scale()};
+        const PhotonWeighing weighing{guide, learnt.weights.unknown_scale()};
         const Collector collector(weighing, stores.thresholds(PhotonRole::scout),
                                   stores.thresholds(PhotonRole::carrier), options.max_scatterings);
         for (Block& b : trace_blocks(scene, options, range, collector)) {

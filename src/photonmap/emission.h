@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/progress.h"
-#include "photonmap/importance_guide.h"
+#include "photonmap/photon_weighing.h"
 #include "photonmap/photons.h"
 #include "scene/scene.h"
 
@@ -15,12 +15,6 @@ struct EmissionOptions {
     std::size_t photons; ///< ceiling for both maps together; they share it as they share the weight of what arrives
     int max_scatterings = 24;
     std::uint64_t seed;
-};
-
-/// Where emitted photons are worth storing; null members: everywhere alike.
-struct EmissionGuide {
-    const ImportanceGuide* global = nullptr;  ///< at d2
-    const ImportanceGuide* caustic = nullptr; ///< at d1
 };
 
 struct EmittedPhotons : Photons {

@@ -4,7 +4,7 @@
 #include "photonmap/photon_store.h"
 #include "photonmap/photons.h"
 
-#include <array>
+#include <cstdint>
 
 namespace keyhole {
 
@@ -16,15 +16,16 @@ struct MapBuffers {
 /// Stores for what a sampler finds; both maps together hold no more than they were made for. Not thread-safe.
 class MapStores {
   public:
-    /// Ceilings in photons, scouts included. `threshold`: as PhotonStore's.
-    MapStores(std::size_t global, std::size_t caustic, double threshold, std::uint64_t seed);
+    struct Thresholds {
+        double global = 0, caustic = 0;
+    };
+
+    /// Ceilings in photons, scouts included. `initial`: as PhotonStore's.
+    MapStores(std::size_t global, std::size_t caustic, const Thresholds& initial, std::uint64_t seed);
 
     /// Adds the photons of the buffers and empties them.
     void absorb(PhotonRole role, MapBuffers& buffers);
 
-    struct Thresholds {
-        double global = 0, caustic = 0;
-    };
     /// Weights below these won't stay whole.
     Thresholds thresholds(PhotonRole role) const;
 
@@ -38,11 +39,14 @@ class MapStores {
     struct Pair {
         PhotonStore global, caustic;
     };
-    static Pair make_pair(std::size_t global, std::size_t caustic, double threshold, std::uint64_t seed,
+    static Pair make_pair(std::size_t global, std::size_t caustic, const Thresholds& initial, std::uint64_t seed,
                           PhotonRole role);
     Pair& of(PhotonRole role) { return role == PhotonRole::scout ? scouts_ : carriers_; }
 
     Pair scouts_, carriers_;
 };
+
+/// Steps of each chain between two visits to the stores, so that the chains' buffers stay small beside these.
+std::int64_t round_length(std::int64_t photons, std::int64_t chains);
 
 } // namespace keyhole

@@ -5,15 +5,6 @@
 #include <utility>
 
 namespace keyhole {
-namespace {
-
-/// Steps of each chain between two visits to the stores, so that the chains' buffers stay small beside these.
-std::int64_t round_length(std::int64_t photons, std::int64_t chains) {
-    return std::clamp<std::int64_t>(photons / (32 * chains), 2, 256);
-}
-
-} // namespace
-
 ChainSeeds choose_chain_seeds(const Scene& scene, const StageOneSettings& settings, const StageOne& stage,
                               std::int64_t chains) {
     const Range all = stage.all_groups();
@@ -45,7 +36,7 @@ SampledPhotons sample_photons(const ChainSeeds& seeds, const Mixture<Path>& mixt
     const auto mutations = static_cast<double>(per_chain * chains);
     const auto photons = static_cast<std::int64_t>(options.global_photons + options.caustic_photons);
     const double threshold = std::max(0.2, 0.8 * mutations / static_cast<double>(std::max<std::int64_t>(1, photons)));
-    MapStores stores(options.global_photons, options.caustic_photons, threshold, options.seed);
+    MapStores stores(options.global_photons, options.caustic_photons, {threshold, threshold}, options.seed);
     const auto collect = [&] {
         for (PathDepositor& depositor : depositors) stores.absorb(depositor.role(), depositor.buffers());
     };

@@ -50,8 +50,9 @@ ExpectedCost expect_cost(Scene& scene, const Settings& settings, const RunContex
         const auto* const driver = std::ranges::find(kDrivers, stage.name, &Driver::stage);
         double factor = 1;
         if (driver != kDrivers.end()) {
-            const auto setting =
-                stage.name == "photons" && stats.method == "mps" ? &Settings::mutations : driver->setting;
+            const auto setting = stage.name == "photons" && (stats.method == "mps" || stats.method == "pss")
+                                     ? &Settings::mutations
+                                     : driver->setting;
             factor = passes * static_cast<double>(settings.*setting) / static_cast<double>(part.*setting);
         }
         cost.stages.emplace_back(stage.name, factor * stage.cpu_seconds);

@@ -6,8 +6,8 @@
 
 namespace keyhole {
 
-/// Everything that renders from photon maps; the method is the sampler that fills them: mps, ipm or
-/// pm, or the better of the first two by trial.
+/// Everything that renders from photon maps; the method is the sampler that fills them: mps, ipm, pm
+/// or pss, or the better of the first two by trial.
 RenderResult render_photons(const Scene& scene, const Settings& settings, const UserPaths& paths,
                             const RunContext& context, const Share& share);
 

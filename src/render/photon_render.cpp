@@ -55,6 +55,7 @@ std::unique_ptr<PhotonSampler> make_sampler(const SamplerContext& c, const Rende
     const std::string method = c.settings.method == "auto" ? choose_method(c, stats, context) : c.settings.method;
     stats.method = method;
     if (method == "mps") return make_metropolis_sampler(c);
+    if (method == "pss") return make_light_chain_sampler(c);
     return make_emission_sampler(c, method == "ipm");
 }
 

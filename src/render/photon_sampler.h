@@ -37,6 +37,9 @@ struct SamplerContext {
 /// Metropolis photon sampling: Fan, Chenney, Lai 2005.
 std::unique_ptr<PhotonSampler> make_metropolis_sampler(const SamplerContext& context);
 
+/// Chains in primary sample space over light sub-paths: Hachisuka and Jensen 2011, seeking importance.
+std::unique_ptr<PhotonSampler> make_light_chain_sampler(const SamplerContext& context);
+
 /// The photons of settings.load_map. sample() throws InputError if the file isn't for this scene.
 /// @throws InputError if more than one pass is asked for.
 std::unique_ptr<PhotonSampler> make_file_sampler(const SamplerContext& context);

@@ -5,6 +5,7 @@
 #include "render/methods.h"
 #include "render/mis_heuristic.h"
 #include "render/pass_seed.h"
+#include "render/primary_report.h"
 #include "render/stage_clock.h"
 #include "render/work.h"
 #include "sampling/primary/p_large.h"
@@ -62,33 +63,12 @@ double learn_p_large(PrimaryChains& chains, const Settings& settings, std::int64
         chains.advance({failures_of(settings.failures), 0.5}, split(steps, parts, i).size(), context, nullptr);
     const LargeStepRule rule = large_step_rule(chains.counts());
     const double p = settings.p_large.value.value_or(rule.p_large);
-    stats.values["p_large"] = p;
-    stats.values["p_large by the rule"] = rule.p_large;
-    stats.values["p_large by its first branch"] = rule.by_formula ? 1 : 0;
-    stats.values["eta_s"] = rule.eta_s;
-    stats.values["eta_l"] = rule.eta_l;
-    stats.values["eta_0"] = rule.eta_0;
+    report_large_steps(rule, p, stats);
     return p;
 }
 
-ProposalStats line(std::string name, const StepCounts& c) {
-    return {std::move(name),         c.proposed, 0, 0, c.proposed - c.failed - c.accepted, c.accepted,
-            {{"no_path", c.failed}}, 0};
-}
-
 void report(const PrimaryChains& chains, RenderStats& stats) {
-    const PrimaryCounts counts = chains.counts();
-    stats.proposals = {line("small step", counts.small), line("large step", counts.large),
-                       line("second try", counts.second)};
-    const auto share = [&](std::uint64_t n) {
-        return static_cast<double>(n) / static_cast<double>(counts.proposals());
-    };
-    stats.values["chains"] = static_cast<double>(chains.size());
-    stats.values["mutations"] = static_cast<double>(counts.proposals());
-    stats.values["steps"] = static_cast<double>(counts.steps());
-    stats.values["failure rate"] = share(counts.small.failed + counts.large.failed);
-    stats.values["acceptance rate"] = share(counts.small.accepted + counts.large.accepted + counts.second.accepted);
-    stats.values["remedied paths"] = share(counts.remedied());
+    report_steps(chains.counts(), chains.size(), stats);
     if (const ChangeCounts& c = chains.changes(); c.proposed > 0) {
         const auto of_changes = [&](std::uint64_t n) {
             return static_cast<double>(n) / static_cast<double>(c.proposed);

@@ -56,7 +56,7 @@ TEST_P(Passes, SayHowFarTheyAre) {
     EXPECT_NEAR(std::sqrt(error), result.stats.values.at("relative error"), 0.07);
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, Passes, testing::Values("ipm", "mps"),
+INSTANTIATE_TEST_SUITE_P(Methods, Passes, testing::Values("ipm", "mps", "pss"),
                          [](const auto& info) { return std::string(info.param); });
 
 } // namespace

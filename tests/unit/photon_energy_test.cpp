@@ -3,6 +3,7 @@
 #include "core/statistics.h"
 #include "photonmap/emission.h"
 #include "photonmap/importance_tracing.h"
+#include "photonmap/light_chains.h"
 #include "photonmap/photon_sampling.h"
 #include "sampling/light_tracer.h"
 #include "sampling/proposals/registry.h"
@@ -67,8 +68,8 @@ ImportanceMap importance_map(std::vector<Photon>&& importons, const SurfacePatch
     return {std::move(importons), {.k = 50, .max_radius = 0.5f, .patches = &patches}};
 }
 
-ImportanceGuide guide(std::vector<Photon>&& importons, const SurfacePatches& patches) {
-    return {PhotonMap(std::move(importons)), 0.5f, patches, {}};
+ImportanceGuide guide(std::vector<Photon>&& importons, const SurfacePatches& patches, float radius = 0.5f) {
+    return {PhotonMap(std::move(importons)), radius, patches, {}};
 }
 
 void add_run(const Scene& scene, const Photons& photons, Energy& e) {
@@ -93,6 +94,31 @@ Energy by_emission(const Scene& scene, int depth, bool guided, int runs) {
         const EmissionGuide both = guided ? EmissionGuide{&at_d2, &at_d1} : EmissionGuide{};
         const EmissionOptions options{.paths = 60'000, .photons = 25'000, .max_scatterings = depth, .seed = seed};
         const EmittedPhotons photons = emit_photons(scene, both, options, {});
+        EXPECT_LE(photons.global.size() + photons.caustic.size(), options.photons);
+        add_run(scene, photons, e);
+    }
+    return e;
+}
+
+/// Several independent runs of chains over light sub-paths, thinned likewise.
+Energy by_light_chains(const Scene& scene, int depth, int runs, float guide_radius) {
+    const SurfacePatches patches(scene.shapes());
+    Energy e;
+    for (int run = 0; run < runs; ++run) {
+        const auto seed = static_cast<std::uint64_t>(100 + run);
+        Importons importons = trace_importance(scene, {.samples = 20'000, .max_scatterings = depth, .seed = seed}, {});
+        const ImportanceGuide at_d1 = guide(std::move(importons.first), patches, guide_radius);
+        const ImportanceGuide at_d2 = guide(std::move(importons.second), patches, guide_radius);
+        const EmissionGuide both{&at_d2, &at_d1};
+        const LightChainOptions options{.samples = 60'000,
+                                        .chains = 400,
+                                        .mutations = 200'000,
+                                        .photons = 25'000,
+                                        .p_large = {},
+                                        .max_scatterings = depth,
+                                        .seed = seed};
+        const LightChainStart start = start_light_chains(scene, both, options, {});
+        const LightChainPhotons photons = run_light_chains(scene, both, start, options, {});
         EXPECT_LE(photons.global.size() + photons.caustic.size(), options.photons);
         add_run(scene, photons, e);
     }
@@ -157,12 +183,21 @@ void expect_emission_energy(const Scene& scene, int depth, const Energy& traced)
     }
 }
 
+void expect_light_chain_energy(const Scene& scene, int depth, const Energy& traced, float guide_radius = 0.5f) {
+    SCOPED_TRACE("chains of light sub-paths");
+    const Energy chains = by_light_chains(scene, depth, 8, guide_radius);
+    expect_equal(chains.global, traced.global, "global", 0, {0, 1, 2, 3, 4, 5, 6});
+    // Where the eye sees little of them they are few.
+    expect_equal(chains.caustic, traced.caustic, "caustic", 0, {2, 4});
+}
+
 /// `depth`: most scatterings of a path. Light tracing can't know how many of them the eye's side will take; where it
 /// takes more than the one at d1, as behind glass, they must be so many that the last ones carry no power.
 void expect_energy(const Scene& scene, bool caustics, int depth = 8) {
     const Energy traced = by_light_tracing(scene, depth, 400'000);
     expect_emission_energy(scene, depth, traced);
     expect_chain_energy(scene, depth, traced, caustics);
+    expect_light_chain_energy(scene, depth, traced);
 }
 
 TEST(PhotonEnergy_EqualsLightTracing, DiffuseBox) { expect_energy(*test::diffuse_box(), false); }
@@ -170,6 +205,11 @@ TEST(PhotonEnergy_EqualsLightTracing, TwoRooms) { expect_energy(*test::two_rooms
 TEST(PhotonEnergy_EqualsLightTracing, MirrorGlassBox) { expect_energy(*test::mirror_glass_box(), true); }
 TEST(PhotonEnergy_EqualsLightTracing, PointLight) { expect_energy(*test::point_light_box(), true); }
 TEST(PhotonEnergy_EqualsLightTracing, GlassWall) { expect_energy(*test::glass_wall_box(), false, 60); }
+
+TEST(PhotonEnergy_EqualsLightTracing, WhereChainsOfLightPathsKnowNoImportance) {
+    const auto scene = test::two_rooms(0.5f);
+    expect_light_chain_energy(*scene, 8, by_light_tracing(*scene, 8, 400'000), 0.01f);
+}
 
 } // namespace
 } // namespace keyhole

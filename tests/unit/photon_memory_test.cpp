@@ -40,7 +40,7 @@ TEST_P(PhotonMemory_StaysUnderItsCeiling, AtEverySize) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, PhotonMemory_StaysUnderItsCeiling, testing::Values("mps", "ipm", "pm"),
+INSTANTIATE_TEST_SUITE_P(Methods, PhotonMemory_StaysUnderItsCeiling, testing::Values("mps", "ipm", "pm", "pss"),
                          [](const auto& info) { return std::string(info.param); });
 
 } // namespace

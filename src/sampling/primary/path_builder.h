@@ -4,6 +4,7 @@
 #include "sampling/bidirectional_tracer.h"
 #include "sampling/primary/path_sample.h"
 
+#include <array>
 #include <memory>
 #include <string_view>
 
@@ -13,11 +14,16 @@ namespace keyhole {
 /// other asks for more or fewer numbers than before.
 struct PrimarySources {
     SampleSource &eye, &light, &choice;
+
+    std::array<SampleSource*, 3> all() const { return {&eye, &light, &choice}; }
 };
 
 /// Maps primary samples, uniform in [0,1), to splats whose expected value is the picture. Immutable and thread-safe.
 class PathBuilder {
   public:
+    using Sources = PrimarySources;
+    using Sample = PathSample;
+
     virtual ~PathBuilder() = default;
     virtual std::string_view name() const = 0;
     /// Fills `sample`, which is empty. It stays so where no path is completed.

@@ -1,6 +1,7 @@
 #include "sampling/primary/primary_start.h"
 
 #include "core/parallel.h"
+#include "sampling/resampling.h"
 
 #include <algorithm>
 #include <cmath>
@@ -66,18 +67,10 @@ Block run_samples(std::size_t strata, const PrimaryStartOptions& options, const 
 template <class MakeSeed>
 std::vector<PrimarySeed> resample(const std::vector<Find>& finds, int stratum, std::int64_t count, Rng& rng,
                                   MakeSeed&& make_seed) {
-    double total = 0;
-    for (const Find& f : finds) total += f.stratum == stratum ? f.luminance : 0;
     std::vector<PrimarySeed> seeds;
-    const double shift = rng.next();
-    double passed = 0;
-    for (const Find& f : finds) {
-        if (f.stratum != stratum) continue;
-        passed += f.luminance;
-        while (static_cast<std::int64_t>(seeds.size()) < count &&
-               (static_cast<double>(seeds.size()) + shift) / static_cast<double>(count) * total < passed)
-            seeds.push_back(make_seed(f));
-    }
+    resample_systematically(
+        finds, count, rng, [&](const Find& f) { return f.stratum == stratum ? f.luminance : 0.0; },
+        [&](const Find& f) { seeds.push_back(make_seed(f)); });
     return seeds;
 }
 

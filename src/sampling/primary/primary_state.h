@@ -1,4 +1,4 @@
-// A state of primary sample space with the path that it makes.
+// A state of primary sample space with what it makes.
 #pragma once
 
 #include "sampling/primary/path_builder.h"
@@ -9,30 +9,33 @@
 
 namespace keyhole {
 
-/// The `Space` of PrimaryKernel. Refers to itself: neither copied nor moved.
-class PrimaryState {
+/// The `Space` of PrimaryKernel over the numbers that a `Builder` draws from its `Builder::Sources`, an aggregate of
+/// references with
+///     std::array<SampleSource*, N> all() const;
+/// Builder::build(sources, sample) makes a `Builder::Sample` of them, which has a target. Refers to itself: neither
+/// copied nor moved.
+template <class Builder> class PrimaryStateOf {
   public:
+    using Sources = typename Builder::Sources;
+    using Sample = typename Builder::Sample;
+
     /// `builder` and `rng` must outlive the state.
-    PrimaryState(const PathBuilder& builder, Rng& rng)
-        : builder_(&builder), streams_{PrimaryStream(clock_, rng), PrimaryStream(clock_, rng),
-                                       PrimaryStream(clock_, rng)} {}
-    PrimaryState(const PrimaryState&) = delete;
-    PrimaryState& operator=(const PrimaryState&) = delete;
+    PrimaryStateOf(const Builder& builder, Rng& rng)
+        : builder_(&builder), streams_(make_streams(clock_, rng, std::make_index_sequence<kStreams>())) {}
+    PrimaryStateOf(const PrimaryStateOf&) = delete;
+    PrimaryStateOf& operator=(const PrimaryStateOf&) = delete;
 
     /// The state becomes what `sources` make.
-    void start(PrimarySources sources) {
-        Recorder eye(sources.eye, streams_[0]), light(sources.light, streams_[1]), choice(sources.choice, streams_[2]);
+    void start(Sources sources) {
         state_.clear();
-        builder_->build({eye, light, choice}, state_);
+        start(sources.all(), std::make_index_sequence<kStreams>());
     }
 
     double propose(Step step) {
         clock_.after_large = step == Step::second && clock_.step == Step::large;
         clock_.attempt += step == Step::second ? 0 : 1;
         clock_.step = step;
-        for (PrimaryStream& s : streams_) s.rewind();
-        candidate_.clear();
-        builder_->build({streams_[0], streams_[1], streams_[2]}, candidate_);
+        build_candidate();
         broken_ += candidate_.broken() ? 1 : 0;
         return candidate_.target();
     }
@@ -45,31 +48,32 @@ class PrimaryState {
     }
 
     /// The coordinates of the state itself, from their start.
-    PrimarySources replay() {
+    Sources replay() {
         clock_.step = Step::stay;
-        for (PrimaryStream& s : streams_) s.rewind();
-        return {streams_[0], streams_[1], streams_[2]};
+        return rewound(std::make_index_sequence<kStreams>());
     }
     /// What the state's coordinates make, after some were set; the candidate.
     double rebuild() {
-        candidate_.clear();
-        builder_->build(replay(), candidate_);
+        clock_.step = Step::stay;
+        build_candidate();
         return candidate_.target();
     }
     /// The sample of rebuild() is the state's.
     void adopt() { std::swap(state_, candidate_); }
 
-    PrimaryStream& eye() { return streams_[0]; }
-    PrimaryStream& light() { return streams_[1]; }
-    PrimaryStream& choice() { return streams_[2]; }
-
     double target() const { return state_.target(); }
-    const PathSample& sample() const { return state_; }
-    const PathSample& candidate() const { return candidate_; }
+    const Sample& sample() const { return state_; }
+    const Sample& candidate() const { return candidate_; }
     /// Candidates with a value that was not a number.
     std::uint64_t broken() const { return broken_; }
 
+  protected:
+    PrimaryStream& stream(std::size_t i) { return streams_[i]; }
+
   private:
+    static constexpr std::size_t kStreams = std::tuple_size_v<decltype(std::declval<Sources>().all())>;
+    using Streams = std::array<PrimaryStream, kStreams>;
+
     /// Notes down what another source says.
     class Recorder final : public SampleSource {
       public:
@@ -85,11 +89,37 @@ class PrimaryState {
         PrimaryStream* to_;
     };
 
-    const PathBuilder* builder_;
+    template <std::size_t... I> static Streams make_streams(PrimaryClock& clock, Rng& rng, std::index_sequence<I...>) {
+        return {((void)I, PrimaryStream(clock, rng))...};
+    }
+    template <std::size_t... I> void start(const std::array<SampleSource*, kStreams>& from, std::index_sequence<I...>) {
+        std::array<Recorder, kStreams> recorders{Recorder(*from[I], streams_[I])...};
+        builder_->build(Sources{recorders[I]...}, state_);
+    }
+    template <std::size_t... I> Sources rewound(std::index_sequence<I...>) {
+        for (PrimaryStream& s : streams_) s.rewind();
+        return {streams_[I]...};
+    }
+    void build_candidate() {
+        candidate_.clear();
+        builder_->build(rewound(std::make_index_sequence<kStreams>()), candidate_);
+    }
+
+    const Builder* builder_;
     PrimaryClock clock_;
-    std::array<PrimaryStream, 3> streams_; ///< eye, light, choice
-    PathSample state_, candidate_;
+    Streams streams_;
+    Sample state_, candidate_;
     std::uint64_t broken_ = 0;
+};
+
+/// Of whole paths.
+class PrimaryState final : public PrimaryStateOf<PathBuilder> {
+  public:
+    using PrimaryStateOf::PrimaryStateOf;
+
+    PrimaryStream& eye() { return stream(0); }
+    PrimaryStream& light() { return stream(1); }
+    PrimaryStream& choice() { return stream(2); }
 };
 
 } // namespace keyhole

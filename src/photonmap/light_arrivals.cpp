@@ -1,0 +1,46 @@
+#include "photonmap/light_arrivals.h"
+
+#include "sampling/bidirectional_tracer.h"
+
+#include <cmath>
+
+namespace keyhole {
+
+void LightArrivals::add(PhotonKind kind, const Vertex& v, const Vec3& to_light, const Rgb& power,
+                        const PhotonWeighing::Weight& weight) {
+    const auto value = static_cast<float>(weight.value);
+    if (!std::isfinite(value) || !is_finite(power)) {
+        broken_ = true;
+        return;
+    }
+    if (!(value > 0)) return;
+    target_ += value;
+    arrivals_.push_back({Photon(v.point.p, v.point.ng, to_light, power / value), value, kind, weight.known});
+}
+
+void LightBuilder::store(PhotonKind kind, const Vertex& v, const Vec3& to_light, const Rgb& power,
+                         LightArrivals& sample) const {
+    sample.add(kind, v, to_light, power, weighing_(kind, v, to_light, power));
+}
+
+void LightBuilder::build(LightSources sources, LightArrivals& sample) const {
+    TracedSubPath& walk = SubPathPair::scratch().light;
+    trace_light_subpath(*scene_, most_light_vertices(max_scatterings_), sources.light, &sources.roulette, walk);
+    bool specular_only = true;
+    for (int i = 1; i < walk.size(); ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        const Vertex& v = walk.vertices[at];
+        if (v.point.site != Site::surface) return;
+        const Rgb& power = walk.throughput[at];
+        if (v.bsdf.traits().finite && luminance(power) > 0) {
+            const Vec3 to_light = direction(v.point, walk.vertices[at - 1].point);
+            // From d2 light still has to be scattered at d1.
+            if (i > 1 && i < max_scatterings_) store(PhotonKind::global, v, to_light, power, sample);
+            if (i > 1 && specular_only && weighing_.guide.caustic != nullptr)
+                store(PhotonKind::caustic, v, to_light, power, sample);
+        }
+        specular_only = specular_only && i + 1 < walk.size() && v.specular();
+    }
+}
+
+} // namespace keyhole
