@@ -23,7 +23,10 @@ def rows(report, name):
 
 
 def percent(x):
-    return f"{100 * float(x):.2g} %" if x else "–"
+    if not x:
+        return "–"
+    value = 100 * float(x)
+    return f"{value:.0f} %" if value >= 10 else f"{value:.2g} %"
 
 
 def table(head, lines):

@@ -16,7 +16,7 @@ constexpr double kPixels = 320 * 240;  // of the picture that effort is measured
 constexpr double kSecondsOfEffort = 5; // CPU time of a unit on it
 
 bool draws_photons(const std::string& method) {
-    return method == "auto" || method == "mps" || method == "ipm" || method == "pm";
+    return method == "auto" || method == "mps" || method == "ipm" || method == "pm" || method == "pss";
 }
 
 /// Passes that bring `wanted` photons, as many of them as the memory holds at a time.
