@@ -235,8 +235,9 @@ std::vector<Mistake> mistakes() {
         in_section("render: {spp: @0}", "found '0' for 'spp', expected a whole number from 1 to 16777216"),
         in_section("render: {spp: @1.5}", "expected a whole number"),
         in_section("render: {spp: @[4]}", "found a list of 1"),
-        in_section("render: {method: @mpss}",
-                   "expected one of auto, mps, ipm, pm, pss, mlt, path, bdpt, pssmlt, mmlt, rjmlt; did you mean 'mps'?"),
+        in_section(
+            "render: {method: @mpss}",
+            "expected one of auto, mps, ipm, pm, pss, mlt, path, bdpt, pssmlt, mmlt, rjmlt; did you mean 'mps'?"),
         in_section("render: {p_bidirectional: @1.5}", "expected a number from 0 to 1"),
         in_section("render: {p_bidirectional: @nan}", "expected a number from 0 to 1"),
     };
