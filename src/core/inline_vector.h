@@ -13,7 +13,7 @@ template <class T, std::size_t N> class InlineVector {
     static_assert(std::is_trivially_destructible_v<T>);
 
   public:
-    InlineVector() {}
+    InlineVector() {} // NOLINT(modernize-use-equals-default): that would clear the storage
     InlineVector(const InlineVector& o) : size_(o.size_) { std::uninitialized_copy_n(o.items_, size_, items_); }
     InlineVector& operator=(const InlineVector& o) {
         if (this != &o) {
