@@ -16,7 +16,7 @@ import subprocess
 import numpy
 import OpenImageIO as oiio
 
-METHODS = {"pm": [], "ipm": [], "mps": [], "mps, user paths": ["--user-paths", "USER_PATHS"], "auto": [],
+METHODS = {"pm": [], "ipm": [], "mps": [], "mps, user paths": ["--user-paths", "USER_PATHS"], "auto": [], "pss": [],
            "mlt": [], "mlt, user paths": ["--user-paths", "USER_PATHS"]}
 SCENE = """film: {{resolution: [64, 48]}}
 camera: {{from: [0.4, 1.2, -1.2], to: [3, 1, 0.3], fov: 60}}

@@ -10,11 +10,12 @@ namespace keyhole {
 /// from the nearest of them: a tenth of the time of ImportanceMap, and as rough. Immutable and thread-safe.
 class ImportanceGuide {
   public:
-    /// `importons` is only read here.
-    ImportanceGuide(const PhotonMap& importons, float max_radius, const SurfacePatches& patches,
+    /// `importons` is only read here. `scene`, which must outlive the guide, is for walls that hide importons; without
+    /// one importance may leak past them.
+    ImportanceGuide(const PhotonMap& importons, float max_radius, const SurfacePatches& patches, const Scene* scene,
                     const RunContext& context)
         : places_(some(importons)),
-          map_(places_, importons, {.k = 30, .max_radius = max_radius, .patches = &patches}, context) {}
+          map_(places_, importons, {.k = 30, .max_radius = max_radius, .patches = &patches, .scene = scene}, context) {}
     ImportanceGuide(const ImportanceGuide&) = delete; // map_ refers to places_
     ImportanceGuide& operator=(const ImportanceGuide&) = delete;
 

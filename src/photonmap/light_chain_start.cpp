@@ -1,5 +1,5 @@
 // Where chains of light sub-paths begin.
-#include "core/parallel.h"
+#include "core/leading_blocks.h"
 #include "photonmap/light_arrivals.h"
 #include "photonmap/light_chains.h"
 #include "sampling/primary/primary_start.h"
@@ -24,7 +24,7 @@ struct Block {
     PhotonWeights weights;
 };
 
-Block sample_block(const LightBuilder& builder, std::uint64_t seed, const Range& samples) {
+Block sample_block(const LightBuilder& builder, std::uint64_t seed, Range samples) {
     Block block;
     LightArrivals sample;
     for (std::int64_t i = samples.begin; i < samples.end; ++i) {
@@ -50,24 +50,16 @@ LightChainStart start_light_chains(const Scene& scene, const EmissionGuide& guid
     LightChainStart start;
     if (scene.emitter_distribution().empty()) return start;
     const std::int64_t samples = std::min(options.samples, kMost);
-    std::vector<Block> blocks(static_cast<std::size_t>((samples + kBlock - 1) / kBlock));
     const LightBuilder builder(scene, {guide, 1}, options.max_scatterings);
     context.begin("brightness", static_cast<std::uint64_t>(samples), "samples");
-    parallel_for(static_cast<std::int64_t>(blocks.size()), [&](std::int64_t b) {
-        if (context.stopped()) return;
-        const Range range{b * kBlock, std::min(samples, (b + 1) * kBlock)};
-        blocks[static_cast<std::size_t>(b)] = sample_block(builder, options.seed, range);
-        context.advance(static_cast<std::uint64_t>(range.size()));
-    });
-    context.end();
-
     std::vector<Find> finds;
-    for (Block& block : blocks) {
-        if (block.finds.empty()) break; // after a stop, the leading blocks are a valid smaller run
-        start.weights += block.weights;
-        finds.insert(finds.end(), block.finds.begin(), block.finds.end());
-        block = {};
-    }
+    leading_blocks(
+        samples, kBlock, context, [&](Range range) { return sample_block(builder, options.seed, range); },
+        [&](const Block& block) {
+            start.weights += block.weights;
+            finds.insert(finds.end(), block.finds.begin(), block.finds.end());
+        });
+    context.end();
     start.samples = static_cast<std::int64_t>(finds.size());
     const double unknown_scale = start.weights.unknown_scale();
     const auto target = [&](const Find& f) { return f.known + unknown_scale * f.unknown; };

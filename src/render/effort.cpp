@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "render/memory_plan.h"
+#include "render/methods.h"
 
 #include <fmt/format.h>
 
@@ -14,10 +15,6 @@ namespace {
 
 constexpr double kPixels = 320 * 240;  // of the picture that effort is measured by
 constexpr double kSecondsOfEffort = 5; // CPU time of a unit on it
-
-bool draws_photons(const std::string& method) {
-    return method == "auto" || method == "mps" || method == "ipm" || method == "pm" || method == "pss";
-}
 
 /// Passes that bring `wanted` photons, as many of them as the memory holds at a time.
 std::int64_t passes_for(std::int64_t wanted, Settings settings) {
@@ -68,7 +65,7 @@ double affordable(const std::vector<Experience>& past, double seconds) {
     const Experience& before = past[past.size() - 2];
     const double slope =
         std::max(0.3 * last.seconds / last.effort, (last.seconds - before.seconds) / (last.effort - before.effort));
-    return last.effort + (seconds - last.seconds) / slope;
+    return std::min(30 * last.effort, last.effort + (seconds - last.seconds) / slope);
 }
 
 /// What all stages but the choice of a method, which is made once, took [s].
@@ -106,7 +103,7 @@ Settings with_effort(const Settings& settings, double effort, std::int64_t pixel
     const double spp = 8 * std::sqrt(effort * kPixels / static_cast<double>(pixels));
     const double photons = 80e3 * std::pow(effort, 0.6);
     const double passes =
-        given.contains("passes") || !draws_photons(s.method)
+        given.contains("passes") || !keeps_photons(s.method)
             ? 1
             : std::min(static_cast<double>(passes_for(static_cast<std::int64_t>(photons), s)), std::max(1.0, spp));
     set("passes", &Settings::passes, passes, 1, 1 << 20);

@@ -28,7 +28,7 @@ Guides make_guides(const SamplerContext& c, std::uint64_t seed, std::int64_t imp
     stats.importons = 0;
     const auto make = [&](std::vector<Photon>&& from) {
         const PhotonMap map(std::move(from));
-        auto guide = std::make_unique<ImportanceGuide>(map, radius, c.patches, context);
+        auto guide = std::make_unique<ImportanceGuide>(map, radius, c.patches, &c.scene, context);
         stats.importons += map.photons().size();
         const std::size_t waiting = traced.first.capacity() * sizeof(Photon);
         stats.photon_bytes = std::max<std::uint64_t>(stats.photon_bytes, map.bytes() + guide->bytes() + waiting);

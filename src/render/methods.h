@@ -4,7 +4,17 @@
 #include "render/render.h"
 #include "sampling/user_paths.h"
 
+#include <algorithm>
+#include <array>
+#include <string_view>
+
 namespace keyhole {
+
+/// Whether render_photons() is behind `method`.
+inline bool keeps_photons(std::string_view method) {
+    constexpr std::array<std::string_view, 5> methods{"auto", "mps", "ipm", "pm", "pss"};
+    return std::ranges::find(methods, method) != methods.end();
+}
 
 /// Everything that renders from photon maps; the method is the sampler that fills them: mps, ipm, pm
 /// or pss, or the better of the first two by trial.

@@ -21,6 +21,7 @@ PlanItem plan_photons(const SamplerContext& c, const SceneSurvey& survey, const 
     const SamplerTrial trial = try_samplers(c, run);
     if (std::isfinite(std::min(trial.emission, trial.metropolis)))
         return {name, true, "paths from the light find what paths from the eye didn't"};
+    if (may_be_lit(c, run)) return {name, true, "light comes near what the eye sees, and may find a way there"};
     return {name, false, "no indirect light reaches the eye: neither paths from the eye nor from the light found any"};
 }
 

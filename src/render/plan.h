@@ -27,8 +27,8 @@ struct RenderPlan {
 };
 
 /// Decides what is left out, by what the materials can do, and by light that the eye can't see: photons are given up
-/// only if neither paths from the eye, nor paths from both ends, nor light paths that look for where the eye looks find
-/// any light that photon maps would hold. With settings.plan = all everything is on.
+/// only if neither paths from the eye, nor paths from both ends find any light that photon maps would hold, and light
+/// paths come nowhere near what eye paths reach. With settings.plan = all everything is on.
 /// @param survey_samples paths that the survey traces.
 RenderPlan plan_render(const SamplerContext& c, const RunContext& run, std::int64_t survey_samples = 4096);
 

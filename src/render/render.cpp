@@ -16,8 +16,7 @@ RenderResult render_by_method(const Scene& scene, const Settings& settings, cons
     if (settings.method == "bdpt") return render_bdpt(scene, settings, context, share);
     if (settings.method == "pssmlt" || settings.method == "mmlt" || settings.method == "rjmlt")
         return render_primary(scene, settings, context, share);
-    for (const char* method : {"auto", "mps", "ipm", "pm", "pss"})
-        if (settings.method == method) return render_photons(scene, settings, paths, context, share);
+    if (keeps_photons(settings.method)) return render_photons(scene, settings, paths, context, share);
     throw InputError("unknown method '" + settings.method + "'");
 }
 

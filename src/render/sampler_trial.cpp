@@ -84,7 +84,8 @@ struct VisiblePower {
     }
 };
 
-double try_emission(const SamplerContext& c, const RunContext& run) {
+/// `walls`: as ImportanceGuide's scene.
+double try_emission(const SamplerContext& c, const Scene* walls, const RunContext& run) {
     const bool delta = c.caustics;
     const Extent extent(c.settings);
     const auto depth = static_cast<int>(c.settings.max_depth);
@@ -92,8 +93,8 @@ double try_emission(const SamplerContext& c, const RunContext& run) {
     Importons importons = trace_importance(
         c.scene, {.samples = extent.importons, .at_d1 = delta, .max_scatterings = depth, .seed = seed}, run);
     const float radius = Radii(c.scene).importance;
-    const ImportanceGuide global(PhotonMap(std::move(importons.second)), radius, c.patches, run);
-    const ImportanceGuide caustic(PhotonMap(std::move(importons.first)), radius, c.patches, run);
+    const ImportanceGuide global(PhotonMap(std::move(importons.second)), radius, c.patches, walls, run);
+    const ImportanceGuide caustic(PhotonMap(std::move(importons.first)), radius, c.patches, walls, run);
     const std::uint64_t before = rays_traced();
     std::vector<Shares> samples(static_cast<std::size_t>(extent.light_paths));
     parallel_for(extent.light_paths, [&](std::int64_t i) {
@@ -145,7 +146,11 @@ double try_metropolis(const SamplerContext& c, const RunContext& run) {
 } // namespace
 
 SamplerTrial try_samplers(const SamplerContext& context, const RunContext& run) {
-    return {try_emission(context, run), try_metropolis(context, run)};
+    return {try_emission(context, &context.scene, run), try_metropolis(context, run)};
+}
+
+bool may_be_lit(const SamplerContext& context, const RunContext& run) {
+    return std::isfinite(try_emission(context, nullptr, run));
 }
 
 } // namespace keyhole

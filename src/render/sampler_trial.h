@@ -23,4 +23,8 @@ struct SamplerTrial {
 /// the choice is the same on every machine and at every load.
 SamplerTrial try_samplers(const SamplerContext& context, const RunContext& run);
 
+/// Whether light paths come near anything that eye paths come near, walls between them or not: light may pass through a
+/// gap that no trial found.
+bool may_be_lit(const SamplerContext& context, const RunContext& run);
+
 } // namespace keyhole

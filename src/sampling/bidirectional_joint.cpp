@@ -1,18 +1,6 @@
 #include "sampling/bidirectional_joint.h"
 
 namespace keyhole {
-namespace {
-
-/// solid_angle_to_area() where the direction between the two is known, either way: most of the cost is in finding it.
-double to_area(double pdf, const SurfacePoint& from, const SurfacePoint& to, const Vec3& w) {
-    if (to.site == Site::infinite) return pdf;
-    const double c = to.abs_cos(w);
-    if (from.site == Site::infinite) return pdf * c;
-    const double r2 = Imath::V3d(to.p - from.p).length2();
-    return r2 > 0 ? pdf * c / r2 : 0.0;
-}
-
-} // namespace
 
 Joint::Joint(const Scene& scene, const TracedSubPath& light, int s, const TracedSubPath& eye, int t, const Vec2& image)
     : scene_(&scene), light_(&light), eye_(&eye), s_(s), t_(t), image_(image) {
@@ -51,15 +39,15 @@ Rgb Joint::leave_light(const Vec3& to_eye) {
     const auto end = static_cast<std::size_t>(s_) - 1;
     if (s_ == 1) {
         const Emitter& emitter = scene_->emitter(y.point.emitter);
-        from_light_[0] = to_area(emitter.ray_pdf(y.point, to_eye), y.point, vertex(1).point, to_eye);
+        from_light_[0] = solid_angle_to_area(emitter.ray_pdf(y.point, to_eye), y.point, vertex(1).point, to_eye);
         return light_->throughput[0] * emitter.radiance(y.point, to_eye);
     }
     const Vertex& before = vertex(s_ - 2);
     const Vec3 back = direction(y.point, before.point);
     const ScatterValue f = scatter(y.point, y.bsdf, Event::finite, back, to_eye);
-    from_light_[0] = to_area(f.pdf_to_eye, y.point, vertex(s_).point, to_eye);
+    from_light_[0] = solid_angle_to_area(f.pdf_to_eye, y.point, vertex(s_).point, to_eye);
     const bool unreachable = s_ == 2 && scene_->emitter(before.point.emitter).is_delta();
-    from_eye_[1] = unreachable ? 0.0 : to_area(f.pdf_to_light, y.point, before.point, back);
+    from_eye_[1] = unreachable ? 0.0 : solid_angle_to_area(f.pdf_to_light, y.point, before.point, back);
     return light_->throughput[end] * f.value;
 }
 
@@ -70,14 +58,14 @@ Rgb Joint::leave_eye(const Vec3& to_light) {
     if (t_ == 1) {
         const double pdf = scene_->camera().direction_pdf(to_light);
         from_light_[0] = 0; // light never hits the lens by chance
-        from_eye_[0] = unreachable ? 0.0 : to_area(pdf, z.point, y.point, to_light);
+        from_eye_[0] = unreachable ? 0.0 : solid_angle_to_area(pdf, z.point, y.point, to_light);
         return Rgb(pdf);
     }
     const SurfacePoint& next = vertex(s_ + 1).point;
     const Vec3 back = direction(z.point, next);
     const ScatterValue f = scatter(z.point, z.bsdf, Event::finite, to_light, back);
-    from_eye_[0] = unreachable ? 0.0 : to_area(f.pdf_to_light, z.point, y.point, to_light);
-    from_light_[1] = to_area(f.pdf_to_eye, z.point, next, back);
+    from_eye_[0] = unreachable ? 0.0 : solid_angle_to_area(f.pdf_to_light, z.point, y.point, to_light);
+    from_light_[1] = solid_angle_to_area(f.pdf_to_eye, z.point, next, back);
     return eye_->throughput[static_cast<std::size_t>(t_) - 1] * f.value;
 }
 
@@ -93,7 +81,7 @@ Rgb Joint::join() {
     const Emitter& emitter = scene_->emitter(x0.emitter);
     const Vec3 to_eye = direction(x0, x1);
     from_light_[0] = emitter_point_pdf(*scene_, x0);
-    from_light_[1] = to_area(emitter.ray_pdf(x0, to_eye), x0, x1, to_eye);
+    from_light_[1] = solid_angle_to_area(emitter.ray_pdf(x0, to_eye), x0, x1, to_eye);
     return eye_->throughput[static_cast<std::size_t>(t_) - 1] * emitter.radiance(x0, to_eye);
 }
 

@@ -21,17 +21,14 @@ struct Departure {
 
 double& density(Vertex& v, From from) { return from == From::eye ? v.pdf_from_eye : v.pdf_from_light; }
 
-/// Appends the next vertex, made in its place: vertices are large. False, and nothing appended, where there is none.
+/// Appends the next vertex. False, and nothing appended, where there is none.
 bool append_next(const Scene& scene, const Departure& ray, TracedSubPath& walk) {
-    // Vertices closer than floats can tell apart leave no direction between them.
-    if (!(ray.w.length2() > 0.5f)) return false;
-    const auto hit = scene.trace(ray.from, ray.w);
-    if (!hit) return false;
-    walk.throughput.push_back(ray.throughput);
     walk.vertices.resize(walk.vertices.size() + 1);
-    Vertex& v = walk.vertices.back();
-    v.point = *hit;
-    if (hit->material != nullptr) v.bsdf = hit->material->bsdf(*hit);
+    if (!next_vertex(scene, ray.from, ray.w, walk.vertices.back())) {
+        walk.vertices.pop_back();
+        return false;
+    }
+    walk.throughput.push_back(ray.throughput);
     return true;
 }
 

@@ -1,6 +1,6 @@
 #include "sampling/brightness.h"
 
-#include "core/parallel.h"
+#include "core/leading_blocks.h"
 #include "sampling/image_lattice.h"
 #include "scene/ray_counter.h"
 
@@ -112,26 +112,17 @@ double StageOne::brightness_of(Range some) const {
 
 StageOne run_stage_one(const Scene& scene, const StageOneSettings& settings, const RunContext& context) {
     const Technique technique = choose_technique(scene, settings);
-    const std::int64_t blocks = (settings.samples + kBlock - 1) / kBlock;
-    std::vector<std::optional<Block>> done(static_cast<std::size_t>(blocks));
-    context.begin("brightness", static_cast<std::uint64_t>(settings.samples), "paths");
-    parallel_for(blocks, [&](std::int64_t b) {
-        if (context.stopped()) return;
-        const Range range{b * kBlock, std::min(settings.samples, (b + 1) * kBlock)};
-        done[static_cast<std::size_t>(b)] = run_block(scene, settings, technique, range);
-        context.advance(static_cast<std::uint64_t>(range.size()));
-    });
-    context.end();
-
     StageOne stage;
     stage.technique = technique;
-    for (auto& block : done) {
-        if (!block) break; // after a stop, the leading blocks are a valid smaller run
-        stage.brightness.merge(block->brightness);
-        stage.caustic.merge(block->caustic);
-        stage.groups.insert(stage.groups.end(), block->groups.begin(), block->groups.end());
-        block.reset();
-    }
+    context.begin("brightness", static_cast<std::uint64_t>(settings.samples), "paths");
+    leading_blocks(
+        settings.samples, kBlock, context, [&](Range range) { return run_block(scene, settings, technique, range); },
+        [&](const Block& block) {
+            stage.brightness.merge(block.brightness);
+            stage.caustic.merge(block.caustic);
+            stage.groups.insert(stage.groups.end(), block.groups.begin(), block.groups.end());
+        });
+    context.end();
     stage.samples = static_cast<std::int64_t>(stage.brightness.count());
     return stage;
 }

@@ -6,10 +6,18 @@
 
 namespace keyhole {
 
-Vertex make_vertex(const SurfacePoint& point) {
-    Vertex v;
+namespace {
+
+void put_at(const SurfacePoint& point, Vertex& v) {
     v.point = point;
     if (point.material != nullptr) v.bsdf = point.material->bsdf(point);
+}
+
+} // namespace
+
+Vertex make_vertex(const SurfacePoint& point) {
+    Vertex v;
+    put_at(point, v);
     return v;
 }
 
@@ -29,12 +37,18 @@ Vertex sample_eye(const Scene& scene, SampleSource& source) {
     return v;
 }
 
-std::optional<Vertex> next_vertex(const Scene& scene, const SurfacePoint& from, const Vec3& w) {
+bool next_vertex(const Scene& scene, const SurfacePoint& from, const Vec3& w, Vertex& v) {
     // Vertices closer than floats can tell apart leave no direction between them.
-    if (!(w.length2() > 0.5f)) return std::nullopt;
+    if (!(w.length2() > 0.5f)) return false;
     const auto point = scene.trace(from, w);
-    if (!point) return std::nullopt;
-    return make_vertex(*point);
+    if (point) put_at(*point, v);
+    return point.has_value();
+}
+
+std::optional<Vertex> next_vertex(const Scene& scene, const SurfacePoint& from, const Vec3& w) {
+    std::optional<Vertex> v(std::in_place);
+    if (!next_vertex(scene, from, w, *v)) v.reset();
+    return v;
 }
 
 std::optional<Continuation> continue_walk(const Vertex& v, const Vec3& back, From from, SampleSource& source) {

@@ -22,8 +22,10 @@ std::optional<EmitterVertex> sample_emitter(const Scene& scene, SampleSource& so
 /// The eye vertex.
 Vertex sample_eye(const Scene& scene, SampleSource& source);
 
-/// The next vertex along `w`; none where nothing is hit. It may be infinite where there is an environment: there a walk
-/// ends, for nothing is scattered.
+/// Makes the new vertex `v` the next one along `w`, in its place: vertices are large. False where nothing is hit. It
+/// may be infinite where there is an environment: there a walk ends, for nothing is scattered.
+bool next_vertex(const Scene& scene, const SurfacePoint& from, const Vec3& w, Vertex& v);
+/// The same; none where nothing is hit.
 std::optional<Vertex> next_vertex(const Scene& scene, const SurfacePoint& from, const Vec3& w);
 inline std::optional<Vertex> next_vertex(const Scene& scene, const Vertex& from, const Vec3& w) {
     return next_vertex(scene, from.point, w);

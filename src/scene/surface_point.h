@@ -85,13 +85,16 @@ inline double geometry_term(const SurfacePoint& a, const SurfacePoint& b) {
 
 /// Turns a density per solid angle at `from`, in the direction of `to`, into one in the coordinates of `to`: area on a
 /// surface; solid angle stays for an infinite point. From an infinite point the density is one over the area of its
-/// beam.
-inline double solid_angle_to_area(double pdf, const SurfacePoint& from, const SurfacePoint& to) {
+/// beam. `w` is the direction between the two, either way: most of the cost is in finding it.
+inline double solid_angle_to_area(double pdf, const SurfacePoint& from, const SurfacePoint& to, const Vec3& w) {
     if (to.site == Site::infinite) return pdf;
-    const double c = to.abs_cos(direction(from, to));
+    const double c = to.abs_cos(w);
     if (from.site == Site::infinite) return pdf * c;
     const double r2 = Imath::V3d(to.p - from.p).length2();
     return r2 > 0 ? pdf * c / r2 : 0.0;
+}
+inline double solid_angle_to_area(double pdf, const SurfacePoint& from, const SurfacePoint& to) {
+    return solid_angle_to_area(pdf, from, to, direction(from, to));
 }
 
 } // namespace keyhole

@@ -27,7 +27,7 @@ constexpr Case kCases[] = {
     {"scale_small", 0.6654},   {"scale_large", 0.6654}, {"inside_glass", 1.746}, {"no_light", 0, 0},
     {"unseen_light", 0, 0},    {"black", 0.2388},       {"all_mirror", 0.2761},  {"one_pixel", 0.632}};
 
-constexpr const char* kMethods[] = {"mps", "ipm", "pm", "path", "bdpt", "mlt", "pssmlt", "mmlt", "rjmlt"};
+constexpr const char* kMethods[] = {"mps", "ipm", "pm", "pss", "path", "bdpt", "mlt", "pssmlt", "mmlt", "rjmlt"};
 
 double mean_luminance(const Picture& picture) {
     const Image& beauty = picture.layers.at("beauty");

@@ -68,8 +68,9 @@ ImportanceMap importance_map(std::vector<Photon>&& importons, const SurfacePatch
     return {std::move(importons), {.k = 50, .max_radius = 0.5f, .patches = &patches}};
 }
 
-ImportanceGuide guide(std::vector<Photon>&& importons, const SurfacePatches& patches, float radius = 0.5f) {
-    return {PhotonMap(std::move(importons)), radius, patches, {}};
+ImportanceGuide guide(const Scene& scene, std::vector<Photon>&& importons, const SurfacePatches& patches,
+                      float radius) {
+    return {PhotonMap(std::move(importons)), radius, patches, &scene, {}};
 }
 
 void add_run(const Scene& scene, const Photons& photons, Energy& e) {
@@ -82,16 +83,27 @@ void add_run(const Scene& scene, const Photons& photons, Energy& e) {
     }
 }
 
+/// What a run's importons say.
+struct Guides {
+    ImportanceGuide at_d1, at_d2;
+    EmissionGuide both() const { return {&at_d2, &at_d1}; }
+};
+
+Guides make_guides(const Scene& scene, int depth, std::uint64_t seed, const SurfacePatches& patches,
+                   float radius = 0.5f) {
+    Importons importons = trace_importance(scene, {.samples = 20'000, .max_scatterings = depth, .seed = seed}, {});
+    return {guide(scene, std::move(importons.first), patches, radius),
+            guide(scene, std::move(importons.second), patches, radius)};
+}
+
 /// Several independent runs of emission, thinned to a ceiling well below what arrives.
 Energy by_emission(const Scene& scene, int depth, bool guided, int runs) {
     const SurfacePatches patches(scene.shapes());
     Energy e;
     for (int run = 0; run < runs; ++run) {
         const auto seed = static_cast<std::uint64_t>(100 + run);
-        Importons importons = trace_importance(scene, {.samples = 20'000, .max_scatterings = depth, .seed = seed}, {});
-        const ImportanceGuide at_d1 = guide(std::move(importons.first), patches);
-        const ImportanceGuide at_d2 = guide(std::move(importons.second), patches);
-        const EmissionGuide both = guided ? EmissionGuide{&at_d2, &at_d1} : EmissionGuide{};
+        const Guides guides = make_guides(scene, depth, seed, patches);
+        const EmissionGuide both = guided ? guides.both() : EmissionGuide{};
         const EmissionOptions options{.paths = 60'000, .photons = 25'000, .max_scatterings = depth, .seed = seed};
         const EmittedPhotons photons = emit_photons(scene, both, options, {});
         EXPECT_LE(photons.global.size() + photons.caustic.size(), options.photons);
@@ -106,10 +118,8 @@ Energy by_light_chains(const Scene& scene, int depth, int runs, float guide_radi
     Energy e;
     for (int run = 0; run < runs; ++run) {
         const auto seed = static_cast<std::uint64_t>(100 + run);
-        Importons importons = trace_importance(scene, {.samples = 20'000, .max_scatterings = depth, .seed = seed}, {});
-        const ImportanceGuide at_d1 = guide(std::move(importons.first), patches, guide_radius);
-        const ImportanceGuide at_d2 = guide(std::move(importons.second), patches, guide_radius);
-        const EmissionGuide both{&at_d2, &at_d1};
+        const Guides guides = make_guides(scene, depth, seed, patches, guide_radius);
+        const EmissionGuide both = guides.both();
         const LightChainOptions options{.samples = 60'000,
                                         .chains = 400,
                                         .mutations = 200'000,

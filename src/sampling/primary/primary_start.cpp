@@ -1,6 +1,6 @@
 #include "sampling/primary/primary_start.h"
 
-#include "core/parallel.h"
+#include "core/leading_blocks.h"
 #include "sampling/resampling.h"
 
 #include <algorithm>
@@ -27,20 +27,15 @@ struct Block {
     std::vector<Find> finds;
 };
 
-/// Runs all samples: find(index, random, found) appends what sample `index` finds. Results by stratum.
+/// Runs all samples: sample(index, random, found) appends what sample `index` finds. Results by stratum.
 template <class Sample>
 Block run_samples(std::size_t strata, const PrimaryStartOptions& options, const RunContext& context, Sample&& sample) {
-    const std::int64_t blocks = (options.samples + kBlock - 1) / kBlock;
-    std::vector<Block> done(static_cast<std::size_t>(blocks));
-    context.begin("brightness", static_cast<std::uint64_t>(options.samples), "samples");
-    parallel_for(blocks, [&](std::int64_t b) {
-        if (context.stopped()) return;
-        Block& block = done[static_cast<std::size_t>(b)];
+    const auto run_block = [&](Range range) {
+        Block block;
         block.brightness.resize(strata);
         std::vector<Find> found;
         std::vector<double> sums(strata);
-        const std::int64_t end = std::min(options.samples, (b + 1) * kBlock);
-        for (std::int64_t i = b * kBlock; i < end; ++i) {
+        for (std::int64_t i = range.begin; i < range.end; ++i) {
             PrimaryRandom random(options.seed, i);
             found.clear();
             std::fill(sums.begin(), sums.end(), 0.0);
@@ -49,17 +44,16 @@ Block run_samples(std::size_t strata, const PrimaryStartOptions& options, const 
             for (std::size_t k = 0; k < strata; ++k) block.brightness[k].add(sums[k]);
             if (i < kMostRemembered) block.finds.insert(block.finds.end(), found.begin(), found.end());
         }
-        context.advance(static_cast<std::uint64_t>(end - b * kBlock));
-    });
-    context.end();
+        return block;
+    };
     Block all;
     all.brightness.resize(strata);
-    for (Block& block : done) {
-        if (block.brightness.empty()) break; // after a stop, the leading blocks are a valid smaller run
+    context.begin("brightness", static_cast<std::uint64_t>(options.samples), "samples");
+    leading_blocks(options.samples, kBlock, context, run_block, [&](const Block& block) {
         for (std::size_t k = 0; k < strata; ++k) all.brightness[k].merge(block.brightness[k]);
         all.finds.insert(all.finds.end(), block.finds.begin(), block.finds.end());
-        block = {};
-    }
+    });
+    context.end();
     return all;
 }
 
