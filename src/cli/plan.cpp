@@ -57,6 +57,7 @@ Json plan_json(const PlanCommand& o) {
     LoadedScene loaded = load(o.scene, o.settings);
     if (!o.resolution.empty()) set_resolution(loaded.description.window, o.resolution);
     Scene scene(std::move(loaded.description));
+    set_window_margin(scene, loaded.settings);
     const UserPaths paths = bind_user_paths(scene, loaded.user_paths);
     const SurfacePatches patches(scene.shapes());
     const RenderPlan plan = plan_render({scene, loaded.settings, patches, paths}, {}, 1 << 16);

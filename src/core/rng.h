@@ -39,6 +39,9 @@ enum class StreamPurpose : std::uint64_t {
     bidirectional,
     survey,
     bright_spots,
+    reach,
+    reach_trial,
+    reach_light,
 };
 
 /// PCG32 (O'Neill 2014). One for each chain and each pixel, never for each thread, so that a picture does not

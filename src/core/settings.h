@@ -28,6 +28,7 @@ inline std::string printable(const AutoNumber& setting) {
 struct Settings {
     std::string method = "auto";
     std::string plan = "auto";
+    std::string reach = "auto";
     std::int64_t spp = 16;
     std::int64_t seed = 1;
     std::int64_t max_depth = 24;
@@ -77,6 +78,8 @@ template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
           "rendering method");
     visit("plan", s.plan, std::vector<std::string_view>{"auto", "all"},
           "auto: maps, proposals and stages that the scene has no use for are left out");
+    visit("reach", s.reach, std::vector<std::string_view>{"auto", "off"},
+          "auto: light that few gather rays could find is stored where it is seen");
     visit("spp", s.spp, I{1}, I{1} << 24, "samples per pixel");
     visit("seed", s.seed, I{0}, I{1} << 53, "seed of all random streams");
     visit("max_depth", s.max_depth, I{1}, I{126}, "most scatterings between light and eye");

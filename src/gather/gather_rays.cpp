@@ -1,9 +1,20 @@
 #include "gather/gather_rays.h"
 
 #include "gather/direct_light.h"
+#include "photonmap/sight.h"
 #include "sampling/direct_light.h"
 
 namespace keyhole {
+namespace {
+
+/// The weight of photons in radiance that the finite part at `v` reflects towards `back`.
+auto reflection(const Vertex& v, const Vec3& back) {
+    return [&v, back](const Photon& photon) {
+        return scatter(v.point, v.bsdf, Event::finite, photon.direction(), back).value;
+    };
+}
+
+} // namespace
 
 GatherRays::Arrival GatherRays::trace(const Vertex& from, const Vec3& w, double pdf, int scatterings,
                                       SampleSource& source) const {
@@ -42,14 +53,16 @@ GatherRays::Arrival GatherRays::trace(const Vertex& from, const Vec3& w0, double
 bool GatherRays::too_near(const Leg& leg, std::uint32_t place) const {
     // The estimate is a mean over its radius. Seen from nearer than that, as in corners, the mean is not good enough.
     // With mirrors or smooth glass it has to be: rays that are traced on would lose the caustics of the place, which
-    // only a ray that happens to run into the emitter could find.
-    return !leg.secondary && !scene_.traits().delta && leg.distance < maps_.irradiance->radius(place);
+    // only a ray that happens to run into the emitter could find. Light from beyond the reach of rays is lost likewise.
+    return !leg.secondary && !scene_.traits().delta && maps_.reach == nullptr &&
+           leg.distance < maps_.irradiance->radius(place);
 }
 
 Rgb GatherRays::reflected(const Vertex& v, const Vec3& back, const Leg& leg, SampleSource& source) const {
+    if (maps_.reach != nullptr && !maps_.reach->comes_to(v.point.p, facing(v.point.ng, back))) return Rgb(0.0);
     if (maps_.irradiance == nullptr || maps_.irradiance->places().empty() || !v.bsdf.traits().near_lambertian) {
         const Rgb direct = direct_light(scene_, v, back, 1, source);
-        return maps_.global != nullptr ? direct + estimate(*maps_.global, options_.max_radius, v, back) : direct;
+        return direct + global(v, back);
     }
     const auto known = maps_.irradiance->irradiance(v.point.p, facing(v.point.ng, back));
     // Photons may be near, but none that this place sees: those of the other side of a wall.
@@ -64,16 +77,21 @@ Rgb GatherRays::reflected(const Vertex& v, const Vec3& back, const Leg& leg, Sam
 }
 
 Rgb GatherRays::caustic(const Vertex& v, const Vec3& back) const {
-    return maps_.caustic != nullptr ? estimate(*maps_.caustic, options_.caustic_radius, v, back) : Rgb(0.0);
+    if (maps_.caustic == nullptr) return Rgb(0.0);
+    const PhotonQuery query{
+        {v.point.p, facing(v.point.ng, back)}, options_.caustic_radius, options_.nearest, options_.shrink};
+    const float r = scouted_radius(maps_.caustic->scouts(), query);
+    return estimate_density_in_sight(scene_, maps_.caustic->carriers(), query.region, r, *maps_.patches,
+                                     reflection(v, back))
+        .value;
 }
 
-Rgb GatherRays::estimate(const ScoutedMap& map, float radius, const Vertex& v, const Vec3& back) const {
-    const PhotonQuery query{{v.point.p, facing(v.point.ng, back)}, radius, options_.nearest, options_.shrink};
-    return estimate_density(map, query, maps_.patches,
-                            [&](const Photon& photon) {
-                                return scatter(v.point, v.bsdf, Event::finite, photon.direction(), back).value;
-                            })
-        .value;
+Rgb GatherRays::global(const Vertex& v, const Vec3& back) const {
+    if (maps_.global == nullptr) return Rgb(0.0);
+    const PhotonQuery query{
+        {v.point.p, facing(v.point.ng, back)}, options_.max_radius, options_.nearest, options_.shrink};
+    const DensityEstimate e = estimate_density(*maps_.global, query, maps_.patches, reflection(v, back));
+    return e.value / share_in_reach(maps_.reach, query.region, e.radius);
 }
 
 } // namespace keyhole

@@ -14,6 +14,7 @@ struct GatherMaps {
     const Sites* sites = nullptr;              ///< direct light where `irradiance` is known; null only if that is
     const ScoutedMap* caustic = nullptr;
     const SurfacePatches* patches = nullptr;
+    const Reach* reach = nullptr; ///< beyond which light is not gathered: the caustic map has it; null: nowhere
 };
 
 struct LookupOptions {
@@ -58,7 +59,8 @@ class GatherRays {
     bool too_near(const Leg& leg, std::uint32_t place) const;
     /// Radiance towards `back` that `v` reflects by its finite part.
     Rgb reflected(const Vertex& v, const Vec3& back, const Leg& leg, SampleSource& source) const;
-    Rgb estimate(const ScoutedMap& map, float radius, const Vertex& v, const Vec3& back) const;
+    /// What the global map says of light that `v` reflects towards `back`.
+    Rgb global(const Vertex& v, const Vec3& back) const;
 
     const Scene& scene_;
     GatherMaps maps_;

@@ -18,10 +18,11 @@ enum class Unbiased {
 };
 
 struct DensityEstimate {
-    Rgb value{0.0};   ///< [1/m^2] times the unit of power times that of the weight
-    int photons = 0;  ///< that went into it
-    double area = 0;  ///< of the region [m^2]
-    float radius = 0; ///< of the region [m]
+    Rgb value{0.0};          ///< [1/m^2] times the unit of power times that of the weight
+    int photons = 0;         ///< that went into it
+    double area = 0;         ///< of the region [m^2]
+    float radius = 0;        ///< of the region [m]
+    bool obstructed = false; ///< something stands on the region, where somebody asked for that
 };
 
 /// Sum over the region's photons of weight(photon) * power / area, constant kernel.

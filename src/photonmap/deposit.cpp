@@ -24,7 +24,7 @@ bool PathDepositor::Pending::holds(const Path& path, const StoragePoint& at) con
 }
 
 void PathDepositor::deposit(const Path& path, double weight) {
-    const StoragePoint at = storage_point(path);
+    const StoragePoint at = options_.set.storage_point(path);
     if (at.kind == PhotonKind::none || !(weight > 0)) return;
     tally_.total += weight;
     if (!recent_.holds(path, at)) {

@@ -25,6 +25,7 @@ struct DepositOptions {
     const ImportanceMap* caustic = nullptr; ///< at d1
     PowerRule rule = PowerRule::marginal;
     const Scene* scene = nullptr;          ///< that eye sides are drawn in; must be given
+    PathSet set{};                         ///< that the paths are of: where each stores
     int max_scatterings = 24;              ///< of a whole path
     PhotonRole role = PhotonRole::carrier; ///< a scout's power is never asked for
 };

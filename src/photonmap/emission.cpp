@@ -26,8 +26,8 @@ struct Block {
 class Collector {
   public:
     Collector(const PhotonWeighing& weighing, const MapStores::Thresholds& scouts,
-              const MapStores::Thresholds& carriers, int max_scatterings)
-        : weighing_(weighing), scouts_(scouts), carriers_(carriers), max_scatterings_(max_scatterings) {}
+              const MapStores::Thresholds& carriers, const StorageRule& rule)
+        : weighing_(weighing), scouts_(scouts), carriers_(carriers), rule_(rule) {}
 
     void begin(PhotonRole role, Rng& rng) {
         role_ = role;
@@ -35,12 +35,12 @@ class Collector {
         arrivals_ = 0;
     }
 
-    bool arrival(const Vertex& v, const Vec3& to_light, const Rgb& power, bool specular_only) {
+    bool arrival(const Vertex& v, const Vec3& to_light, const Rgb& power, const LightPast& past) {
         ++arrivals_;
         if (!v.bsdf.traits().finite) return true;
-        // From d2 light still has to be scattered at d1.
-        if (arrivals_ > 1 && arrivals_ < max_scatterings_) store(PhotonKind::global, v, to_light, power);
-        if (specular_only) store(PhotonKind::caustic, v, to_light, power);
+        const StorageRule::Kinds kinds = rule_(v.point, to_light, arrivals_, past);
+        if (kinds.global) store(PhotonKind::global, v, to_light, power);
+        if (kinds.caustic) store(PhotonKind::caustic, v, to_light, power);
         return true;
     }
 
@@ -64,7 +64,7 @@ class Collector {
 
     PhotonWeighing weighing_;
     MapStores::Thresholds scouts_, carriers_;
-    int max_scatterings_;
+    StorageRule rule_;
     PhotonRole role_ = PhotonRole::carrier;
     Rng* rng_ = nullptr;
     int arrivals_ = 0;
@@ -81,7 +81,7 @@ Block trace_block(const Scene& scene, const EmissionOptions& options, Range path
     for (std::int64_t i = paths.begin; i < paths.end; ++i) {
         Rng rng(options.seed, StreamPurpose::emission, static_cast<std::uint64_t>(i));
         collector.begin(role_of_path(i), rng);
-        trace_light_path(scene, options.max_scatterings, rng, collector);
+        trace_light_path(scene, options.rule.max_scatterings, rng, collector);
     }
     return std::move(collector.block);
 }
@@ -104,7 +104,7 @@ Block learn_from_pilot(const Scene& scene, const EmissionGuide& guide, const Emi
     const MapStores::Thresholds never{infinity, infinity};
     Block sum;
     for (const Block& b : trace_blocks(scene, options, {0, std::min(kPilot, options.paths)},
-                                       Collector({guide, 1}, never, never, options.max_scatterings)))
+                                       Collector({guide, 1}, never, never, options.rule)))
         sum.learn(b);
     sum.arrivals = 0;
     return sum;
@@ -117,7 +117,7 @@ EmittedPhotons emit_photons(const Scene& scene, const EmissionGuide& guide, cons
     EmittedPhotons out;
     if (scene.emitter_distribution().empty()) return out;
     Block learnt = learn_from_pilot(scene, guide, options);
-    const std::size_t for_caustic = scene.traits().delta ? learnt.weights.for_caustic(options.photons) : 0;
+    const std::size_t for_caustic = options.rule.caustics ? learnt.weights.for_caustic(options.photons) : 0;
     MapStores stores(options.photons - for_caustic, for_caustic, {}, options.seed);
 
     // In rounds, so that buffers stay small beside the stores, and thresholds follow what is stored.
@@ -128,7 +128,7 @@ EmittedPhotons emit_photons(const Scene& scene, const EmissionGuide& guide, cons
         const Range range{out.paths, std::min(options.paths, out.paths + round)};
         const PhotonWeighing weighing{guide, learnt.weights.unknown_scale()};
         const Collector collector(weighing, stores.thresholds(PhotonRole::scout),
-                                  stores.thresholds(PhotonRole::carrier), options.max_scatterings);
+                                  stores.thresholds(PhotonRole::carrier), options.rule);
         for (Block& b : trace_blocks(scene, options, range, collector)) {
             stores.absorb(PhotonRole::scout, b.scouts);
             stores.absorb(PhotonRole::carrier, b.carriers);

@@ -13,7 +13,7 @@ namespace keyhole {
 struct EmissionOptions {
     std::int64_t paths;  ///< light paths traced
     std::size_t photons; ///< ceiling for both maps together; they share it as they share the weight of what arrives
-    int max_scatterings = 24;
+    StorageRule rule{};
     std::uint64_t seed;
 };
 
@@ -24,8 +24,8 @@ struct EmittedPhotons : Photons {
 };
 
 /// Traces light paths and stores a photon at every vertex where a map can be asked (MATHEMATICS: "emission"): in the
-/// global map unless light came straight from the emitter, and, if it came through specular vertices only, in the
-/// caustic map as well; each map is complete by itself.
+/// global map unless light came straight from the emitter, and, if it came through specular vertices only or from
+/// beyond the reach of gather rays, in the caustic map as well; each map is complete by itself.
 ///
 /// With a guide a photon is kept with probability min(1, Y(Phi E) / t), and weighed by the reciprocal (after Keller and
 /// Wald 2000); t follows from the ceilings. E decides what is kept and nothing else: its errors bias no expectation.

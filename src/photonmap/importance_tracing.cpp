@@ -1,8 +1,8 @@
 #include "photonmap/importance_tracing.h"
 
 #include "core/parallel.h"
+#include "sampling/eye_path_head.h"
 #include "sampling/image_lattice.h"
-#include "sampling/walk.h"
 
 #include <algorithm>
 #include <array>
@@ -13,23 +13,13 @@ namespace {
 /// The importons of one eye path.
 void trace_importons(const Scene& scene, const Vec2& image, const ImportanceTracing& options, SampleSource& source,
                      Importons& out) {
-    Vertex v = sample_eye(scene, source);
-    Vec3 w = scene.camera().ray_direction(v.point, image);
-    Rgb throughput(1.0 / static_cast<double>(options.samples));
-    int finite = 0;
-    for (int i = 0; i < options.max_scatterings && finite < 2; ++i) {
-        const auto hit = next_vertex(scene, v, w);
-        if (!hit || hit->point.site != Site::surface) return;
-        throughput *= scene.transmittance(v.point, hit->point);
-        v = *hit;
-        if (v.bsdf.traits().finite && (finite == 1 || options.at_d1))
-            (finite == 0 ? out.first : out.second).emplace_back(v.point.p, v.point.ng, -w, throughput);
-        const auto next = continue_walk(v, -w, From::eye, source);
-        if (!next) return;
-        finite += is_specular(next->event) ? 0 : 1;
-        throughput *= next->weight;
-        w = next->w;
-    }
+    const double share = 1.0 / static_cast<double>(options.samples);
+    trace_eye_path_head(
+        scene, image, options.max_scatterings, source,
+        [&](const Vertex& v, const Vec3& to_eye, const Rgb& throughput, int finite) {
+            if (finite == 1 || options.at_d1)
+                (finite == 0 ? out.first : out.second).emplace_back(v.point.p, v.point.ng, to_eye, throughput * share);
+        });
 }
 
 void append(std::vector<Photon>& from, std::vector<Photon>& to) {

@@ -30,20 +30,12 @@ int IrradianceMap::estimate(std::uint32_t i, const PhotonMap& carriers, const Ir
     const PhotonQuery query{{place.position(), place.normal().decode()}, options.max_radius, options.k, options.shrink};
     // The scout in the middle is there by choice of the place, so it is no evidence of the density there.
     const float r = scouted_radius(scouts_, query, 1);
-    DensityEstimate e = estimate_density(carriers, query.region, r, options.patches, [](const Photon&) { return 1.0; });
-    const bool obstructed = options.scene != nullptr && options.patches->obstructed(query.region, r);
-    if (obstructed) {
-        const float lift = 2 * r / SurfaceRegion::kFlattening;
-        const double seen = share_in_sight(*options.scene, query.region, r, lift);
-        // Where nothing is in sight the middle lies in a crevice, and the test says nothing.
-        if (seen > 0) {
-            e = estimate_density(carriers, query.region, r, options.patches, [&](const Photon& p) {
-                return in_sight(*options.scene, query.region, lift, p.position()) ? 1.0 : 0.0;
-            });
-            e.value /= seen;
-        }
-    }
-    estimates_[i] = {SharedExponentRgb(e.value), obstructed, r};
+    const auto one = [](const Photon&) { return 1.0; };
+    DensityEstimate e = options.scene != nullptr ? estimate_density_in_sight(*options.scene, carriers, query.region, r,
+                                                                             *options.patches, one)
+                                                 : estimate_density(carriers, query.region, r, options.patches, one);
+    e.value /= share_in_reach(options.reach, query.region, r);
+    estimates_[i] = {SharedExponentRgb(e.value), e.obstructed, r};
     return e.photons;
 }
 

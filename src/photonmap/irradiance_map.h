@@ -3,6 +3,7 @@
 
 #include "core/progress.h"
 #include "photonmap/scouted_map.h"
+#include "sampling/reach.h"
 #include "scene/scene.h"
 
 namespace keyhole {
@@ -12,6 +13,7 @@ struct IrradianceOptions {
     float max_radius;                        ///< [m]
     float shrink = 1;                        ///< of regions, as in PhotonQuery
     const SurfacePatches* patches = nullptr; ///< for the area at edges; null: the disc's
+    const Reach* reach = nullptr;            ///< that the map ends at; null: nowhere
     const Scene* scene = nullptr; ///< for walls that stand on a surface and part it; needs `patches`; null: none do
 };
 

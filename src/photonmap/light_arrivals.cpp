@@ -25,21 +25,23 @@ void LightBuilder::store(PhotonKind kind, const Vertex& v, const Vec3& to_light,
 
 void LightBuilder::build(LightSources sources, LightArrivals& sample) const {
     TracedSubPath& walk = SubPathPair::scratch().light;
-    trace_light_subpath(*scene_, most_light_vertices(max_scatterings_), sources.light, &sources.roulette, walk);
-    bool specular_only = true;
+    trace_light_subpath(*scene_, most_light_vertices(rule_.max_scatterings), sources.light, &sources.roulette, walk);
+    LightPast past;
+    LightPast::Place last;
     for (int i = 1; i < walk.size(); ++i) {
         const auto at = static_cast<std::size_t>(i);
         const Vertex& v = walk.vertices[at];
         if (v.point.site != Site::surface) return;
+        const Vec3 to_light = direction(v.point, walk.vertices[at - 1].point);
         const Rgb& power = walk.throughput[at];
         if (v.bsdf.traits().finite && luminance(power) > 0) {
-            const Vec3 to_light = direction(v.point, walk.vertices[at - 1].point);
-            // From d2 light still has to be scattered at d1.
-            if (i > 1 && i < max_scatterings_) store(PhotonKind::global, v, to_light, power, sample);
-            if (i > 1 && specular_only && weighing_.guide.caustic != nullptr)
-                store(PhotonKind::caustic, v, to_light, power, sample);
+            const StorageRule::Kinds kinds = rule_(v.point, to_light, i, past);
+            if (kinds.global) store(PhotonKind::global, v, to_light, power, sample);
+            if (kinds.caustic) store(PhotonKind::caustic, v, to_light, power, sample);
         }
-        specular_only = specular_only && i + 1 < walk.size() && v.specular();
+        // The event at the end of the walk was never asked for.
+        if (i + 1 == walk.size()) return;
+        past.meet(v, to_light, last);
     }
 }
 

@@ -54,9 +54,9 @@ class LightBuilder {
     using Sources = LightSources;
     using Sample = LightArrivals;
 
-    /// `scene` and the guides must outlive it. Without a guide for it there are no photons of the caustic map.
-    LightBuilder(const Scene& scene, const PhotonWeighing& weighing, int max_scatterings)
-        : scene_(&scene), weighing_(weighing), max_scatterings_(max_scatterings) {}
+    /// `scene` and the guides must outlive it.
+    LightBuilder(const Scene& scene, const PhotonWeighing& weighing, const StorageRule& rule)
+        : scene_(&scene), weighing_(weighing), rule_(rule) {}
 
     /// Fills `sample`, which is empty. It stays so where nothing is stored.
     void build(LightSources sources, LightArrivals& sample) const;
@@ -66,7 +66,7 @@ class LightBuilder {
 
     const Scene* scene_;
     PhotonWeighing weighing_;
-    int max_scatterings_;
+    StorageRule rule_;
 };
 
 } // namespace keyhole

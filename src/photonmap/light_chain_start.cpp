@@ -50,7 +50,7 @@ LightChainStart start_light_chains(const Scene& scene, const EmissionGuide& guid
     LightChainStart start;
     if (scene.emitter_distribution().empty()) return start;
     const std::int64_t samples = std::min(options.samples, kMost);
-    const LightBuilder builder(scene, {guide, 1}, options.max_scatterings);
+    const LightBuilder builder(scene, {guide, 1}, options.rule);
     context.begin("brightness", static_cast<std::uint64_t>(samples), "samples");
     std::vector<Find> finds;
     leading_blocks(

@@ -117,14 +117,14 @@ MapStores make_stores(const PhotonWeights& weights, bool caustics, const LightCh
 LightChainPhotons run_light_chains(const Scene& scene, const EmissionGuide& guide, const LightChainStart& start,
                                    const LightChainOptions& options, const RunContext& context) {
     LightChainPhotons out;
-    const LightBuilder builder(scene, {guide, start.weights.unknown_scale()}, options.max_scatterings);
+    const LightBuilder builder(scene, {guide, start.weights.unknown_scale()}, options.rule);
     LightChains chains(builder, start, options.seed);
     if (chains.carriers() == 0) return out;
     const std::int64_t per_chain = std::max<std::int64_t>(1, options.mutations / chains.size()),
                        stretch = std::max<std::int64_t>(1, per_chain / kStretch),
                        rest = std::max<std::int64_t>(1, per_chain - stretch),
                        round = round_length(static_cast<std::int64_t>(options.photons), chains.size());
-    MapStores stores = make_stores(start.weights, guide.caustic != nullptr, options, rest * chains.size());
+    MapStores stores = make_stores(start.weights, options.rule.caustics, options, rest * chains.size());
 
     context.begin("photons", static_cast<std::uint64_t>((stretch + rest) * chains.size()), "mutations");
     for (std::int64_t done = 0; done < stretch && !(context.stopped() && done > 0); done += round)

@@ -22,7 +22,7 @@ struct LightChainOptions {
     std::size_t photons;           ///< ceiling for both maps together; they share it as they share the weight
     std::optional<double> p_large; ///< probability of large steps; none: learnt
     bool mis_of_large_steps = true;
-    int max_scatterings = 24;
+    StorageRule rule{};
     std::uint64_t seed;
 };
 

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "photonmap/importance_guide.h"
+#include "sampling/light_tracer.h"
+#include "sampling/reach.h"
 
 #include <cstddef>
 
@@ -11,6 +13,26 @@ namespace keyhole {
 struct EmissionGuide {
     const ImportanceGuide* global = nullptr;  ///< at d2
     const ImportanceGuide* caustic = nullptr; ///< at d1
+};
+
+/// Which map light goes to that arrives at a vertex, as PathSet::storage_point() has it for whole paths.
+struct StorageRule {
+    int max_scatterings = 24;
+    bool caustics = true;         ///< whether there is a caustic map
+    const Reach* reach = nullptr; ///< of gather rays; null: they come everywhere
+
+    struct Kinds {
+        bool global, caustic;
+    };
+    /// Of light that reached finite vertex `v` from `to_light` as its `arrival`-th vertex, counted from 1.
+    Kinds operator()(const SurfacePoint& v, const Vec3& to_light, int arrival, const LightPast& past) const {
+        const auto reached = [&](const Vec3& p, const Vec3& n) { return reach == nullptr || reach->comes_to(p, n); };
+        // Beyond reach its last scattering makes this the first one seen.
+        const bool unreached = past.last != nullptr && !reached(past.last->p, past.last->n);
+        // From d2 light still has to be scattered at d1.
+        return {arrival > 1 && arrival < max_scatterings && reached(v.p, facing(v.ng, to_light)),
+                caustics && (past.specular_only() || unreached)};
+    }
 };
 
 /// Weighs photons by visible power where importance is known, by a small multiple of power elsewhere.

@@ -21,12 +21,9 @@ class EmissionSampler final : public PhotonSampler {
         if (by_importance_) guides = make_guides(c_, seed, plan.importons, stats, context);
 
         const StageClock clock(stats, "photons");
-        EmittedPhotons photons = emit_photons(c_.scene, guides.both(),
-                                              {.paths = c_.settings.light_paths,
-                                               .photons = plan.photons,
-                                               .max_scatterings = static_cast<int>(c_.settings.max_depth),
-                                               .seed = seed},
-                                              context);
+        EmittedPhotons photons = emit_photons(
+            c_.scene, guides.both(),
+            {.paths = c_.settings.light_paths, .photons = plan.photons, .rule = c_.storage(), .seed = seed}, context);
         stats.values["light paths"] = static_cast<double>(photons.paths);
         stats.values["photons before storing"] = static_cast<double>(photons.arrivals);
         stats.photon_bytes = std::max<std::uint64_t>(stats.photon_bytes, photons.bytes + stats.importon_bytes);

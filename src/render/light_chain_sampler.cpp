@@ -29,7 +29,7 @@ class LightChainSampler final : public PhotonSampler {
                                         .photons = plan.photons,
                                         .p_large = s.p_large.value,
                                         .mis_of_large_steps = s.large_step_mis == "on",
-                                        .max_scatterings = static_cast<int>(s.max_depth),
+                                        .rule = c_.storage(),
                                         .seed = seed};
         LightChainStart start;
         {

@@ -40,8 +40,7 @@ PowerRule power_rule(const Settings& settings) {
 class MetropolisSampler final : public PhotonSampler {
   public:
     explicit MetropolisSampler(const SamplerContext& context)
-        : c_(context), rule_(power_rule(context.settings)),
-          set_(context.settings.paths == "all" ? PathSet::all : PathSet::stored) {}
+        : c_(context), rule_(power_rule(context.settings)), set_(context.path_set()) {}
 
     Photons sample(std::uint64_t seed, RenderStats& stats, const RunContext& context) override {
         const StageOneSettings first{.set = set_,
@@ -81,6 +80,7 @@ class MetropolisSampler final : public PhotonSampler {
                                                  .caustic = &at_d1,
                                                  .rule = rule_,
                                                  .scene = &c_.scene,
+                                                 .set = set_,
                                                  .max_scatterings = static_cast<int>(s.max_depth)},
                                                 {.mutations = s.mutations,
                                                  .global_photons = plan.photons - caustic,

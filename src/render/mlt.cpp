@@ -2,9 +2,11 @@
 //
 // Chains draw what the photon maps would hold, indirect light and caustics. Emission, direct light and direct light at
 // the second surface seen are path-traced, as stage three of mps has them: independent samples with next-event
-// estimation find them at once, and chains would spend most of their steps there.
+// estimation find them at once, and chains would spend most of their steps there. Where few paths from the eye come,
+// direct light at the second surface is left to the chains as well.
 #include "film/splats.h"
 #include "render/chain_report.h"
+#include "render/find_reach.h"
 #include "render/methods.h"
 #include "render/pass_seed.h"
 #include "render/pixel_sink.h"
@@ -18,14 +20,14 @@ namespace keyhole {
 namespace {
 
 /// Samples everything that the chains leave out. Returns whether it was completed.
-bool sample_direct(const Scene& scene, const Settings& settings, std::int64_t pass, Film& film, RunningStats& luminance,
-                   RenderStats& stats, const RunContext& context) {
+bool sample_direct(const Scene& scene, const Settings& settings, const PathSet& chains, std::int64_t pass, Film& film,
+                   RunningStats& luminance, RenderStats& stats, const RunContext& context) {
     const StageClock clock(stats, "direct light");
     const auto depth = static_cast<int>(settings.max_depth);
     const auto rounds = sample_pass(scene, film, pass, settings.spp, static_cast<std::uint64_t>(settings.seed),
                                     StreamPurpose::path_tracing, "direct light", context, luminance,
                                     [&](const Vec2& image, SampleSource& source) {
-                                        PixelSink sink{PixelSink::Elsewhere::stored};
+                                        PixelSink sink{&chains};
                                         trace_path(scene, image, depth, source, sink);
                                         return sink.pixel;
                                     });
@@ -34,7 +36,7 @@ bool sample_direct(const Scene& scene, const Settings& settings, std::int64_t pa
 
 void splat(SplatFilm& splats, const ImageWindow& window, const Path& path, double weight) {
     const auto layer =
-        storage_point(path).kind == PhotonKind::caustic ? SplatFilm::Layer::caustic : SplatFilm::Layer::indirect;
+        light_class(path) == LightClass::caustic ? SplatFilm::Layer::caustic : SplatFilm::Layer::indirect;
     splats.add(window.to_pixel(path.image), layer, path.contribution * (weight / path.target));
 }
 
@@ -43,7 +45,7 @@ bool draw_chains(const Scene& scene, const Settings& settings, const UserPaths& 
                  const StageOne& one, Work& work, ChainReports& reports, RenderStats& stats,
                  const RunContext& context) {
     const StageClock clock(stats, "chains");
-    const ChainMixtures mixtures({&scene, PathSet::stored, static_cast<int>(settings.max_depth)}, settings, paths);
+    const ChainMixtures mixtures({&scene, first.set, static_cast<int>(settings.max_depth)}, settings, paths);
     ChainSet chains(choose_seeds(scene, first, one, one.all_groups(), settings.chains), mixtures.mixture, first.seed,
                     mixtures.control_or_null());
     const ImageWindow& window = scene.camera().window();
@@ -76,11 +78,14 @@ RenderResult render_mlt(const Scene& scene, const Settings& settings, const User
     Work work(settings, scene.camera().window(), Exposure::Parts::both, share);
     ChainReports reports;
     RunningStats luminance; // of direct light
+    const ReachFound found = find_reach(scene, settings);
+    const PathSet set{.reach = found.reach ? &*found.reach : nullptr};
     while (const auto pass = work.take(context)) {
-        const StageOneSettings first{.max_scatterings = static_cast<int>(settings.max_depth),
+        const StageOneSettings first{.set = set,
+                                     .max_scatterings = static_cast<int>(settings.max_depth),
                                      .samples = settings.brightness_samples,
                                      .seed = seed_of_pass(settings, *pass)};
-        bool whole = sample_direct(scene, settings, *pass, *work.unit().film, luminance, stats, context);
+        bool whole = sample_direct(scene, settings, set, *pass, *work.unit().film, luminance, stats, context);
         if (!whole && !work.is_first()) break;
         const StageOne one = reports.measure_brightness(scene, first, stats, context);
         whole = whole && one.samples == first.samples;

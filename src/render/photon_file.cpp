@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/hash.h"
 #include "film/atomic_file.h"
+#include "render/find_reach.h"
 #include "sampling/scene_hash.h"
 
 #include <fmt/format.h>
@@ -18,7 +19,7 @@ namespace keyhole {
 namespace {
 
 constexpr std::array<char, 8> kMagic{'K', 'H', 'P', 'H', 'O', 'T', 'O', 'N'};
-constexpr std::uint32_t kVersion = 2; ///< to be raised whenever Photon, or what a map holds, changes
+constexpr std::uint32_t kVersion = 3; ///< to be raised whenever Photon, or what a map holds, changes
 constexpr std::uint32_t kByteOrder = 0x01020304;
 
 constexpr std::size_t kParts = 4;
@@ -34,10 +35,11 @@ struct Header {
     std::uint32_t version = kVersion;
     std::uint64_t scene = 0;
     std::int64_t max_scatterings = 0;
+    std::int64_t reach = 0;
     std::array<std::uint64_t, kParts> photons{};
     std::uint64_t checksum = 0;
 };
-static_assert(std::is_trivially_copyable_v<Header> && sizeof(Header) == 72);
+static_assert(std::is_trivially_copyable_v<Header> && sizeof(Header) == 80);
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why) {
     throw InputError(fmt::format("{}: {}", path, why));
@@ -53,6 +55,10 @@ void check(const std::string& path, const Header& found, const PhotonFileKey& ke
     if (found.max_scatterings != key.max_scatterings)
         refuse(path, fmt::format("found a photon map made with max_depth={}, expected max_depth={}",
                                  found.max_scatterings, key.max_scatterings));
+    if (found.reach != key.reach)
+        refuse(
+            path,
+            "found a photon map made with other values of the settings reach, plan or importons; expected those given");
 }
 
 void append(std::vector<char>& bytes, const void* data, std::size_t size) {
@@ -76,13 +82,16 @@ std::vector<Photon> read_photons(std::ifstream& file, const std::string& path, s
 } // namespace
 
 PhotonFileKey photon_file_key(const Scene& scene, const Settings& settings) {
-    return {scene_hash(scene), settings.max_depth};
+    const std::int64_t paths = reach_paths(settings);
+    const std::int64_t reach = settings.reach == "off" ? 0 : settings.plan == "all" ? -paths : paths;
+    return {scene_hash(scene), settings.max_depth, reach};
 }
 
 void save_photons(const std::string& path, const PhotonFileKey& key, const Photons& photons) {
     Header header;
     header.scene = key.scene;
     header.max_scatterings = key.max_scatterings;
+    header.reach = key.reach;
     for (std::size_t i = 0; i < kParts; ++i) header.photons[i] = parts(photons)[i]->size();
     header.checksum = checksum(photons);
     std::vector<char> bytes;

@@ -14,6 +14,8 @@ namespace keyhole {
 struct PhotonFileKey {
     std::uint64_t scene;          ///< scene_hash()
     std::int64_t max_scatterings; ///< of the paths
+    std::int64_t reach; ///< what decides on the reach of gather rays: 0 if nothing does, or reach_paths(), negative
+                        ///< with plan=all
 };
 
 /// The key of maps for this scene. Traces some light.

@@ -73,6 +73,7 @@ bool gather_pass(const SamplerContext& c, const RenderPlan& plan, std::int64_t p
                                       .max_radius = radii.global,
                                       .shrink = radii.shrink,
                                       .patches = &c.patches,
+                                      .reach = c.reach,
                                       .scene = &c.scene};
     // An estimate made beforehand is asked from a little way off. Once regions get as small as that, each is made where
     // it is asked.
@@ -94,7 +95,8 @@ bool gather_pass(const SamplerContext& c, const RenderPlan& plan, std::int64_t p
                           .irradiance = irradiance ? &*irradiance : nullptr,
                           .sites = sites ? &*sites : nullptr,
                           .caustic = caustic.carriers().photons().empty() ? nullptr : &caustic,
-                          .patches = &c.patches};
+                          .patches = &c.patches,
+                          .reach = c.reach};
     const LookupOptions lookups{.nearest = static_cast<int>(s.nearest),
                                 .max_radius = radii.global,
                                 .caustic_radius = radii.caustic,
@@ -121,7 +123,8 @@ RenderResult render_photons(const Scene& scene, const Settings& settings, const 
     const SurfacePatches patches(scene.shapes());
     SamplerContext c{scene, settings, patches, paths};
     const RenderPlan plan = make_plan(c, stats, context);
-    c.caustics = plan.caustics;
+    c.reach = plan.reach ? &*plan.reach : nullptr;
+    c.caustics = plan.caustics || c.reach != nullptr;
     const auto sampler = make_sampler(c, plan, stats, context);
     Work work(settings, scene.camera().window(), Exposure::Parts::film, share);
     RunningStats luminance;

@@ -4,6 +4,7 @@
 #include "core/progress.h"
 #include "core/render_stats.h"
 #include "core/settings.h"
+#include "photonmap/photon_weighing.h"
 #include "photonmap/photons.h"
 #include "photonmap/surface_patches.h"
 #include "sampling/user_paths.h"
@@ -30,8 +31,14 @@ struct SamplerContext {
     const Scene& scene;
     const Settings& settings;
     const SurfacePatches& patches;
-    const UserPaths& user_paths; ///< for chains
-    bool caustics = true;        ///< whether there is to be a caustic map
+    const UserPaths& user_paths;  ///< for chains
+    bool caustics = true;         ///< whether there is to be a caustic map
+    const Reach* reach = nullptr; ///< of gather rays; null: they come everywhere
+
+    /// The paths that chains sample.
+    PathSet path_set() const { return {settings.paths == "all", reach}; }
+    /// What goes to which map.
+    StorageRule storage() const { return {static_cast<int>(settings.max_depth), caustics, reach}; }
 };
 
 /// Metropolis photon sampling: Fan, Chenney, Lai 2005.

@@ -8,18 +8,16 @@ namespace keyhole {
 
 /// Collects one path-traced sample. Paths of `elsewhere` are left out, and no walk goes on that could make only these.
 struct PixelSink {
-    enum class Elsewhere { nothing, stored };
-
-    Elsewhere elsewhere = Elsewhere::nothing; ///< stored: chains sample PathSet::stored
+    const PathSet* elsewhere = nullptr; ///< what chains sample; null: nothing
     PixelSample pixel{};
 
     bool arrival(const EyeWalk& walk, const Rgb& /*throughput*/, int finite) {
         if (finite == 0) see(walk.back(), walk[walk.size() - 2], walk.size() == 2);
-        return elsewhere == Elsewhere::nothing || finite < 2;
+        return elsewhere == nullptr || finite < 2;
     }
 
-    void contribution(const EyeWalk& /*walk*/, const Vertex& /*x0*/, const Rgb& value, LightClass light) {
-        if (elsewhere == Elsewhere::nothing || !in_set(light, PathSet::stored)) add(value, light);
+    void contribution(const EyeWalk& walk, const Vertex& x0, const Rgb& value, LightClass light) {
+        if (elsewhere == nullptr || !in_set(light, *elsewhere, walk.back().point, x0.point)) add(value, light);
     }
 
     /// Notes what vertex `v` looks like from `before`, the one nearer to the eye.

@@ -1,6 +1,7 @@
 #include "render/plan.h"
 
 #include "core/percent.h"
+#include "render/find_reach.h"
 #include "render/sampler_trial.h"
 #include "sampling/brightness.h"
 
@@ -29,6 +30,15 @@ PlanItem plan_caustics(const Scene& scene) {
     const char* name = "caustic map and proposals";
     return scene.traits().delta ? PlanItem{name, true, "there are mirrors or smooth glass"}
                                 : PlanItem{name, false, "nothing in the scene is specular"};
+}
+
+PlanItem plan_reach(const Settings& settings, bool photons, const ReachFound& found) {
+    const char* name = "light beyond gather rays";
+    if (settings.reach == "off") return {name, false, "the setting reach is off"};
+    if (!photons) return {name, false, "no photon maps"};
+    return {name, found.reach.has_value(),
+            percent(found.beyond) + " of the light arrives where few gather rays do" +
+                (found.reach ? ": it is stored where it is seen" : "")};
 }
 
 PlanItem plan_gather(bool photons, const SceneSurvey& survey) {
@@ -62,6 +72,10 @@ RenderPlan plan_render(const SamplerContext& c, const RunContext& run, std::int6
     plan.photons = add(plan_photons(c, plan.survey, run));
     plan.caustics =
         add(plan.photons ? plan_caustics(c.scene) : PlanItem{"caustic map and proposals", false, "no photon maps"});
+    ReachFound found;
+    if (plan.photons) found = find_reach(c.scene, s);
+    add(plan_reach(s, plan.photons, found));
+    plan.reach = std::move(found.reach);
     plan.gather = add(plan_gather(plan.photons, plan.survey));
     plan.cache = add(plan_cache(c.scene, s, plan.gather)) && s.irradiance_cache;
     return plan;

@@ -22,13 +22,16 @@ RenderResult render_by_method(const Scene& scene, const Settings& settings, cons
 
 } // namespace
 
-RenderResult render(Scene& scene, const Settings& settings, const RunContext& context, const UserPathFile& user_paths,
-                    const Share& share) {
+void set_window_margin(Scene& scene, const Settings& settings) {
     ImageWindow window = scene.camera().window();
-    // Room for the filter, and for photon lookups at the border of the picture.
     window.margin = std::max({2.0f, 0.03f * static_cast<float>(std::max(window.width, window.height)),
                               static_cast<float>(PixelFilter(settings).radius())});
     scene.set_window(window);
+}
+
+RenderResult render(Scene& scene, const Settings& settings, const RunContext& context, const UserPathFile& user_paths,
+                    const Share& share) {
+    set_window_margin(scene, settings);
     RenderResult result = render_by_method(scene, settings, bind_user_paths(scene, user_paths), context, share);
     if (result.stats.method.empty()) result.stats.method = settings.method;
     result.settings = settings;

@@ -17,6 +17,9 @@ struct RenderResult {
     Settings settings; ///< that it was made with
 };
 
+/// Sets the margin of the scene's window: room for the filter, and for photon lookups at the border of the picture.
+void set_window_margin(Scene& scene, const Settings& settings);
+
 /// Renders by the method that the settings name. The same scene, settings and seed give the same picture, bit for bit,
 /// whatever the number of threads. After a stop the result is what there is so far, with stats.complete false. Sets the
 /// scene's window margin. Methods that run chains are guided by `user_paths`.

@@ -71,14 +71,17 @@ double relative_variance(const std::vector<Shares>& samples) {
 struct VisiblePower {
     const Scene& scene;
     const ImportanceGuide& global;
-    const ImportanceGuide* caustic;
+    const ImportanceGuide& caustic;
+    StorageRule rule;
     Shares shares{};
     int arrivals = 0;
 
-    bool arrival(const Vertex& v, const Vec3& to_light, const Rgb& power, bool specular_only) {
+    bool arrival(const Vertex& v, const Vec3& to_light, const Rgb& power, const LightPast& past) {
+        ++arrivals;
         if (!v.bsdf.traits().finite) return true;
-        double visible = arrivals++ > 0 || specular_only ? global.visible_power(v, to_light, power).value_or(0) : 0;
-        if (specular_only && caustic != nullptr) visible += caustic->visible_power(v, to_light, power).value_or(0);
+        const StorageRule::Kinds kinds = rule(v.point, to_light, arrivals, past);
+        double visible = kinds.global ? global.visible_power(v, to_light, power).value_or(0) : 0;
+        if (kinds.caustic) visible += caustic.visible_power(v, to_light, power).value_or(0);
         shares[part(scene, v.point.p)] += visible;
         return true;
     }
@@ -99,7 +102,7 @@ double try_emission(const SamplerContext& c, const Scene* walls, const RunContex
     std::vector<Shares> samples(static_cast<std::size_t>(extent.light_paths));
     parallel_for(extent.light_paths, [&](std::int64_t i) {
         Rng rng(seed, StreamPurpose::emission, static_cast<std::uint64_t>(i));
-        VisiblePower sink{c.scene, global, delta ? &caustic : nullptr};
+        VisiblePower sink{c.scene, global, caustic, c.storage()};
         trace_light_path(c.scene, depth, rng, sink);
         samples[static_cast<std::size_t>(i)] = sink.shares;
     });
@@ -110,7 +113,8 @@ double try_emission(const SamplerContext& c, const Scene* walls, const RunContex
 double try_metropolis(const SamplerContext& c, const RunContext& run) {
     const Settings& s = c.settings;
     const Extent extent(s);
-    const StageOneSettings first{.max_scatterings = static_cast<int>(s.max_depth),
+    const StageOneSettings first{.set = {.reach = c.reach},
+                                 .max_scatterings = static_cast<int>(s.max_depth),
                                  .samples = extent.brightness_samples,
                                  .seed = static_cast<std::uint64_t>(s.seed)};
     const std::uint64_t start = rays_traced();
@@ -121,8 +125,7 @@ double try_metropolis(const SamplerContext& c, const RunContext& run) {
     const double brightness = one.brightness.variance() / (b * b) * static_cast<double>(rays_traced() - start) /
                               static_cast<double>(extent.brightness_samples);
 
-    const Mixture<Path> mixture =
-        make_mixture({&c.scene, PathSet::stored, static_cast<int>(s.max_depth)}, s, c.user_paths);
+    const Mixture<Path> mixture = make_mixture({&c.scene, first.set, static_cast<int>(s.max_depth)}, s, c.user_paths);
     const std::uint64_t before = rays_traced();
     std::vector<Shares> samples(seeds.size(), Shares{});
     parallel_for(static_cast<std::int64_t>(seeds.size()), [&](std::int64_t i) {
@@ -130,7 +133,7 @@ double try_metropolis(const SamplerContext& c, const RunContext& run) {
         Chain<Path> chain(seeds[k], mixture, Rng(first.seed, StreamPurpose::chain, static_cast<std::uint64_t>(i)));
         for (std::int64_t step = 0; step < kSteps; ++step)
             chain.step([&](const Path& path, double weight) {
-                const StoragePoint at = storage_point(path);
+                const StoragePoint at = first.set.storage_point(path);
                 if (at.kind == PhotonKind::none) return;
                 samples[k][part(c.scene, path.x[static_cast<std::size_t>(at.vertex)].point.p)] += weight / kSteps;
             });

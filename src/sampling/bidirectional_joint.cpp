@@ -33,6 +33,12 @@ LightClass Joint::light_class() const {
     return first == 0 ? LightClass::emission : first == 1 ? LightClass::direct : LightClass::caustic;
 }
 
+int Joint::nth_finite_from_eye(int n) const {
+    for (int i = s_ + t_ - 2; i > 0; --i)
+        if (!specular(i) && --n == 0) return i;
+    return 0;
+}
+
 /// What leaves the light sub-path towards the eye's, and the densities that this changes.
 Rgb Joint::leave_light(const Vec3& to_eye) {
     const Vertex& y = vertex(s_ - 1);

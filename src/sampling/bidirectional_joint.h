@@ -42,6 +42,9 @@ class Joint {
     bool possible() const { return possible_; }
     const Vec2& image() const { return image_; }
     LightClass light_class() const;
+    const Vertex& vertex(int i) const; ///< of the path, 0 at the light
+    /// As keyhole::nth_finite_from_eye(), of the path.
+    int nth_finite_from_eye(int n) const;
 
     /// Contribution over density times the weight among all techniques. Black where the weight is zero. Visibility is
     /// assumed.
@@ -54,7 +57,6 @@ class Joint {
     Path path() const;
 
   private:
-    const Vertex& vertex(int i) const; ///< of the path, 0 at the light
     bool specular(int i) const { return i != s_ - 1 && i != s_ && vertex(i).specular(); }
     Rgb join();
     Rgb leave_light(const Vec3& to_eye);

@@ -39,7 +39,7 @@ void connect_subpaths(const Scene& scene, const TracedSubPath& light, const Trac
             Joint joint(scene, light, s, eye, t, image);
             if (!joint.possible()) continue;
             const LightClass kind = joint.light_class();
-            if (!in_set(kind, set)) continue;
+            if (!in_set(kind, set, joint.vertex(1).point, joint.vertex(0).point)) continue;
             const Rgb value = joint.value(heuristic);
             if (luminance(value) > 0 && joint.visible()) sink.contribution(joint, value, kind);
         }

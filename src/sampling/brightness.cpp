@@ -25,9 +25,9 @@ struct EstimateSink {
     double sum = 0, caustic = 0;
 
     void arrival(const Vertex&, const Vec3&, const Rgb&, int) {}
-    void contribution(const Rgb& value, LightClass light, auto&& /*make_path*/) {
+    void contribution(const Rgb& value, PhotonKind kind, auto&& /*make_path*/) {
         sum += luminance(value);
-        if (light == LightClass::caustic) caustic += luminance(value);
+        if (kind == PhotonKind::caustic) caustic += luminance(value);
     }
 };
 
@@ -37,7 +37,7 @@ struct SeedSink {
     std::optional<Path> found{};
 
     void arrival(const Vertex&, const Vec3&, const Rgb&, int) {}
-    void contribution(const Rgb& value, LightClass, auto&& make_path) {
+    void contribution(const Rgb& value, PhotonKind, auto&& make_path) {
         if (left < 0 && found) return;
         left -= luminance(value);
         if (left >= 0 && found) return; // any path will do should rounding leave the mark unreached

@@ -13,10 +13,24 @@ enum class Technique {
     bidirectional, ///< bidirectional path tracing: finds light that path tracing meets by chance only
 };
 
+/// What a path of class `light` stores; `reached()`: whether gather rays come to its d2.
+template <class Reached> PhotonKind stored_kind(LightClass light, const PathSet& set, const Reached& reached) {
+    switch (light) {
+    case LightClass::caustic:
+        return PhotonKind::caustic;
+    case LightClass::indirect:
+        return set.reach == nullptr || reached() ? PhotonKind::global : PhotonKind::caustic;
+    case LightClass::second:
+        return set.reach == nullptr || reached() ? PhotonKind::none : PhotonKind::caustic;
+    default:
+        return PhotonKind::none;
+    }
+}
+
 /// Traces one sample from window point `image`. Tells `sink`:
 ///   sink.arrival(vertex, to_eye, throughput, finite): importance arrived at `vertex` after `finite` non-specular ones;
-///   sink.contribution(value, light_class, make_path): an estimate of radiance by a path of `set` that make_path()
-///     returns, measured.
+///   sink.contribution(value, kind, make_path): an estimate of radiance by a path of `set` that make_path() returns,
+///     measured, and the PhotonKind that it stores.
 template <class Sink>
 void trace_independent(Technique technique, const Scene& scene, const Vec2& image, int max_scatterings, PathSet set,
                        SampleSource& source, Sink& sink) {
@@ -32,11 +46,16 @@ void trace_independent(Technique technique, const Scene& scene, const Vec2& imag
             finite += v.specular() ? 0 : 1;
         }
         struct {
+            const PathSet& set;
             Sink& sink;
             void contribution(const Joint& joint, const Rgb& value, LightClass light) {
-                sink.contribution(value, light, [&] { return joint.path(); });
+                const auto reached = [&] {
+                    const int d2 = joint.nth_finite_from_eye(2);
+                    return set.reaches(joint.vertex(d2).point, joint.vertex(d2 - 1).point);
+                };
+                sink.contribution(value, stored_kind(light, set, reached), [&] { return joint.path(); });
             }
-        } adapter{sink};
+        } adapter{set, sink};
         connect_subpaths(scene, light, eye, image, max_scatterings, set, MisHeuristic::power, adapter);
         return;
     }
@@ -51,8 +70,9 @@ void trace_independent(Technique technique, const Scene& scene, const Vec2& imag
             return true;
         }
         void contribution(const EyeWalk& walk, const Vertex& x0, const Rgb& value, LightClass light) {
-            if (in_set(light, set))
-                sink.contribution(value, light, [&] { return complete_path(scene, walk, x0, image); });
+            if (!in_set(light, set, walk.back().point, x0.point)) return;
+            sink.contribution(value, stored_kind(light, set, [&] { return reaches_d2(set, walk, x0); }),
+                              [&] { return complete_path(scene, walk, x0, image); });
         }
     } adapter{scene, image, set, sink};
     trace_path(scene, image, max_scatterings, source, adapter);

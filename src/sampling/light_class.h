@@ -20,8 +20,10 @@ inline LightClass light_class(const Path& path) {
     return d1 == 0 ? LightClass::emission : d1 == 1 ? LightClass::direct : LightClass::caustic;
 }
 
-inline bool in_set(LightClass light, PathSet set) {
-    return set == PathSet::all || light == LightClass::caustic || light == LightClass::indirect;
+/// Whether a path of class `light` that ends in x1, x0 is in the set.
+inline bool in_set(LightClass light, const PathSet& set, const SurfacePoint& x1, const SurfacePoint& x0) {
+    if (set.everything || light == LightClass::caustic || light == LightClass::indirect) return true;
+    return light == LightClass::second && !set.reaches(x1, x0);
 }
 
 } // namespace keyhole

@@ -71,7 +71,7 @@ void measure(const Scene& scene, Path& path) {
 }
 
 void evaluate(const Scene& scene, Path& path, PathSet set) {
-    const bool inside = set == PathSet::all || storage_point(path).kind != PhotonKind::none;
+    const bool inside = set.everything || set.storage_point(path).kind != PhotonKind::none;
     path.target = 0;
     if (!inside) return;
     measure(scene, path);

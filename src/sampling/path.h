@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/inline_vector.h"
+#include "sampling/reach.h"
 #include "scene/bsdf.h"
 #include "scene/surface_point.h"
 
@@ -52,26 +53,39 @@ inline int nth_finite_from_eye(const Path& path, int n) {
 /// Which photon map a path stores its light sub-path in.
 enum class PhotonKind { none, global, caustic };
 
-/// Where a path stores a photon. Global: at d2, the second non-specular vertex from the eye, unless light came to it
-/// straight from the emitter: that is direct light, which stage three has from next-event estimation. Near a lamp it
-/// varies so fast that no density estimate could follow. Caustic: at d1, when light came to it through specular
-/// vertices only.
+/// Where a path stores a photon.
 struct StoragePoint {
     PhotonKind kind = PhotonKind::none;
     int vertex = 0;
 };
 
-inline StoragePoint storage_point(const Path& path) {
-    if (const int d2 = nth_finite_from_eye(path, 2); d2 > 0)
-        return d2 > 1 ? StoragePoint{PhotonKind::global, d2} : StoragePoint{};
-    const int d1 = nth_finite_from_eye(path, 1);
-    return d1 > 1 ? StoragePoint{PhotonKind::caustic, d1} : StoragePoint{};
-}
+/// The paths that stage two samples, and where they store photons.
+struct PathSet {
+    bool everything = false;      ///< also paths that store none
+    const Reach* reach = nullptr; ///< of gather rays; null: they come everywhere. Must outlive the set
 
-/// The paths that stage two samples.
-enum class PathSet {
-    stored, ///< those that store a photon; the rest stage three has exactly
-    all,    ///< every path, for methods that draw them directly
+    static const PathSet stored; ///< those that store a photon; the rest stage three has exactly
+    static const PathSet all;    ///< every path, for methods that draw them directly
+
+    /// Whether gather rays come to `d2` on the side where light arrives from `before`, the vertex on its light's side.
+    bool reaches(const SurfacePoint& d2, const SurfacePoint& before) const {
+        return reach == nullptr || reach->comes_to(d2.p, facing(d2.ng, direction(d2, before)));
+    }
+
+    /// Global: at d2, the second non-specular vertex from the eye, unless light came to it straight from the emitter:
+    /// that is direct light, which stage three has from next-event estimation. Near a lamp it varies so fast that no
+    /// density estimate could follow. Caustic: at d1, when light came to it through specular vertices only, or from a
+    /// d2 beyond the reach of gather rays.
+    StoragePoint storage_point(const Path& path) const {
+        const int d1 = nth_finite_from_eye(path, 1), d2 = nth_finite_from_eye(path, 2);
+        if (d2 == 0) return d1 > 1 ? StoragePoint{PhotonKind::caustic, d1} : StoragePoint{};
+        const auto at = static_cast<std::size_t>(d2);
+        if (!reaches(path.x[at].point, path.x[at - 1].point)) return {PhotonKind::caustic, d1};
+        return d2 > 1 ? StoragePoint{PhotonKind::global, d2} : StoragePoint{};
+    }
 };
+
+inline constexpr PathSet PathSet::stored{};
+inline constexpr PathSet PathSet::all{.everything = true};
 
 } // namespace keyhole

@@ -28,6 +28,14 @@ inline Path complete_path(const Scene& scene, const EyeWalk& walk, const Vertex&
     return path;
 }
 
+/// As PathSet::reaches(), of the path that joins a walk with a d2 to emitter vertex x0.
+inline bool reaches_d2(const PathSet& set, const EyeWalk& walk, const Vertex& x0) {
+    std::size_t d2 = 1;
+    for (int finite = 0; d2 + 1 < walk.size(); ++d2)
+        if (!walk[d2].specular() && ++finite == 2) break;
+    return set.reaches(walk[d2].point, d2 + 1 < walk.size() ? walk[d2 + 1].point : x0.point);
+}
+
 /// Traces one path from `image` (window point), with at most `max_scatterings` vertices between light and eye.
 ///
 /// Tells `sink`:

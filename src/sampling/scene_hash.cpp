@@ -27,7 +27,7 @@ void add_camera(const Camera& camera, Hash& hash) {
 /// What light does here.
 struct Probe {
     Hash& hash;
-    bool arrival(const Vertex& v, const Vec3&, const Rgb& power, bool) {
+    bool arrival(const Vertex& v, const Vec3&, const Rgb& power, const LightPast&) {
         hash.add(v.point.p);
         hash.add(power);
         return true;

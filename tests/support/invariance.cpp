@@ -15,13 +15,13 @@ constexpr std::array<const char*, kStatistics> kNames{
     "vertices", "specular", "image left", "image top", "image diagonal", "light x",     "light next z", "stored x",
     "stored y", "stored z", "d1 x",       "d1 z",      "caustic",        "transmitted", "redness"};
 
-std::array<double, kStatistics> statistics(const Path& path) {
+std::array<double, kStatistics> statistics(const PathSet& set, const Path& path) {
     double specular = 0, transmitted = 0;
     for (const Vertex& v : path.x) {
         specular += v.specular() ? 1 : 0;
         transmitted += v.event == Event::transmit ? 1 : 0;
     }
-    const StoragePoint storage = storage_point(path);
+    const StoragePoint storage = set.storage_point(path);
     const Vec3 s = path.x[static_cast<std::size_t>(storage.vertex)].point.p;
     const Vec3 d1 = path.x[static_cast<std::size_t>(nth_finite_from_eye(path, 1))].point.p;
     const double y = luminance(path.contribution);
@@ -55,18 +55,18 @@ struct Sink {
     bool arrival(const EyeWalk&, const Rgb&, int) { return true; }
 
     void contribution(const EyeWalk& walk, const Vertex& x0, const Rgb& value, LightClass light) {
-        if (set == PathSet::stored && light != LightClass::caustic && light != LightClass::indirect) return;
+        if (!in_set(light, set, walk.back().point, x0.point)) return;
         Path x = complete_path(scene, walk, x0, image);
         x.target = luminance(x.contribution);
         const double weight = luminance(value);
         if (!(x.target > 0) || !(weight > 0)) return;
         ++paths;
-        const auto before = statistics(x);
+        const auto before = statistics(set, x);
         std::array<double, kStatistics> step{}; // expected values after it, less those before
         for (std::size_t k = 0; k < kStatistics; ++k) step[k] = -before[k];
         Chain<Path> chain(x, mixture, Rng(rng.below(1u << 31), StreamPurpose::test, rng.below(1u << 31)));
         chain.step([&](const Path& p, double w) {
-            const auto after = statistics(p);
+            const auto after = statistics(set, p);
             for (std::size_t k = 0; k < kStatistics; ++k) step[k] += w * after[k];
         });
         // What a step can't change, such as the place of a point light, comes back rounded.

@@ -33,29 +33,42 @@ struct Energy {
     Power global, caustic;
 };
 
+/// What is stored, by the rule in words: see by_light_tracing().
+struct Rule {
+    int depth;
+    const Reach* reach = nullptr;
+
+    bool reached(const Vec3& p, const Vec3& n) const { return reach == nullptr || reach->comes_to(p, n); }
+    StorageRule storage() const { return {.max_scatterings = depth, .reach = reach}; }
+};
+
 /// Light tracing. The global map of whole-path chains holds every sub-path that can be the one up to d2, which here is
-/// every arrival after which at least one scattering is still allowed.
-Energy by_light_tracing(const Scene& scene, int depth, std::int64_t paths) {
+/// every arrival within reach after which at least one scattering is still allowed. The caustic map holds what
+/// arrives from beyond reach besides caustics.
+Energy by_light_tracing(const Scene& scene, const Rule& rule, std::int64_t paths) {
     struct Sink {
         const Scene& scene;
-        int depth;
+        const Rule& rule;
         std::array<double, kRegions> global{}, caustic{};
         int arrivals = 0;
-        bool arrival(const Vertex& v, const Vec3&, const Rgb& power, bool specular_only) {
+        bool arrival(const Vertex& v, const Vec3& to_light, const Rgb& power, const LightPast& past) {
+            const int depth = rule.depth;
             const std::size_t r = region(scene, v.point.p);
             // Black surfaces scatter nothing on: no path stores there.
             if (!v.bsdf.traits().finite || is_black(v.bsdf.eval(v.point.ns, v.point.ns))) return ++arrivals < depth;
             const bool straight = arrivals == 0; // direct light, which no map holds
-            if (!straight && arrivals < depth - 1) global[r] += luminance(power);
-            if (specular_only) caustic[r] += luminance(power);
+            const bool here = rule.reached(v.point.p, facing(v.point.ng, to_light));
+            if (!straight && arrivals < depth - 1 && here) global[r] += luminance(power);
+            if (past.specular_only() || (past.last != nullptr && !rule.reached(past.last->p, past.last->n)))
+                caustic[r] += luminance(power);
             return ++arrivals < depth;
         }
     };
     Energy e;
     for (std::int64_t i = 0; i < paths; ++i) {
         Rng rng(3, StreamPurpose::test, static_cast<std::uint64_t>(i));
-        Sink sink{scene, depth};
-        trace_light_path(scene, depth, rng, sink);
+        Sink sink{scene, rule};
+        trace_light_path(scene, rule.depth, rng, sink);
         for (std::size_t r = 0; r < kRegions; ++r) {
             e.global[r].add(sink.global[r]);
             e.caustic[r].add(sink.caustic[r]);
@@ -97,14 +110,14 @@ Guides make_guides(const Scene& scene, int depth, std::uint64_t seed, const Surf
 }
 
 /// Several independent runs of emission, thinned to a ceiling well below what arrives.
-Energy by_emission(const Scene& scene, int depth, bool guided, int runs) {
+Energy by_emission(const Scene& scene, const Rule& rule, bool guided, int runs) {
     const SurfacePatches patches(scene.shapes());
     Energy e;
     for (int run = 0; run < runs; ++run) {
         const auto seed = static_cast<std::uint64_t>(100 + run);
-        const Guides guides = make_guides(scene, depth, seed, patches);
+        const Guides guides = make_guides(scene, rule.depth, seed, patches);
         const EmissionGuide both = guided ? guides.both() : EmissionGuide{};
-        const EmissionOptions options{.paths = 60'000, .photons = 25'000, .max_scatterings = depth, .seed = seed};
+        const EmissionOptions options{.paths = 60'000, .photons = 25'000, .rule = rule.storage(), .seed = seed};
         const EmittedPhotons photons = emit_photons(scene, both, options, {});
         EXPECT_LE(photons.global.size() + photons.caustic.size(), options.photons);
         add_run(scene, photons, e);
@@ -113,19 +126,19 @@ Energy by_emission(const Scene& scene, int depth, bool guided, int runs) {
 }
 
 /// Several independent runs of chains over light sub-paths, thinned likewise.
-Energy by_light_chains(const Scene& scene, int depth, int runs, float guide_radius) {
+Energy by_light_chains(const Scene& scene, const Rule& rule, int runs, float guide_radius) {
     const SurfacePatches patches(scene.shapes());
     Energy e;
     for (int run = 0; run < runs; ++run) {
         const auto seed = static_cast<std::uint64_t>(100 + run);
-        const Guides guides = make_guides(scene, depth, seed, patches, guide_radius);
+        const Guides guides = make_guides(scene, rule.depth, seed, patches, guide_radius);
         const EmissionGuide both = guides.both();
         const LightChainOptions options{.samples = 60'000,
                                         .chains = 400,
                                         .mutations = 200'000,
                                         .photons = 25'000,
                                         .p_large = {},
-                                        .max_scatterings = depth,
+                                        .rule = rule.storage(),
                                         .seed = seed};
         const LightChainStart start = start_light_chains(scene, both, options, {});
         const LightChainPhotons photons = run_light_chains(scene, both, start, options, {});
@@ -140,24 +153,31 @@ struct ChainEnergy {
 };
 
 /// Several independent runs of stages one and two, by both rules.
-ChainEnergy by_chains(const Scene& scene, int depth, int runs) {
+ChainEnergy by_chains(const Scene& scene, const Rule& rule, int runs) {
+    const int depth = rule.depth;
+    const PathSet set{.reach = rule.reach};
     const SurfacePatches patches(scene.shapes());
-    const Mixture<Path> mixture = make_mixture({&scene, PathSet::stored, depth}, Settings{});
+    const Mixture<Path> mixture = make_mixture({&scene, set, depth}, Settings{});
     ChainEnergy e;
     for (int run = 0; run < runs; ++run) {
         const auto seed = static_cast<std::uint64_t>(100 + run);
-        const StageOneSettings first{.max_scatterings = depth, .samples = 60'000, .seed = seed};
+        const StageOneSettings first{.set = set, .max_scatterings = depth, .samples = 60'000, .seed = seed};
         const StageOne one = run_stage_one(scene, first, {});
         const ChainSeeds seeds = choose_chain_seeds(scene, first, one, 2000);
         Importons importons = trace_importance(scene, {.samples = 200'000, .max_scatterings = depth, .seed = seed}, {});
         const ImportanceMap at_d1 = importance_map(std::move(importons.first), patches);
         const ImportanceMap at_d2 = importance_map(std::move(importons.second), patches);
-        for (const PowerRule rule : {PowerRule::marginal, PowerRule::reciprocal}) {
+        for (const PowerRule power : {PowerRule::marginal, PowerRule::reciprocal}) {
             const SampledPhotons photons = sample_photons(
                 seeds, mixture,
-                {.global = &at_d2, .caustic = &at_d1, .rule = rule, .scene = &scene, .max_scatterings = depth},
+                {.global = &at_d2,
+                 .caustic = &at_d1,
+                 .rule = power,
+                 .scene = &scene,
+                 .set = set,
+                 .max_scatterings = depth},
                 {.mutations = 100'000, .global_photons = 100'000, .caustic_photons = 50'000, .seed = seed}, {});
-            add_run(scene, photons, rule == PowerRule::marginal ? e.marginal : e.reciprocal);
+            add_run(scene, photons, power == PowerRule::marginal ? e.marginal : e.reciprocal);
         }
     }
     return e;
@@ -172,42 +192,46 @@ void expect_equal(const Power& chains, const Power& traced, const char* map, dou
         const double error = std::hypot(chains[r].standard_error(), traced[r].standard_error());
         EXPECT_NEAR(a, b, 4 * error + tolerance * b)
             << map << " map, region " << r << ", ratio " << a / b << " +- " << error / b;
-        EXPECT_LT(error, 0.2 * b) << "the test says nothing";
+        EXPECT_LT(error, 0.2 * b) << "the test says nothing of the " << map << " map, region " << r;
     }
 }
 
-void expect_chain_energy(const Scene& scene, int depth, const Energy& traced, bool caustics) {
-    const ChainEnergy chains = by_chains(scene, depth, 8);
+void expect_chain_energy(const Scene& scene, const Rule& rule, const Energy& traced, bool caustics) {
+    const ChainEnergy chains = by_chains(scene, rule, 8);
     expect_equal(chains.reciprocal.global, traced.global, "reciprocal, global", 0, {0, 1, 2, 3, 4, 5, 6});
     expect_equal(chains.marginal.global, traced.global, "marginal, global", 0.05, {0, 1, 2, 3, 4, 5, 6});
     // Caustics are stored where the eye sees them: the back wall is in view as a whole.
     if (caustics) expect_equal(chains.marginal.caustic, traced.caustic, "caustic", 0.08, {4});
 }
 
-void expect_emission_energy(const Scene& scene, int depth, const Energy& traced) {
+void expect_emission_energy(const Scene& scene, const Rule& rule, const Energy& traced) {
     for (const bool guided : {false, true}) {
         SCOPED_TRACE(guided ? "stored by importance" : "stored everywhere");
-        const Energy emitted = by_emission(scene, depth, guided, 12);
+        const Energy emitted = by_emission(scene, rule, guided, 12);
         expect_equal(emitted.global, traced.global, "global", 0, {0, 1, 2, 3, 4, 5, 6});
-        expect_equal(emitted.caustic, traced.caustic, "caustic", 0, {0, 1, 2, 3, 4, 5, 6});
+        expect_equal(emitted.caustic, traced.caustic, "caustic", 0, {0, 1, 2, 3, 4, 6});
+        // The wall behind the eye gets few photons where they are stored by importance.
+        if (!guided) expect_equal(emitted.caustic, traced.caustic, "caustic", 0, {5});
     }
 }
 
-void expect_light_chain_energy(const Scene& scene, int depth, const Energy& traced, float guide_radius = 0.5f) {
+void expect_light_chain_energy(const Scene& scene, const Rule& rule, const Energy& traced, float guide_radius = 0.5f,
+                               double tolerance = 0) {
     SCOPED_TRACE("chains of light sub-paths");
-    const Energy chains = by_light_chains(scene, depth, 8, guide_radius);
-    expect_equal(chains.global, traced.global, "global", 0, {0, 1, 2, 3, 4, 5, 6});
+    const Energy chains = by_light_chains(scene, rule, 8, guide_radius);
+    expect_equal(chains.global, traced.global, "global", tolerance, {0, 1, 2, 3, 4, 5, 6});
     // Where the eye sees little of them they are few.
     expect_equal(chains.caustic, traced.caustic, "caustic", 0, {2, 4});
 }
 
 /// `depth`: most scatterings of a path. Light tracing can't know how many of them the eye's side will take; where it
 /// takes more than the one at d1, as behind glass, they must be so many that the last ones carry no power.
-void expect_energy(const Scene& scene, bool caustics, int depth = 8) {
-    const Energy traced = by_light_tracing(scene, depth, 400'000);
-    expect_emission_energy(scene, depth, traced);
-    expect_chain_energy(scene, depth, traced, caustics);
-    expect_light_chain_energy(scene, depth, traced);
+void expect_energy(const Scene& scene, bool caustics, int depth = 8, const Reach* reach = nullptr) {
+    const Rule rule{depth, reach};
+    const Energy traced = by_light_tracing(scene, rule, 400'000);
+    expect_emission_energy(scene, rule, traced);
+    expect_chain_energy(scene, rule, traced, caustics);
+    expect_light_chain_energy(scene, rule, traced);
 }
 
 TEST(PhotonEnergy_EqualsLightTracing, DiffuseBox) { expect_energy(*test::diffuse_box(), false); }
@@ -216,9 +240,18 @@ TEST(PhotonEnergy_EqualsLightTracing, MirrorGlassBox) { expect_energy(*test::mir
 TEST(PhotonEnergy_EqualsLightTracing, PointLight) { expect_energy(*test::point_light_box(), true); }
 TEST(PhotonEnergy_EqualsLightTracing, GlassWall) { expect_energy(*test::glass_wall_box(), false, 60); }
 
+TEST(PhotonEnergy_EqualsLightTracing, BeyondTheReachOfGatherRays) {
+    const auto scene = test::two_rooms(0.5f);
+    const Reach reach(*scene, 8);
+    expect_energy(*scene, false, 8, &reach);
+}
+
 TEST(PhotonEnergy_EqualsLightTracing, WhereChainsOfLightPathsKnowNoImportance) {
     const auto scene = test::two_rooms(0.5f);
-    expect_light_chain_energy(*scene, 8, by_light_tracing(*scene, 8, 400'000), 0.01f);
+    const Rule rule{8};
+    // Where importance is known it is noise, and the target with it: its mean, which weights divide by, is known
+    // poorly, and the reciprocal is biased by some percent.
+    expect_light_chain_energy(*scene, rule, by_light_tracing(*scene, rule, 400'000), 0.01f, 0.05);
 }
 
 } // namespace

@@ -76,7 +76,7 @@ std::optional<Cut> Bidirectional::choose_cut(const Path& x, Rng& rng) const {
 
 std::array<int, 2> Bidirectional::insertions(const Path& x, const Cut& cut) const {
     const int kept = x.vertices() - cut.removed();
-    const int shortest = set_ == PathSet::stored ? 4 : 2; // L D D E and L S D E; L E
+    const int shortest = set_.everything ? 2 : 4; // L D D E and L S D E; L E
     const int ends = (cut.light < 0 ? 1 : 0) + (cut.eye == x.vertices() ? 1 : 0);
     // Nothing for nothing, or a pinhole for itself, is no proposal.
     const bool pinhole = cut.light == x.vertices() - 2 && !scene_.camera().has_lens();

@@ -1,0 +1,37 @@
+// Light that gather rays hardly find, stored where it is seen: the picture is that of bidirectional path tracing.
+#include "support/agreement.h"
+#include "support/test_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <iostream>
+
+namespace keyhole {
+namespace {
+
+TEST(Reach_AgreesWithBidirectionalTracing, BlockByBlock) {
+    const auto scene = test::two_rooms(0.3f);
+    Settings paths;
+    paths.method = "bdpt";
+    paths.spp = 128;
+    paths.seed = 1000;
+    const test::Blocks reference = test::render_blocks(*scene, paths, 4);
+    Settings photons;
+    photons.plan = "all"; // whether light beyond reach is worth it or not
+    photons.spp = 4;
+    photons.brightness_samples = 100'000;
+    photons.importons = 200'000;
+    photons.mutations = 200'000;
+    photons.light_paths = 200'000;
+    photons.photons = 60'000;
+    for (const char* method : {"mps", "ipm", "mlt"}) {
+        photons.method = method;
+        const test::Disagreement d = test::compare(test::render_blocks(*scene, photons, 4), reference, 0.03);
+        std::cout << method << ": ratio " << d.ratio << ", errors up to " << d.largest_error << "\n";
+        EXPECT_EQ(d.rejected, 0) << d.report << "mean brightness ratio " << d.ratio;
+        EXPECT_NEAR(d.ratio, 1, 0.08) << method;
+    }
+}
+
+} // namespace
+} // namespace keyhole

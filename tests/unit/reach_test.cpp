@@ -1,0 +1,121 @@
+// The reach of gather rays, and that every path is stored once whatever it is.
+#include "render/find_reach.h"
+#include "sampling/brightness.h"
+#include "support/test_scenes.h"
+
+#include <gtest/gtest.h>
+
+namespace keyhole {
+namespace {
+
+constexpr int kDepth = 8;
+
+/// Adds up a sample of stage one, and checks what it says of its paths.
+struct KindSink {
+    const PathSet& set;
+    double all = 0, caustic = 0;
+    int wrong = 0;
+
+    void arrival(const Vertex& /*v*/, const Vec3& /*to_eye*/, const Rgb& /*throughput*/, int /*finite*/) {}
+    void contribution(const Rgb& value, PhotonKind kind, auto&& make_path) {
+        all += luminance(value);
+        if (kind == PhotonKind::caustic) caustic += luminance(value);
+        if (set.storage_point(make_path()).kind != kind) ++wrong;
+    }
+};
+
+/// In test::two_rooms() the eye is where z > 0, the lamp beyond the partition.
+constexpr Vec3 kUp(0, 1, 0), kBack(0, 0, -1), kFront(0, 0, 1);
+
+TEST(Reach, EndsBehindANarrowSlit) {
+    const auto scene = test::two_rooms(0.01f);
+    const Reach reach(*scene, kDepth);
+    for (const float x : {-1.5f, 0.0f, 1.5f}) {
+        EXPECT_TRUE(reach.comes_to({x, 0, 2}, kUp)) << x;
+        EXPECT_FALSE(reach.comes_to({x, 0, -2}, kUp)) << x;
+        EXPECT_FALSE(reach.comes_to({x, 1, -4}, kFront)) << x;
+    }
+    EXPECT_TRUE(reach.comes_to({-1, 1, 4}, kBack)); // behind the eye
+    EXPECT_GT(light_beyond_reach(*scene, reach, kDepth), 0.5);
+}
+
+TEST(Reach, KnowsTheSidesOfAThinWall) {
+    const auto scene = test::two_rooms(0.01f);
+    const Reach reach(*scene, kDepth);
+    EXPECT_TRUE(reach.comes_to({0, 1, 0}, kFront));
+    EXPECT_FALSE(reach.comes_to({0, 1, 0}, kBack)); // the hollow of the partition
+    EXPECT_FALSE(reach.comes_to({0, 1, -0.1f}, kBack));
+}
+
+TEST(Reach, IsEverywhereInARoom) {
+    const auto scene = test::diffuse_box();
+    const Reach reach(*scene, kDepth);
+    EXPECT_LT(light_beyond_reach(*scene, reach, kDepth), 0.01);
+    EXPECT_FALSE(find_reach(*scene, {}).reach.has_value());
+}
+
+TEST(Reach, IsSoughtWhereAFinalGatherWouldBeNoise) {
+    Settings off;
+    off.reach = "off";
+    EXPECT_TRUE(find_reach(*test::two_rooms(0.01f), {}).reach.has_value());
+    EXPECT_FALSE(find_reach(*test::two_rooms(2), {}).reach.has_value());
+    EXPECT_FALSE(find_reach(*test::two_rooms(0.01f), off).reach.has_value());
+}
+
+TEST(Reach, SplitsPathsAndLosesNone) {
+    const auto scene = test::two_rooms(0.3f);
+    const Reach reach(*scene, kDepth);
+    const PathSet everywhere, within{.reach = &reach};
+    const StageOneSettings settings{.set = PathSet::all, .max_scatterings = kDepth, .samples = 20'000, .seed = 5};
+    const StageOne stage = run_stage_one(*scene, settings, {});
+    int moved = 0, kept = 0;
+    for (const Path& path : choose_seeds(*scene, settings, stage, stage.all_groups(), 2000)) {
+        const int d1 = nth_finite_from_eye(path, 1), d2 = nth_finite_from_eye(path, 2);
+        const StoragePoint before = everywhere.storage_point(path), now = within.storage_point(path);
+        if (d2 == 0) { // direct light
+            EXPECT_EQ(now.kind, before.kind);
+            continue;
+        }
+        const auto at = static_cast<std::size_t>(d2);
+        const Vec3 to_light = direction(path.x[at].point, path.x[at - 1].point);
+        if (reach.comes_to(path.x[at].point.p, facing(path.x[at].point.ng, to_light))) {
+            EXPECT_EQ(now.kind, before.kind);
+            EXPECT_EQ(now.vertex, before.vertex);
+            ++kept;
+        } else {
+            EXPECT_EQ(now.kind, PhotonKind::caustic);
+            EXPECT_EQ(now.vertex, d1);
+            ++moved;
+        }
+    }
+    EXPECT_GT(moved, 100);
+    EXPECT_GT(kept, 100);
+}
+
+TEST(Reach, BrightnessIsThatOfThePathsThatAreStored) {
+    const auto scene = test::two_rooms(0.3f);
+    const Reach reach(*scene, kDepth);
+    const auto measure = [&](const PathSet& set, Technique technique) {
+        KindSink sink{set};
+        RunningStats all, caustic;
+        for (std::uint64_t i = 0; i < 40'000; ++i) {
+            Rng rng(9, StreamPurpose::test, i);
+            const float x = static_cast<float>(rng.next()), y = static_cast<float>(rng.next());
+            sink.all = sink.caustic = 0;
+            trace_independent(technique, *scene, {x, y}, kDepth, set, rng, sink);
+            all.add(sink.all);
+            caustic.add(sink.caustic);
+        }
+        EXPECT_EQ(sink.wrong, 0);
+        return std::array{all, caustic};
+    };
+    const PathSet within{.reach = &reach};
+    const auto path = measure(within, Technique::path), both = measure(within, Technique::bidirectional);
+    for (std::size_t k = 0; k < 2; ++k) {
+        EXPECT_GT(path[k].mean(), 0);
+        EXPECT_NEAR(path[k].mean(), both[k].mean(), 4 * std::hypot(path[k].standard_error(), both[k].standard_error()));
+    }
+}
+
+} // namespace
+} // namespace keyhole

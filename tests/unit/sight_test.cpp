@@ -1,0 +1,65 @@
+// Density estimates beside walls that stand on a surface.
+#include "photon_support.h"
+#include "photonmap/sight.h"
+#include "support/test_scenes.h"
+
+#include <gtest/gtest.h>
+
+namespace keyhole {
+namespace {
+
+using namespace photon_test;
+
+constexpr Vec3 kUp(0, 1, 0);
+constexpr float kRadius = 0.2f;
+const Rectangle kFloor{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}};
+
+/// A floor, and a wall across it at `x`.
+std::unique_ptr<Scene> floor_with_wall(float x) {
+    test::SceneMaker m;
+    m.rectangle(kFloor.corner, kFloor.u, kFloor.v, make_diffuse(Rgb(0.5)));
+    m.rectangle({x, 0, 0}, {0, 1, 0}, {0, 0, 1}, make_diffuse(Rgb(0.5)));
+    return m.camera({0.5f, 0.5f, 3}, {0.5f, 0, 0}, 40).window(8, 8).build();
+}
+
+double one(const Photon&) { return 1; }
+
+/// Estimates at `position` of the density of photons that a floor with a wall at `wall` holds: 300 on its unit square,
+/// and ten times as many beyond the wall.
+RunningStats estimates(const Scene& scene, float wall, const Vec3& position) {
+    const SurfacePatches patches(scene.shapes());
+    RunningStats stats;
+    for (std::uint64_t i = 0; i < 3000; ++i) {
+        Rng rng = make_rng(i);
+        std::vector<Photon> photons =
+            throw_photons({{wall, 0, 0}, {0, 0, 1}, {1 - wall, 0, 0}}, static_cast<int>(300 * (1 - wall)), rng);
+        if (wall > 0) throw_photons({{0, 0, 0}, {0, 0, 1}, {wall, 0, 0}}, static_cast<int>(3000 * wall), rng, photons);
+        const PhotonMap map(std::move(photons));
+        const DensityEstimate e = estimate_density_in_sight(scene, map, {position, kUp}, kRadius, patches, one);
+        EXPECT_TRUE(e.obstructed);
+        stats.add(e.value.x);
+    }
+    return stats;
+}
+
+TEST(Sight, CountsNoAreaBeyondTheEndOfAFloor) {
+    const auto scene = floor_with_wall(0);
+    for (const float x : {0.001f, 0.05f, 0.15f}) {
+        SCOPED_TRACE(x);
+        expect_mean(estimates(*scene, 0, {x, 0, 0.5f}), 300);
+        expect_mean(estimates(*scene, 0, {x, 0, 0.001f}), 300); // in the corner
+    }
+}
+
+TEST(Sight, HidesWhatLiesBeyondAWall) {
+    const auto scene = floor_with_wall(0.5f);
+    for (const float x : {0.51f, 0.56f, 0.64f}) {
+        SCOPED_TRACE(x);
+        const RunningStats stats = estimates(*scene, 0.5f, {x, 0, 0.5f});
+        // The share in sight is that of 16 places.
+        EXPECT_NEAR(stats.mean(), 300, 300 * 0.12);
+    }
+}
+
+} // namespace
+} // namespace keyhole
