@@ -14,14 +14,14 @@ TEST_P(Mps_AgreesWithPathTracing, BlockByBlock) {
     scene.set_window({96, 64, 0});
     Settings paths; // from both ends: through a door those from the eye alone would be noise
     paths.method = "bdpt";
-    paths.spp = 32;
+    paths.spp = 24;
     paths.seed = 1000;
     Settings mps;
     mps.method = "mps";
     mps.spp = 4;
     mps.brightness_samples = 200'000;
     mps.importons = 200'000;
-    mps.mutations = 400'000;
+    mps.mutations = 300'000;
     mps.photons = 60'000;
     const test::Blocks reference = test::render_blocks(scene, paths, 4);
     const test::Disagreement d = test::compare(test::render_blocks(scene, mps, 4), reference, 0.03);

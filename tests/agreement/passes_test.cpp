@@ -31,10 +31,10 @@ TEST_P(Passes, ConvergeToPathTracing) {
     const auto scene = test::diffuse_box();
     Settings path;
     path.method = "path";
-    path.spp = 512;
+    path.spp = 256;
     path.seed = 1000;
     Settings passes = settings();
-    passes.passes = 40;
+    passes.passes = 24;
     const test::Disagreement d =
         test::compare(test::render_blocks(*scene, passes, 4), test::render_blocks(*scene, path, 4), 0.01);
     EXPECT_EQ(d.rejected, 0) << d.report << "mean brightness ratio " << d.ratio;
