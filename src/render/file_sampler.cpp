@@ -11,7 +11,7 @@ class FileSampler final : public PhotonSampler {
     explicit FileSampler(const SamplerContext& context) : c_(context) {}
 
     Photons sample(std::uint64_t /*seed*/, RenderStats& /*stats*/, const RunContext& /*context*/) override {
-        return load_photons(c_.settings.load_map, photon_file_key(c_.scene, c_.settings));
+        return load_photons(c_.settings.load_map, photon_file_key(c_.scene, c_.settings, c_.reach));
     }
 
   private:

@@ -69,7 +69,8 @@ std::int64_t reach_paths(const Settings& settings) {
 
 ReachFound find_reach(const Scene& scene, const Settings& settings) {
     ReachFound found;
-    if (settings.reach == "off") return found;
+    // Standard photon mapping knows nothing of where photons are worth having: few would be where light is seen.
+    if (settings.reach == "off" || settings.method == "pm") return found;
     const auto depth = static_cast<int>(settings.max_depth);
     const std::int64_t paths = reach_paths(settings);
     Reach reach(scene, depth, paths);

@@ -56,9 +56,11 @@ void check(const std::string& path, const Header& found, const PhotonFileKey& ke
         refuse(path, fmt::format("found a photon map made with max_depth={}, expected max_depth={}",
                                  found.max_scatterings, key.max_scatterings));
     if (found.reach != key.reach)
-        refuse(
-            path,
-            "found a photon map made with other values of the settings reach, plan or importons; expected those given");
+        refuse(path, found.reach == 0
+                         ? "found a photon map with nothing beyond the reach of gather rays (as pm makes it), expected "
+                           "one with that; set reach=off to use it"
+                         : "found a photon map with light beyond the reach of gather rays, expected the settings "
+                           "reach, plan and importons that it was made with");
 }
 
 void append(std::vector<char>& bytes, const void* data, std::size_t size) {
@@ -81,10 +83,8 @@ std::vector<Photon> read_photons(std::ifstream& file, const std::string& path, s
 
 } // namespace
 
-PhotonFileKey photon_file_key(const Scene& scene, const Settings& settings) {
-    const std::int64_t paths = reach_paths(settings);
-    const std::int64_t reach = settings.reach == "off" ? 0 : settings.plan == "all" ? -paths : paths;
-    return {scene_hash(scene), settings.max_depth, reach};
+PhotonFileKey photon_file_key(const Scene& scene, const Settings& settings, const Reach* reach) {
+    return {scene_hash(scene), settings.max_depth, reach != nullptr ? reach_paths(settings) : 0};
 }
 
 void save_photons(const std::string& path, const PhotonFileKey& key, const Photons& photons) {

@@ -3,6 +3,7 @@
 
 #include "core/settings.h"
 #include "photonmap/photons.h"
+#include "sampling/reach.h"
 #include "scene/scene.h"
 
 #include <cstdint>
@@ -14,12 +15,11 @@ namespace keyhole {
 struct PhotonFileKey {
     std::uint64_t scene;          ///< scene_hash()
     std::int64_t max_scatterings; ///< of the paths
-    std::int64_t reach; ///< what decides on the reach of gather rays: 0 if nothing does, or reach_paths(), negative
-                        ///< with plan=all
+    std::int64_t reach;           ///< reach_paths() of the reach that the global map stops at; 0: none
 };
 
-/// The key of maps for this scene. Traces some light.
-PhotonFileKey photon_file_key(const Scene& scene, const Settings& settings);
+/// The key of maps for this scene; `reach` is that of gather rays, null if they come everywhere. Traces some light.
+PhotonFileKey photon_file_key(const Scene& scene, const Settings& settings, const Reach* reach);
 
 /// Writes the photons of a pass, as a whole or not at all. @throws InputError if it can't be written.
 void save_photons(const std::string& path, const PhotonFileKey& key, const Photons& photons);

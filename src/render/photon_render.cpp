@@ -132,7 +132,7 @@ RenderResult render_photons(const Scene& scene, const Settings& settings, const 
         const std::uint64_t seed = seed_of_pass(settings, *pass);
         Photons photons = sampler->sample(seed, stats, context);
         if (*pass == 0 && !settings.save_map.empty())
-            save_photons(settings.save_map, photon_file_key(scene, settings), photons);
+            save_photons(settings.save_map, photon_file_key(scene, settings, c.reach), photons);
         // The photons of a pass that was cut short are good for a first picture, not for one that is there.
         if (!work.is_first() && context.stopped()) break;
         if (gather_pass(c, plan, *pass, seed, std::move(photons), *work.unit().film, luminance, stats, context))

@@ -36,6 +36,7 @@ PlanItem plan_reach(const Settings& settings, bool photons, const ReachFound& fo
     const char* name = "light beyond gather rays";
     if (settings.reach == "off") return {name, false, "the setting reach is off"};
     if (!photons) return {name, false, "no photon maps"};
+    if (settings.method == "pm") return {name, false, "standard photon mapping gathers all light"};
     return {name, found.reach.has_value(),
             percent(found.beyond) + " of the light arrives where few gather rays do" +
                 (found.reach ? ": it is stored where it is seen" : "")};

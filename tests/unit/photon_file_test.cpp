@@ -78,6 +78,12 @@ TEST_F(SavedMap, IsRefusedForAnotherDepth) {
     EXPECT_THAT(refusal(*scene_, s), HasSubstr("max_depth=24, expected max_depth=5"));
 }
 
+TEST_F(SavedMap, IsRefusedForAnotherReach) {
+    Settings s = loading();
+    s.plan = "all"; // also light beyond the reach of gather rays, which the map gathers
+    EXPECT_THAT(refusal(*scene_, s), HasSubstr("nothing beyond the reach of gather rays"));
+}
+
 TEST_F(SavedMap, IsRefusedWhereItIsNoWholeMap) {
     damage(0);
     EXPECT_THAT(refusal(*scene_, loading()), HasSubstr("found no photon map"));

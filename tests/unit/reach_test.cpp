@@ -60,6 +60,9 @@ TEST(Reach, IsSoughtWhereAFinalGatherWouldBeNoise) {
     EXPECT_TRUE(find_reach(*test::two_rooms(0.01f), {}).reach.has_value());
     EXPECT_FALSE(find_reach(*test::two_rooms(2), {}).reach.has_value());
     EXPECT_FALSE(find_reach(*test::two_rooms(0.01f), off).reach.has_value());
+    Settings standard;
+    standard.method = "pm";
+    EXPECT_FALSE(find_reach(*test::two_rooms(0.01f), standard).reach.has_value());
 }
 
 TEST(Reach, SplitsPathsAndLosesNone) {
