@@ -139,7 +139,8 @@ EmittedPhotons emit_photons(const Scene& scene, const EmissionGuide& guide, cons
     }
     context.end();
     out.arrivals = learnt.arrivals;
-    const double scale = 1 / static_cast<double>(out.paths - out.paths / kScoutEvery);
+    const std::int64_t carriers = out.paths - out.paths / kScoutEvery;
+    const double scale = 1 / static_cast<double>(carriers);
     out.bytes = stores.bytes();
     static_cast<Photons&>(out) = stores.release(scale, scale);
     return out;
