@@ -14,6 +14,11 @@ auto reflection(const Vertex& v, const Vec3& back) {
     };
 }
 
+/// The lookup of light that `v` reflects towards `back`.
+PhotonQuery query_at(const Vertex& v, const Vec3& back, float radius, const LookupOptions& options) {
+    return {{v.point.p, facing(v.point.ng, back)}, radius, options.nearest, options.shrink};
+}
+
 } // namespace
 
 GatherRays::Arrival GatherRays::trace(const Vertex& from, const Vec3& w, double pdf, int scatterings,
@@ -78,8 +83,7 @@ Rgb GatherRays::reflected(const Vertex& v, const Vec3& back, const Leg& leg, Sam
 
 Rgb GatherRays::caustic(const Vertex& v, const Vec3& back) const {
     if (maps_.caustic == nullptr) return Rgb(0.0);
-    const PhotonQuery query{
-        {v.point.p, facing(v.point.ng, back)}, options_.caustic_radius, options_.nearest, options_.shrink};
+    const PhotonQuery query = query_at(v, back, options_.caustic_radius, options_);
     const float r = scouted_radius(maps_.caustic->scouts(), query);
     return estimate_density_in_sight(scene_, maps_.caustic->carriers(), query.region, r, *maps_.patches,
                                      reflection(v, back))
@@ -88,8 +92,7 @@ Rgb GatherRays::caustic(const Vertex& v, const Vec3& back) const {
 
 Rgb GatherRays::global(const Vertex& v, const Vec3& back) const {
     if (maps_.global == nullptr) return Rgb(0.0);
-    const PhotonQuery query{
-        {v.point.p, facing(v.point.ng, back)}, options_.max_radius, options_.nearest, options_.shrink};
+    const PhotonQuery query = query_at(v, back, options_.max_radius, options_);
     const DensityEstimate e = estimate_density(*maps_.global, query, maps_.patches, reflection(v, back));
     return e.value / share_in_reach(maps_.reach, query.region, e.radius);
 }

@@ -1,5 +1,7 @@
 #include "photonmap/photon_map.h"
 
+#include "core/facet.h"
+
 #include <nanoflann.hpp>
 
 #include <algorithm>
@@ -39,14 +41,6 @@ void permute(std::span<Photon> photons, std::vector<std::uint32_t>& order) {
         photons[to] = first;
         order[to] = to;
     }
-}
-
-/// The direction of the six along the axes that is nearest to `n`, of any length: x, y, z, -x, -y, -z.
-std::size_t facet_of(const Vec3& n) {
-    int axis = 0;
-    for (int i = 1; i < 3; ++i)
-        if (std::abs(n[i]) > std::abs(n[axis])) axis = i;
-    return static_cast<std::size_t>(n[axis] < 0 ? axis + 3 : axis);
 }
 
 /// Whether normals of the facet can be accepted by a region of normal `n`. A facet's normals are up to 54.8 degrees

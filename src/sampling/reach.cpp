@@ -1,5 +1,6 @@
 #include "sampling/reach.h"
 
+#include "core/facet.h"
 #include "core/parallel.h"
 #include "sampling/eye_path_head.h"
 #include "sampling/image_lattice.h"
@@ -7,7 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 namespace keyhole {
 namespace {
@@ -47,15 +47,8 @@ std::vector<Place> trace_places(const Scene& scene, int max_scatterings, std::in
     return all;
 }
 
-/// The axis that `n` is nearest to, and its sign: 0 to 5.
-std::uint64_t side(const Vec3& n) {
-    const std::array<float, 3> a{std::abs(n.x), std::abs(n.y), std::abs(n.z)};
-    const auto axis = static_cast<std::size_t>(std::max_element(a.begin(), a.end()) - a.begin());
-    return 2 * axis + (n[static_cast<int>(axis)] < 0 ? 1 : 0);
-}
-
-std::uint64_t key(const std::array<std::int64_t, 3>& c, std::uint64_t side) {
-    std::uint64_t key = side;
+std::uint64_t key(const std::array<std::int64_t, 3>& c, std::uint64_t facet) {
+    std::uint64_t key = facet;
     for (const std::int64_t i : c)
         key = key << kBits | static_cast<std::uint64_t>(std::clamp<std::int64_t>(i, 0, (1 << kBits) - 1));
     return key;
@@ -141,7 +134,7 @@ std::uint64_t Reach::cell(const Vec3& p, const Vec3& n) const {
     // One free cell all around, so that no neighbour falls off the edge.
     return key(
         {static_cast<std::int64_t>(at.x) + 1, static_cast<std::int64_t>(at.y) + 1, static_cast<std::int64_t>(at.z) + 1},
-        side(n));
+        facet_of(n));
 }
 
 bool Reach::comes_to(const Vec3& p, const Vec3& n) const {
