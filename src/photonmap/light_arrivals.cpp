@@ -27,7 +27,6 @@ void LightBuilder::build(LightSources sources, LightArrivals& sample) const {
     TracedSubPath& walk = SubPathPair::scratch().light;
     trace_light_subpath(*scene_, most_light_vertices(rule_.max_scatterings), sources.light, &sources.roulette, walk);
     LightPast past;
-    LightPast::Place last;
     for (int i = 1; i < walk.size(); ++i) {
         const auto at = static_cast<std::size_t>(i);
         const Vertex& v = walk.vertices[at];
@@ -41,7 +40,7 @@ void LightBuilder::build(LightSources sources, LightArrivals& sample) const {
         }
         // The event at the end of the walk was never asked for.
         if (i + 1 == walk.size()) return;
-        past.meet(v, to_light, last);
+        past.meet(v, to_light);
     }
 }
 

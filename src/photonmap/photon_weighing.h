@@ -28,7 +28,7 @@ struct StorageRule {
     Kinds operator()(const SurfacePoint& v, const Vec3& to_light, int arrival, const LightPast& past) const {
         const auto reached = [&](const Vec3& p, const Vec3& n) { return reach == nullptr || reach->comes_to(p, n); };
         // Beyond reach its last scattering makes this the first one seen.
-        const bool unreached = past.last != nullptr && !reached(past.last->p, past.last->n);
+        const bool unreached = past.last && !reached(past.last->p, past.last->n);
         // From d2 light still has to be scattered at d1.
         return {arrival > 1 && arrival < max_scatterings && reached(v.p, facing(v.ng, to_light)),
                 caustics && (past.specular_only() || unreached)};

@@ -4,6 +4,7 @@
 #include "sampling/walk.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace keyhole {
 
@@ -12,29 +13,26 @@ struct LightPast {
     struct Place {
         Vec3 p, n; ///< world space; geometric normal on the side where light arrived
     };
-    const Place* last = nullptr; ///< where it was last scattered by a vertex that isn't specular; null: nowhere
-    bool specular = false;       ///< whether there was a specular one
+    std::optional<Place> last; ///< where it was last scattered by a vertex that isn't specular; none: nowhere
+    bool specular = false;     ///< whether there was a specular one
 
-    /// Light that comes from `to_light` goes on from `v` by its event. `place` is where `last` points to then.
-    void meet(const Vertex& v, const Vec3& to_light, Place& place) {
-        if (v.specular()) {
+    /// Light that comes from `to_light` goes on from `v` by its event.
+    void meet(const Vertex& v, const Vec3& to_light) {
+        if (v.specular())
             specular = true;
-        } else {
-            place = {v.point.p, facing(v.point.ng, to_light)};
-            last = &place;
-        }
+        else
+            last = {v.point.p, facing(v.point.ng, to_light)};
     }
 
     /// It met nothing but specular vertices, at least one.
-    bool specular_only() const { return specular && last == nullptr; }
+    bool specular_only() const { return specular && !last; }
 };
 
 /// Traces one light path with at most `max_scatterings` vertices after the emitter.
 ///
 /// Tells `sink`:
-///   sink.arrival(vertex, to_light, power, past): light of RGB `power` [W] arrived at `vertex`, which lies on a
-///   surface,
-///     from direction `to_light` (unit); `past`: a LightPast. False ends the path.
+///   sink.arrival(vertex, to_light, power, past): light of RGB `power` [W] arrived at `vertex`, which lies on
+///     a surface, from direction `to_light` (unit); `past`: a LightPast. False ends the path.
 /// The expected sum of power over the arrivals in a region is the flux that arrives there.
 template <class Sink> void trace_light_path(const Scene& scene, int max_scatterings, SampleSource& source, Sink& sink) {
     const auto start = sample_emitter(scene, source);
@@ -48,7 +46,6 @@ template <class Sink> void trace_light_path(const Scene& scene, int max_scatteri
     Vec3 w = ray.w;
     const double emitted = luminance(power);
     LightPast past;
-    LightPast::Place last;
     for (int scatterings = 1; scatterings <= max_scatterings && !is_black(power); ++scatterings) {
         const auto hit = next_vertex(scene, v, w);
         if (!hit || hit->point.site == Site::infinite) return;
@@ -58,7 +55,7 @@ template <class Sink> void trace_light_path(const Scene& scene, int max_scatteri
         const auto next = continue_walk(v, -w, From::light, source);
         if (!next) return;
         v.event = next->event;
-        past.meet(v, -w, last);
+        past.meet(v, -w);
         power *= next->weight;
         // Roulette keeps the power of surviving photons near that which was emitted.
         const double survive = std::min(1.0, luminance(power) / emitted);

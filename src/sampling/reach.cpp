@@ -147,7 +147,7 @@ double light_beyond_reach(const Scene& scene, const Reach& reach, int max_scatte
         double all = 0, beyond = 0;
 
         bool arrival(const Vertex& v, const Vec3& to_light, const Rgb& power, const LightPast& past) {
-            if (past.last == nullptr || !v.bsdf.traits().finite) return true;
+            if (!past.last || !v.bsdf.traits().finite) return true;
             all += luminance(power);
             if (!reach.comes_to(v.point.p, facing(v.point.ng, to_light))) beyond += luminance(power);
             return true;

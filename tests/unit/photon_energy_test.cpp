@@ -59,7 +59,7 @@ Energy by_light_tracing(const Scene& scene, const Rule& rule, std::int64_t paths
             const bool straight = arrivals == 0; // direct light, which no map holds
             const bool here = rule.reached(v.point.p, facing(v.point.ng, to_light));
             if (!straight && arrivals < depth - 1 && here) global[r] += luminance(power);
-            if (past.specular_only() || (past.last != nullptr && !rule.reached(past.last->p, past.last->n)))
+            if (past.specular_only() || (past.last && !rule.reached(past.last->p, past.last->n)))
                 caustic[r] += luminance(power);
             return ++arrivals < depth;
         }
