@@ -18,7 +18,8 @@ struct CheckOptions {
 double largest_miss(const UserPathSpec& spec, const UserPath& path) {
     double most = (Imath::V3d(path.patch.center().p) - spec.points[0].p).length();
     for (std::size_t i = 0; i < path.vertices.size(); ++i)
-        most = std::max(most, (Imath::V3d(path.vertices[i].p) - spec.points[i + 1].p).length());
+        if (!path.vertices[i].bounce)
+            most = std::max(most, (Imath::V3d(path.vertices[i].p) - spec.points[i + 1].p).length());
     return most;
 }
 

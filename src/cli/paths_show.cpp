@@ -70,7 +70,7 @@ class PathPainter {
 void draw(const Scene& scene, const UserPath& path, const Rgb8& color, Canvas& canvas) {
     PathPainter painter(scene, canvas);
     Vec3 from = path.patch.center().p;
-    for (const UserVertex& v : path.vertices) {
+    for (const UserVertex& v : path.vertices) { // bounces lie in the openings
         painter.segment(from, v.p, color);
         from = v.p;
     }

@@ -2,7 +2,7 @@
 
 #include "core/parallel.h"
 #include "photonmap/map_stores.h"
-#include "sampling/light_tracer.h"
+#include "sampling/guided_light.h"
 
 #include <algorithm>
 #include <limits>
@@ -32,13 +32,11 @@ class Collector {
     void begin(PhotonRole role, Rng& rng) {
         role_ = role;
         rng_ = &rng;
-        arrivals_ = 0;
     }
 
     bool arrival(const Vertex& v, const Vec3& to_light, const Rgb& power, const LightPast& past) {
-        ++arrivals_;
         if (!v.bsdf.traits().finite) return true;
-        const StorageRule::Kinds kinds = rule_(v.point, to_light, arrivals_, past);
+        const StorageRule::Kinds kinds = rule_(v.point, to_light, past.scatterings + 1, past);
         if (kinds.global) store(PhotonKind::global, v, to_light, power);
         if (kinds.caustic) store(PhotonKind::caustic, v, to_light, power);
         return true;
@@ -67,7 +65,6 @@ class Collector {
     StorageRule rule_;
     PhotonRole role_ = PhotonRole::carrier;
     Rng* rng_ = nullptr;
-    int arrivals_ = 0;
 };
 
 constexpr std::int64_t kBlock = 64;   // paths
@@ -81,7 +78,10 @@ Block trace_block(const Scene& scene, const EmissionOptions& options, Range path
     for (std::int64_t i = paths.begin; i < paths.end; ++i) {
         Rng rng(options.seed, StreamPurpose::emission, static_cast<std::uint64_t>(i));
         collector.begin(role_of_path(i), rng);
-        trace_light_path(scene, options.rule.max_scatterings, rng, collector);
+        if (options.user_paths != nullptr)
+            trace_guided_light_path(scene, *options.user_paths, options.rule.max_scatterings, rng, collector);
+        else
+            trace_light_path(scene, options.rule.max_scatterings, rng, collector);
     }
     return std::move(collector.block);
 }

@@ -4,6 +4,7 @@
 #include "core/progress.h"
 #include "photonmap/photon_weighing.h"
 #include "photonmap/photons.h"
+#include "sampling/light_guides.h"
 #include "scene/scene.h"
 
 #include <cstdint>
@@ -15,6 +16,7 @@ struct EmissionOptions {
     std::size_t photons; ///< ceiling for both maps together; they share it as they share the weight of what arrives
     StorageRule rule{};
     std::uint64_t seed;
+    const LightGuides* user_paths = nullptr; ///< that half of the light paths follow; null: there are none
 };
 
 struct EmittedPhotons : Photons {

@@ -12,7 +12,8 @@ namespace {
 
 class EmissionSampler final : public PhotonSampler {
   public:
-    EmissionSampler(const SamplerContext& context, bool by_importance) : c_(context), by_importance_(by_importance) {}
+    EmissionSampler(const SamplerContext& context, bool by_importance)
+        : c_(context), by_importance_(by_importance), user_paths_(context.scene, context.user_paths) {}
 
     Photons sample(std::uint64_t seed, RenderStats& stats, const RunContext& context) override {
         const MemoryPlan plan =
@@ -21,9 +22,14 @@ class EmissionSampler final : public PhotonSampler {
         if (by_importance_) guides = make_guides(c_, seed, plan.importons, stats, context);
 
         const StageClock clock(stats, "photons");
-        EmittedPhotons photons = emit_photons(
-            c_.scene, guides.both(),
-            {.paths = c_.settings.light_paths, .photons = plan.photons, .rule = c_.storage(), .seed = seed}, context);
+        EmittedPhotons photons =
+            emit_photons(c_.scene, guides.both(),
+                         {.paths = c_.settings.light_paths,
+                          .photons = plan.photons,
+                          .rule = c_.storage(),
+                          .seed = seed,
+                          .user_paths = by_importance_ && !user_paths_.empty() ? &user_paths_ : nullptr},
+                         context);
         stats.values["light paths"] = static_cast<double>(photons.paths);
         stats.values["photons before storing"] = static_cast<double>(photons.arrivals);
         stats.photon_bytes = std::max<std::uint64_t>(stats.photon_bytes, photons.bytes + stats.importon_bytes);
@@ -33,6 +39,7 @@ class EmissionSampler final : public PhotonSampler {
   private:
     SamplerContext c_;
     bool by_importance_;
+    LightGuides user_paths_; ///< not for the standard method
 };
 
 } // namespace

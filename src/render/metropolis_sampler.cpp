@@ -40,13 +40,15 @@ PowerRule power_rule(const Settings& settings) {
 class MetropolisSampler final : public PhotonSampler {
   public:
     explicit MetropolisSampler(const SamplerContext& context)
-        : c_(context), rule_(power_rule(context.settings)), set_(context.path_set()) {}
+        : c_(context), rule_(power_rule(context.settings)), set_(context.path_set()),
+          guides_(context.scene, context.user_paths, set_, static_cast<int>(context.settings.max_depth)) {}
 
     Photons sample(std::uint64_t seed, RenderStats& stats, const RunContext& context) override {
         const StageOneSettings first{.set = set_,
                                      .max_scatterings = static_cast<int>(c_.settings.max_depth),
                                      .samples = c_.settings.brightness_samples,
-                                     .seed = seed};
+                                     .seed = seed,
+                                     .guides = c_.user_paths.empty() ? nullptr : &guides_};
         const StageOne one = reports_.measure_brightness(c_.scene, first, stats, context);
         if (!(one.brightness.mean() > 0)) return {};
         const StageClock clock(stats, "photons");
@@ -97,6 +99,7 @@ class MetropolisSampler final : public PhotonSampler {
     SamplerContext c_;
     PowerRule rule_;
     PathSet set_;
+    GuidedPaths guides_;
     ChainReports reports_;
 };
 

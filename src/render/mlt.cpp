@@ -80,11 +80,13 @@ RenderResult render_mlt(const Scene& scene, const Settings& settings, const User
     RunningStats luminance; // of direct light
     const ReachFound found = find_reach(scene, settings);
     const PathSet set{.reach = found.reach ? &*found.reach : nullptr};
+    const GuidedPaths guides(scene, paths, set, static_cast<int>(settings.max_depth));
     while (const auto pass = work.take(context)) {
         const StageOneSettings first{.set = set,
                                      .max_scatterings = static_cast<int>(settings.max_depth),
                                      .samples = settings.brightness_samples,
-                                     .seed = seed_of_pass(settings, *pass)};
+                                     .seed = seed_of_pass(settings, *pass),
+                                     .guides = paths.empty() ? nullptr : &guides};
         bool whole = sample_direct(scene, settings, set, *pass, *work.unit().film, luminance, stats, context);
         if (!whole && !work.is_first()) break;
         const StageOne one = reports.measure_brightness(scene, first, stats, context);

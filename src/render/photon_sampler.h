@@ -31,7 +31,7 @@ struct SamplerContext {
     const Scene& scene;
     const Settings& settings;
     const SurfacePatches& patches;
-    const UserPaths& user_paths;  ///< for chains
+    const UserPaths& user_paths;  ///< for chains, and for emission by importance
     bool caustics = true;         ///< whether there is to be a caustic map
     const Reach* reach = nullptr; ///< of gather rays; null: they come everywhere
 

@@ -7,7 +7,7 @@
 #include "render/radii.h"
 #include "sampling/brightness.h"
 #include "sampling/chain.h"
-#include "sampling/light_tracer.h"
+#include "sampling/guided_light.h"
 #include "sampling/proposals/registry.h"
 #include "scene/ray_counter.h"
 
@@ -74,12 +74,10 @@ struct VisiblePower {
     const ImportanceGuide& caustic;
     StorageRule rule;
     Shares shares{};
-    int arrivals = 0;
 
     bool arrival(const Vertex& v, const Vec3& to_light, const Rgb& power, const LightPast& past) {
-        ++arrivals;
         if (!v.bsdf.traits().finite) return true;
-        const StorageRule::Kinds kinds = rule(v.point, to_light, arrivals, past);
+        const StorageRule::Kinds kinds = rule(v.point, to_light, past.scatterings + 1, past);
         double visible = kinds.global ? global.visible_power(v, to_light, power).value_or(0) : 0;
         if (kinds.caustic) visible += caustic.visible_power(v, to_light, power).value_or(0);
         shares[part(scene, v.point.p)] += visible;
@@ -98,12 +96,16 @@ double try_emission(const SamplerContext& c, const Scene* walls, const RunContex
     const float radius = Radii(c.scene).importance;
     const ImportanceGuide global(PhotonMap(std::move(importons.second)), radius, c.patches, walls, run);
     const ImportanceGuide caustic(PhotonMap(std::move(importons.first)), radius, c.patches, walls, run);
+    const LightGuides user_paths(c.scene, c.user_paths);
     const std::uint64_t before = rays_traced();
     std::vector<Shares> samples(static_cast<std::size_t>(extent.light_paths));
     parallel_for(extent.light_paths, [&](std::int64_t i) {
         Rng rng(seed, StreamPurpose::emission, static_cast<std::uint64_t>(i));
         VisiblePower sink{c.scene, global, caustic, c.storage()};
-        trace_light_path(c.scene, depth, rng, sink);
+        if (user_paths.empty())
+            trace_light_path(c.scene, depth, rng, sink);
+        else
+            trace_guided_light_path(c.scene, user_paths, depth, rng, sink);
         samples[static_cast<std::size_t>(i)] = sink.shares;
     });
     return relative_variance(samples) * static_cast<double>(rays_traced() - before) /
@@ -113,10 +115,13 @@ double try_emission(const SamplerContext& c, const Scene* walls, const RunContex
 double try_metropolis(const SamplerContext& c, const RunContext& run) {
     const Settings& s = c.settings;
     const Extent extent(s);
-    const StageOneSettings first{.set = {.reach = c.reach},
+    const PathSet set{.reach = c.reach};
+    const GuidedPaths guides(c.scene, c.user_paths, set, static_cast<int>(s.max_depth));
+    const StageOneSettings first{.set = set,
                                  .max_scatterings = static_cast<int>(s.max_depth),
                                  .samples = extent.brightness_samples,
-                                 .seed = static_cast<std::uint64_t>(s.seed)};
+                                 .seed = static_cast<std::uint64_t>(s.seed),
+                                 .guides = c.user_paths.empty() ? nullptr : &guides};
     const std::uint64_t start = rays_traced();
     const StageOne one = run_stage_one(c.scene, first, run);
     const std::vector<Path> seeds = choose_seeds(c.scene, first, one, one.all_groups(), extent.chains);

@@ -13,11 +13,38 @@ namespace {
 
 constexpr std::int64_t kBlock = 64 * StageOne::kGroup;
 
+/// Takes from a technique's contributions what belongs to the guides, by the balance heuristic.
+template <class Sink> struct BesideGuides {
+    Technique technique;
+    const GuidedPaths& guides;
+    Sink& sink;
+
+    void arrival(const Vertex& v, const Vec3& to_eye, const Rgb& throughput, int finite) {
+        sink.arrival(v, to_eye, throughput, finite);
+    }
+    void contribution(const Rgb& value, PhotonKind kind, auto&& make_path) {
+        const Path path = make_path();
+        const double guided = guides.density(path);
+        if (!(guided > 0)) return sink.contribution(value, kind, [&] { return path; });
+        const double own = independent_density(technique, path);
+        sink.contribution(value * (own / (own + guided)), kind, [&] { return path; });
+    }
+};
+
 void trace_sample(const Scene& scene, const StageOneSettings& settings, Technique technique, std::int64_t i,
                   auto& sink) {
     Rng rng(settings.seed, StreamPurpose::brightness, static_cast<std::uint64_t>(i));
-    trace_independent(technique, scene, lattice_image_point(settings.seed, StreamPurpose::brightness, i),
-                      settings.max_scatterings, settings.set, rng, sink);
+    const Vec2 image = lattice_image_point(settings.seed, StreamPurpose::brightness, i);
+    if (settings.guides == nullptr)
+        return trace_independent(technique, scene, image, settings.max_scatterings, settings.set, rng, sink);
+    BesideGuides<std::remove_reference_t<decltype(sink)>> rest{technique, *settings.guides, sink};
+    trace_independent(technique, scene, image, settings.max_scatterings, settings.set, rng, rest);
+    settings.guides->sample(image, rng, [&](const Path& path) {
+        const double guided = settings.guides->density(path);
+        if (!(guided > 0)) return; // rounding carried it out of cones or openings
+        sink.contribution(path.contribution / (guided + independent_density(technique, path)),
+                          settings.set.storage_point(path).kind, [&] { return path; });
+    });
 }
 
 /// Adds up one sample.
@@ -68,6 +95,8 @@ Block run_block(const Scene& scene, const StageOneSettings& settings, Technique 
 /// The technique that needs fewer rays for the same error, tried on the first samples. Rays and not seconds, so that
 /// the choice is the same on every machine; a connection costs about as much again as its ray.
 Technique choose_technique(const Scene& scene, const StageOneSettings& settings) {
+    // Who gives user paths says that light is hard to find. What they leave out a trial would see too little of.
+    if (settings.guides != nullptr) return Technique::bidirectional;
     // Caustics of emitters that no ray can hit are found from the light alone; a trial couldn't know what it missed.
     const auto is_delta = [](const auto& emitter) { return emitter->is_delta(); };
     if (scene.traits().delta && std::any_of(scene.emitters().begin(), scene.emitters().end(), is_delta))

@@ -4,6 +4,7 @@
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/statistics.h"
+#include "sampling/guided_paths.h"
 #include "sampling/independent_paths.h"
 #include "scene/scene.h"
 
@@ -17,6 +18,7 @@ struct StageOneSettings {
     int max_scatterings = 24;
     std::int64_t samples = 400'000;
     std::uint64_t seed = 1;
+    const GuidedPaths* guides = nullptr; ///< to add to every sample; null: there are none. Must outlive stage one
 };
 
 /// Result of stage one. Reproducible bit for bit on any number of threads.

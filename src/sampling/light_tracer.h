@@ -15,9 +15,11 @@ struct LightPast {
     };
     std::optional<Place> last; ///< where it was last scattered by a vertex that isn't specular; none: nowhere
     bool specular = false;     ///< whether there was a specular one
+    int scatterings = 0;       ///< how many vertices scattered it
 
     /// Light that comes from `to_light` goes on from `v` by its event.
     void meet(const Vertex& v, const Vec3& to_light) {
+        ++scatterings;
         if (v.specular())
             specular = true;
         else

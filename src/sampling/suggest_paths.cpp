@@ -30,15 +30,7 @@ int light_vertices(const Path& path) {
 
 /// Contribution over the density of a wholly new path, summed over all ways of making it from both ends.
 double hardness(const Path& path) {
-    double density = 0, from_light = 1;
-    for (std::size_t s = 0; s < path.x.size(); ++s) {
-        if (s == 0 || joinable(path.x[s - 1], path.x[s])) {
-            double from_eye = from_light;
-            for (std::size_t i = s; i < path.x.size(); ++i) from_eye *= path.x[i].pdf_from_eye;
-            density += from_eye;
-        }
-        from_light *= path.x[s].pdf_from_light;
-    }
+    const double density = independent_density(Technique::bidirectional, path);
     return density > 0 ? path.target / density : 0;
 }
 

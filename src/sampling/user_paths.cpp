@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace keyhole {
 namespace {
 
@@ -22,19 +24,24 @@ class Binder {
 
     UserPath bind() {
         const SurfacePoint light = find_light();
-        for (std::size_t i = 1; i < spec_.points.size(); ++i) i == 1 || !found_.back().specular() ? aim(i) : follow(i);
+        for (std::size_t i = 1; i < spec_.points.size(); ++i) find(i);
         if (found_.back().specular())
             fail(last(), "found a specular vertex at its end, expected a surface that scatters in all directions");
         const bool seen = is_seen();
         UserPath path{spec_.name, spec_.weight, {scene_, light, spec_.patch}, {}, seen};
         for (std::size_t i = 1; i < found_.size(); ++i)
-            path.vertices.push_back({found_[i].point.p, found_[i].event, spec_.beta[i - 1]});
+            path.vertices.push_back(
+                {found_[i].point.p, found_[i].event, spec_.beta[i - 1], portal(i), spec_.points[i].bounce});
         return path;
     }
 
   private:
     std::size_t last() const { return spec_.points.size() - 1; }
     Vec3 given(std::size_t i) const { return Vec3(spec_.points[i].p); }
+    std::optional<Portal> portal(std::size_t i) const {
+        const auto& through = spec_.points[i].through;
+        return through ? std::optional<Portal>({through->corner, through->u, through->v}) : std::nullopt;
+    }
     double miss(std::size_t i, const Vec3& p) const { return (Imath::V3d(p) - spec_.points[i].p).length(); }
 
     [[noreturn]] void fail(std::size_t i, const std::string& message) const {
@@ -42,7 +49,9 @@ class Binder {
     }
 
     SurfacePoint find_light();
+    void find(std::size_t i);
     void aim(std::size_t i);
+    void stand_in(std::size_t i);
     void follow(std::size_t i);
     void add(std::size_t i, const Vertex& vertex);
     void check_scattering(std::size_t i, const Vec3& to_eye) const;
@@ -54,8 +63,26 @@ class Binder {
     InlineVector<Vertex, kMostUserPoints + 1> found_;
 };
 
+void Binder::find(std::size_t i) {
+    if (spec_.points[i].bounce) return stand_in(i);
+    i == 1 || !found_.back().specular() ? aim(i) : follow(i);
+}
+
+/// A bounce may happen anywhere: for it stands the middle of the opening behind it, from where the next point is aimed
+/// at.
+void Binder::stand_in(std::size_t i) {
+    const auto opening = std::find_if(spec_.points.begin() + static_cast<std::ptrdiff_t>(i), spec_.points.end(),
+                                      [](const UserPathPoint& p) { return p.through.has_value(); });
+    Vertex v;
+    v.point.p = Vec3(opening->through->corner + (opening->through->u + opening->through->v) / 2);
+    v.point.site = Site::point;
+    found_.push_back(v);
+}
+
 SurfacePoint Binder::find_light() {
-    const auto nearest = nearest_emitter_point(scene_, spec_.points[0].p, spec_.points[1].p);
+    const auto next =
+        std::find_if(spec_.points.begin() + 1, spec_.points.end(), [](const UserPathPoint& p) { return !p.bounce; });
+    const auto nearest = nearest_emitter_point(scene_, spec_.points[0].p, next->p);
     if (!nearest) fail(0, "found no emitter that has a place in the scene, expected an area light or a point light");
     if (nearest->distance > tolerance_)
         fail(0, fmt::format("found the nearest emitter {} away, at {}, expected one within {}", text(nearest->distance),
@@ -69,9 +96,13 @@ void Binder::aim(std::size_t i) {
     const Vertex& from = found_.back();
     if (miss(i, from.point.p) <= 1e-6 * (scene_.upper() - scene_.lower()).length())
         fail(i, fmt::format("found the same place as point {}, expected another one", i));
-    if (!(spec_.beta[i - 1] > 0))
+    const auto opening = portal(i);
+    if (!opening && !(spec_.beta[i - 1] > 0))
         fail(i, fmt::format("found a cone of no width for the segment from point {}, expected beta above 0", i));
     const Vec3 w = (given(i) - from.point.p).normalized();
+    const bool anywhere = spec_.points[i - 1].bounce;
+    if (opening && !anywhere && !(opening->density(from.point.p, w) > 0))
+        fail(i, fmt::format("found that the segment from point {} passes beside its opening", i));
     if (i == 1 && is_black(scene_.emitter(from.point.emitter).radiance(from.point, w)))
         fail(0, "found an emitter that sends no light towards point 2");
     const auto hit = next_vertex(scene_, from, w);
@@ -92,6 +123,9 @@ void Binder::aim(std::size_t i) {
 /// Goes from a mirror or glass where it sends the light: of its lobes, by the one that comes nearest to the point.
 void Binder::follow(std::size_t i) {
     Vertex& from = found_.back();
+    if (portal(i))
+        fail(i,
+             fmt::format("found an opening behind the specular vertex at point {}, where light is not free to aim", i));
     const Vec3 back = direction(from.point, found_[found_.size() - 2].point);
     std::optional<Vertex> best;
     Event event = from.event;
@@ -114,7 +148,7 @@ void Binder::follow(std::size_t i) {
 }
 
 void Binder::add(std::size_t i, const Vertex& vertex) {
-    if (i > 1) check_scattering(i - 1, direction(found_.back().point, vertex.point));
+    if (i > 1 && !spec_.points[i - 1].bounce) check_scattering(i - 1, direction(found_.back().point, vertex.point));
     found_.push_back(vertex);
     Vertex& v = found_.back();
     const BsdfTraits traits = v.bsdf.traits();
@@ -144,7 +178,7 @@ bool Binder::is_seen() const {
 
 std::string UserPath::signature() const {
     std::string s = "L";
-    for (const UserVertex& v : vertices) s += is_specular(v.event) ? " S" : " D";
+    for (const UserVertex& v : vertices) s += v.bounce ? " *" : is_specular(v.event) ? " S" : " D";
     return s;
 }
 

@@ -12,23 +12,6 @@
 namespace keyhole {
 namespace {
 
-constexpr float kSlit = 1.0f;
-
-struct GuidedScene {
-    const char* name;
-    std::unique_ptr<Scene> (*make)();
-    UserPathFile (*paths)(const Scene&);
-};
-
-const GuidedScene kScenes[] = {
-    {"DiffuseBox", test::diffuse_box, test::diffuse_box_paths},
-    {"MirrorGlassBox", [] { return test::mirror_glass_box(); }, test::mirror_glass_box_paths},
-    {"ThinLens", [] { return test::mirror_glass_box(0.1f); }, test::mirror_glass_box_paths},
-    {"PointLight", test::point_light_box, test::point_light_box_paths},
-    {"TwoRooms", [] { return test::two_rooms(kSlit); },
-     [](const Scene& scene) { return test::two_rooms_paths(scene, kSlit); }},
-};
-
 /// User paths with probability `share`, BD otherwise.
 Mixture<Path> guided(const ProposalContext& context, const UserPaths& paths, double share) {
     Settings settings;
@@ -49,8 +32,8 @@ class UserPaths_LeaveTheTargetAlone : public testing::TestWithParam<std::tuple<s
 
 TEST_P(UserPaths_LeaveTheTargetAlone, AtShare) {
     const auto [index, share] = GetParam();
-    const auto scene = kScenes[index].make();
-    const UserPaths paths = bind_user_paths(*scene, kScenes[index].paths(*scene));
+    const auto scene = test::guided_scenes()[index].make();
+    const UserPaths paths = bind_user_paths(*scene, test::guided_scenes()[index].paths(*scene));
     const auto mixture = guided({scene.get(), PathSet::stored, 8}, paths, share);
     const test::Invariance result = test::measure_invariance(*scene, mixture, PathSet::stored, 120'000, 23);
     EXPECT_GT(accepted(result.ledger, share < 1 ? 1 : 0), 10u) << result.report();
@@ -58,10 +41,10 @@ TEST_P(UserPaths_LeaveTheTargetAlone, AtShare) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Shares, UserPaths_LeaveTheTargetAlone,
-                         testing::Combine(testing::Range<std::size_t>(0, std::size(kScenes)),
+                         testing::Combine(testing::Range<std::size_t>(0, test::guided_scenes().size()),
                                           testing::Values(0.5, 1.0)),
                          [](const auto& info) {
-                             return std::string(kScenes[std::get<0>(info.param)].name) +
+                             return std::string(test::guided_scenes()[std::get<0>(info.param)].name) +
                                     (std::get<1>(info.param) < 1 ? "_Half" : "_Alone");
                          });
 

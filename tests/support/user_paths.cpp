@@ -2,6 +2,7 @@
 
 #include "sampling/light_ray.h"
 #include "sampling/nearest_emitter.h"
+#include "support/test_scenes.h"
 
 namespace keyhole::test {
 UserPathSpec user_path(const std::string& name, const std::vector<Vec3>& points, double beta) {
@@ -59,6 +60,39 @@ UserPathFile two_rooms_paths(const Scene& /*scene*/, float slit) {
     const Vec3 floor(0.5f, 0, -2), beyond = floor + (door - floor) * ((2 - floor.x) / (door.x - floor.x));
     return {{user_path("floor, through the slit", {light, floor, beyond}, 0.9),
              user_path("wall, through the slit", {light, {-2, 1, -2}, {2, 1.2f, 0.27f}}, 0.8)}};
+}
+
+UserPathFile opening_paths(const Scene& /*scene*/, float slit, int most_bounces) {
+    const Vec3 light(-1.2f, 2.45f, -2.2f), beyond(1.2f + slit / 2, 1.2f, 4);
+    const Opening all{{1.2, 0, -0.05}, {slit, 0, 0}, {0, 2.5, 0}};
+    std::vector<UserPathSpec> specs;
+    for (int bounces = 1; bounces <= most_bounces; ++bounces) {
+        specs.push_back(user_path(std::to_string(bounces) + " bounces", {light, beyond}, 0.9));
+        UserPathSpec& spec = specs.back();
+        spec.points[1].through = all;
+        for (int i = 0; i < bounces; ++i) {
+            spec.points.insert(spec.points.begin() + 1, UserPathPoint{.bounce = true});
+            spec.beta.push_back(0);
+        }
+    }
+    const Vec3 floor(0.5f, 0, -2), middle(1.2f + slit / 2, 1, -0.05f);
+    specs.push_back(
+        user_path("floor", {light, floor, floor + (middle - floor) * ((2 - floor.x) / (middle.x - floor.x))}, 0.9));
+    specs.back().points[2].through = Opening{{1.2 + 0.1 * slit, 0.1, -0.05}, {0.8 * slit, 0.4, 0}, {0, 1.5, 0}};
+    return {specs};
+}
+
+std::span<const GuidedScene> guided_scenes() {
+    static constexpr float kSlit = 1;
+    static const GuidedScene scenes[] = {
+        {"DiffuseBox", diffuse_box, diffuse_box_paths},
+        {"MirrorGlassBox", [] { return mirror_glass_box(); }, mirror_glass_box_paths},
+        {"ThinLens", [] { return mirror_glass_box(0.1f); }, mirror_glass_box_paths},
+        {"PointLight", point_light_box, point_light_box_paths},
+        {"TwoRooms", [] { return two_rooms(kSlit); }, [](const Scene& scene) { return two_rooms_paths(scene, kSlit); }},
+        {"Opening", [] { return two_rooms(kSlit); }, [](const Scene& scene) { return opening_paths(scene, kSlit); }},
+    };
+    return scenes;
 }
 
 } // namespace keyhole::test

@@ -3,6 +3,8 @@
 
 #include "sampling/user_paths.h"
 
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,5 +26,15 @@ UserPathFile mirror_glass_box_paths(const Scene& scene);
 UserPathFile point_light_box_paths(const Scene& scene);
 /// For two_rooms(): through the slit.
 UserPathFile two_rooms_paths(const Scene& scene, float slit);
+/// The same by openings: behind one bounce or more, and behind a point through part of the slit, askew.
+UserPathFile opening_paths(const Scene& scene, float slit, int most_bounces = 2);
+
+/// A scene with user paths.
+struct GuidedScene {
+    const char* name;
+    std::unique_ptr<Scene> (*make)();
+    UserPathFile (*paths)(const Scene&);
+};
+std::span<const GuidedScene> guided_scenes();
 
 } // namespace keyhole::test

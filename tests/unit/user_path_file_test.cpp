@@ -16,6 +16,8 @@ using testing::StartsWith;
 
 const std::string kGood = "points: [[0, 1.95, 0], [0.6, 0, -0.7], [-1, 1, 0.5]]";
 
+const std::string kOpening = "{through: {corner: [0, 0.5, -0.2], u: [0.5, 0, 0], v: [0, 0.5, 0]}}";
+
 /// A mistake in a file, and part of the message that it must give.
 struct Mistake {
     std::string text, message;
@@ -81,7 +83,20 @@ std::vector<Mistake> unreadable() {
         in_point("[0, '1', 0]", "found the string '1', expected a coordinate"),
         in_point("[0, .inf, 0]", "expected a coordinate"),
         in_point("[0, 1e30, 0]", "a coordinate"),
-        in_point("{x: 0}", "expected a list of 3 numbers"),
+        in_point("{x: 0}", "unknown key 'x' in what lies between two points"),
+        in_point("{through: 5}", "expected a map that describes an opening"),
+        in_point("{through: {corner: [0, 0, 0], u: [1, 0, 0]}}", "found an opening without 'v'"),
+        in_point("{through: {corner: [0, 0, 0], u: [1, 0, 0], v: [2, 0, 0]}}", "neither zero nor parallel"),
+        in_point("{through: {corner: [0, 0, 0], u: [1, 0, 0], v: [0, 0, 0]}}", "neither zero nor parallel"),
+        in_point(kOpening + ", " + kOpening, "expected an opening between two points"),
+        in_path("points: [" + kOpening + ", [0, 1.95, 0], [-1, 1, 0.5]]", "expected an opening between two points"),
+        in_path("points: [[0, 1.95, 0], [0.6, 0, -0.7], " + kOpening + "]", "expected a point behind the last opening"),
+        in_point("{bounces: 1}", "expected an opening behind bounces"),
+        in_point("{bounces: 0}, " + kOpening, "a number of bounces"),
+        in_point("{bounces: 99}, " + kOpening, "a number of bounces"),
+        in_point("{bounces: [2, 1]}, " + kOpening, "the least and the largest number of bounces"),
+        in_point("{bounces: [1, 2.5]}, " + kOpening, "the least and the largest number of bounces"),
+        in_point("[0.6, 0, -0.7], {bounces: 2}, " + kOpening, "expected bounces behind the first point"),
     };
 }
 
@@ -97,6 +112,10 @@ std::vector<Mistake> unusable() {
         in_scene(light + "[1, 0.5, 0.2]]", "point 2: found a specular vertex at its end"),
         in_scene(light + "[1, 0.5, 0.2], [0.6, 0, -0.7]]", "point 3: found that the specular vertex at point 2 sends"),
         in_scene("beta: [5, 0], " + light + "[0.6, 0, -0.7], [-1, 1, 0.5]]", "point 3: found a cone of no width"),
+        in_scene(light + "[0.6, 0, -0.7], " + kOpening + ", [1, 1.9, -1]]",
+                 "point 3: found that the segment from point 2 "),
+        in_scene(light + "[1, 0.5, 0.2], " + kOpening + ", [-1, 1, 0.5]]",
+                 "point 3: found an opening behind the specular"),
         in_scene("tolerance: 1e-4, points: [[0, 1.951, 0], [0.6, 0, -0.7]]", "expected one within 0.0001 m"),
         in_scene(light + "[0.6, 0, -0.5], [0, 1.95, 0], [0.6, 0, 0]]", "point 3: found a surface that scatters no"),
     };
@@ -156,6 +175,9 @@ TEST(UserPathFile, WhatIsWrittenIsReadAgain) {
     const ScratchDirectory scratch;
     UserPathFile out{{test::user_path("a: \"b\"", {{0, 1.95f, 0}, {0.5f, 0, 0.5f}}, 0.1),
                       test::user_path("0.5", {{0, 1.95f, 0}, {0.5f, 0, 0.5f}, {-1, 1, 0.5f}}, 0.3)}};
+    out.paths[1].points[1].through = Opening{{0, 0.5, -0.2}, {0.5, 0, 0}, {0, 0.5, 0}};
+    out.paths[1].points.insert(out.paths[1].points.begin() + 1, 2, UserPathPoint{.bounce = true});
+    out.paths[1].beta.insert(out.paths[1].beta.begin(), 2, kDefaultBeta);
     out.paths[1].weight = 2.5;
     out.paths[1].patch = 0.25;
     const UserPathFile in = load_user_paths(scratch.write("p.yaml", user_paths_text(out, "two\nlines")));
@@ -165,9 +187,17 @@ TEST(UserPathFile, WhatIsWrittenIsReadAgain) {
         EXPECT_EQ(in.paths[i].weight, out.paths[i].weight);
         EXPECT_EQ(in.paths[i].patch, out.paths[i].patch);
         ASSERT_EQ(in.paths[i].points.size(), out.paths[i].points.size());
-        for (std::size_t k = 0; k < in.paths[i].points.size(); ++k)
-            EXPECT_LT((in.paths[i].points[k].p - out.paths[i].points[k].p).length(), 1e-6);
-        EXPECT_NEAR(in.paths[i].beta[0], out.paths[i].beta[0], 1e-3);
+        for (std::size_t k = 0; k < in.paths[i].points.size(); ++k) {
+            const UserPathPoint &a = in.paths[i].points[k], &b = out.paths[i].points[k];
+            EXPECT_EQ(a.bounce, b.bounce);
+            EXPECT_EQ(a.through.has_value(), b.through.has_value());
+            if (a.through && b.through) {
+                EXPECT_LT((a.through->v - b.through->v).length(), 1e-6);
+            }
+            EXPECT_TRUE(a.bounce || (a.p - b.p).length() < 1e-6);
+        }
+        ASSERT_EQ(in.paths[i].beta.size(), out.paths[i].beta.size());
+        EXPECT_NEAR(in.paths[i].beta.back(), out.paths[i].beta.back(), 1e-3);
     }
 }
 
@@ -180,6 +210,23 @@ TEST(UserPaths, PointsSnapToTheSurfacesThatLightMeets) {
     EXPECT_NEAR(path.vertices.at(1).p.x, -1, 1e-6);
     EXPECT_EQ(path.signature(), "L D D");
     EXPECT_TRUE(path.seen);
+}
+
+TEST(UserPathFile, ARangeOfBouncesBecomesAPathForEachNumber) {
+    const ScratchDirectory scratch;
+    const UserPathFile file = load_user_paths(
+        scratch.write("p.yaml", "paths: [{name: door, weight: 2, points: [[0, 1.95, 0], {bounces: [1, 3]}, " +
+                                    kOpening + ", [0.3, 0, 0]]}]"));
+    ASSERT_EQ(file.paths.size(), 3u);
+    double weight = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(file.paths[i].name, "door, " + std::to_string(i + 1) + " bounces");
+        EXPECT_EQ(file.paths[i].points.size(), i + 3);
+        weight += file.paths[i].weight;
+    }
+    EXPECT_NEAR(weight, 2, 1e-9);
+    const auto scene = test::diffuse_box();
+    EXPECT_EQ(bind_user_path(*scene, file.paths[1]).signature(), "L * * D");
 }
 
 TEST(UserPaths, EventsAtSpecularVerticesFollowFromThePointAfter) {

@@ -2,13 +2,11 @@
 // some vertex to the eye; or to a new eye, if it sees the end of the user path. Fan, Chenney, Lai 2005, section 5.1,
 // join it to d1 alone: then only paths of one length find back.
 //
-// Each direction lies in a cone about the one from the new vertex to the user's next point; specular vertices follow
-// the user path's events. x0 lies in a patch of the emitter around the user's: a fixed x0 would be a point mass against
-// the other proposals' densities. The way back is rarely a user path's: mixtures judge UP together with BD.
+// A fixed x0 would be a point mass against the other proposals' densities: it lies in a patch of the emitter. The way
+// back is rarely a user path's: mixtures judge UP together with BD.
+#include "sampling/guided_subpath.h"
 #include "sampling/proposals/cut.h"
-#include "sampling/proposals/edit.h"
 #include "sampling/proposals/registry.h"
-#include "sampling/proposals/steps.h"
 
 #include <cstdlib>
 
@@ -18,14 +16,8 @@ namespace {
 class UserPathProposal final : public Proposal<Path> {
   public:
     UserPathProposal(const ProposalContext& context, const UserPath& path)
-        : scene_(*context.scene), set_(context.set), max_vertices_(context.max_scatterings + 2), path_(path),
-          label_("user path: " + path.name) {
-        events_.x.push_back({});
-        for (const UserVertex& v : path.vertices) {
-            events_.x.push_back({});
-            events_.x.back().event = v.event;
-        }
-    }
+        : scene_(*context.scene), set_(context.set), max_vertices_(context.max_scatterings + 2),
+          guide_(*context.scene, path), label_("user path: " + path.name) {}
 
     std::string_view name() const override { return label_; }
     double suitability(const Path& x) const override { return total_weight(x) > 0 ? 1 : 0; }
@@ -37,8 +29,8 @@ class UserPathProposal final : public Proposal<Path> {
     /// replaced as are traced, so that the length of the path stays.
     double join_weight(const Path& x, int m) const {
         const bool new_eye = m == x.vertices();
-        if (new_eye ? !path_.seen : x.x[static_cast<std::size_t>(m)].specular()) return 0;
-        return 1.0 / (1 + std::abs((new_eye ? m - 1 : m) - events_.vertices()));
+        if (new_eye ? !guide_.user_path().seen : x.x[static_cast<std::size_t>(m)].specular()) return 0;
+        return 1.0 / (1 + std::abs((new_eye ? m - 1 : m) - guide_.vertices()));
     }
     template <class Visit> void for_each_join(const Path& x, Visit&& visit) const {
         for (int m = 1; m <= x.vertices(); ++m)
@@ -60,53 +52,13 @@ class UserPathProposal final : public Proposal<Path> {
         });
         return chosen;
     }
-    /// Unit direction from a vertex towards user vertex i.
-    Vec3 axis(const Vertex& from, int i) const {
-        return (path_.vertices[static_cast<std::size_t>(i) - 1].p - from.point.p).normalized();
-    }
-    Cone cone(int i) const { return Cone(path_.vertices[static_cast<std::size_t>(i) - 1].beta); }
-
-    /// Traces a sub-path from the light along the user path.
-    bool trace(SubPath& light, Rng& rng, Failure& why) const;
-    /// Density with which trace() makes the first vertices of y.
-    double light_density(const Path& y) const;
 
     const Scene& scene_;
     PathSet set_;
     int max_vertices_;
-    UserPath path_;
+    GuidedSubPath guide_;
     std::string label_;
-    Path events_; ///< only the events of its vertices count; x0 and those of path_
 };
-
-bool UserPathProposal::trace(SubPath& light, Rng& rng, Failure& why) const {
-    light.push_back(make_vertex(path_.patch.sample(rng)));
-    const int last = events_.vertices() - 1;
-    for (int i = 0; i < last;) {
-        const int next = next_finite(events_, i, +1);
-        const Vec3 w = cone(i + 1).sample(axis(light.back(), i + 1), rng);
-        if (!retrace(scene_, light, light.back().point, w, events_, i + 1, next, why)) return false;
-        i = next;
-    }
-    return true;
-}
-
-double UserPathProposal::light_density(const Path& y) const {
-    double density = path_.patch.pdf(y.x[0].point);
-    const int last = events_.vertices() - 1;
-    for (int i = 1; i <= last && density > 0; ++i) {
-        const auto k = static_cast<std::size_t>(i);
-        if (y.x[k].event != events_.x[k].event) return 0;
-    }
-    for (int i = 0; i < last && density > 0;) {
-        const int next = next_finite(events_, i, +1);
-        const Vertex &from = y.x[static_cast<std::size_t>(i)], &to = y.x[static_cast<std::size_t>(i) + 1];
-        const double w = cone(i + 1).density(axis(from, i + 1), leaving_direction(y, i, +1));
-        density *= w > 0 ? retrace_density(y, solid_angle_to_area(w, from.point, to.point), i + 1, next) : 0.0;
-        i = next;
-    }
-    return density;
-}
 
 std::optional<Path> UserPathProposal::propose(const Path& x, Rng& rng, Failure& why) const {
     const int kept = choose_join(x, rng);
@@ -115,8 +67,8 @@ std::optional<Path> UserPathProposal::propose(const Path& x, Rng& rng, Failure& 
     Vec2 image = x.image;
     if (new_eye) eye.push_back(sample_eye(scene_, rng));
     for (int i = x.vertices() - 1; i >= kept; --i) eye.push_back(x.x[static_cast<std::size_t>(i)]);
-    if (events_.vertices() + static_cast<int>(eye.size()) > max_vertices_) return why = Failure::length, std::nullopt;
-    if (!trace(light, rng, why)) return std::nullopt;
+    if (guide_.vertices() + static_cast<int>(eye.size()) > max_vertices_) return why = Failure::length, std::nullopt;
+    if (!guide_.trace(light, rng, why)) return std::nullopt;
     if (new_eye) {
         const auto p = scene_.camera().image_point(eye[0].point, direction(eye[0].point, light.back().point));
         if (!p) return why = Failure::outside_image, std::nullopt;
@@ -124,19 +76,19 @@ std::optional<Path> UserPathProposal::propose(const Path& x, Rng& rng, Failure& 
     }
     auto y = join(scene_, set_, light, eye, image, why);
     // What rounding carried out of the cones can't be proposed, if it can't be found again.
-    if (y && y->target > 0 && !(light_density(*y) > 0)) return why = Failure::signature, std::nullopt;
+    if (y && y->target > 0 && !(guide_.density(*y) > 0)) return why = Failure::signature, std::nullopt;
     return y;
 }
 
 double UserPathProposal::transition_density(const Path& x, const Path& y) const {
-    const int n = x.vertices(), kept = y.vertices() - events_.vertices(); // on y's side of the eye
-    if (kept < 1 || kept > n - 1 || path_.patch.pdf(y.x[0].point) == 0) return 0;
+    const int n = x.vertices(), kept = y.vertices() - guide_.vertices(); // on y's side of the eye
+    if (kept < 1 || kept > n - 1 || guide_.user_path().patch.pdf(y.x[0].point) == 0) return 0;
     const bool new_eye = kept == 1;
     const int join = new_eye ? n : n - kept;
     const double weight = join_weight(x, join);
     if (weight == 0 || !(cut_between(scene_, x, y) == Cut{-1, join})) return 0;
     const double side = weight / total_weight(x) * (new_eye ? y.x[y.x.size() - 1].pdf_from_eye : 1.0);
-    return side * light_density(y);
+    return side * guide_.density(y);
 }
 
 } // namespace

@@ -10,10 +10,17 @@
 
 namespace keyhole {
 
+/// A parallelogram in the air, world space [m].
+struct Opening {
+    Imath::V3d corner, u, v; ///< a corner, and the edges that leave it
+};
+
 /// A point of a user path as it is given.
 struct UserPathPoint {
-    Imath::V3d p; ///< world space [m]
+    Imath::V3d p{0, 0, 0}; ///< world space [m]
     FilePosition where{};
+    std::optional<Opening> through{}; ///< what the segment towards the point passes
+    bool bounce = false;              ///< no point: light is scattered anywhere. An opening follows the last of several
 };
 
 /// A user path as it is given.
@@ -21,7 +28,8 @@ struct UserPathSpec {
     std::string name;
     double weight = 1;
     std::vector<UserPathPoint> points; ///< from the light on; at least two
-    std::vector<double> beta;          ///< half-angle of the cone of each segment [rad]; one fewer than points
+    std::vector<double> beta;          ///< half-angle of the cone of each segment [rad]; one fewer than points. Of no
+                                       ///< meaning for segments through an opening
     std::optional<double> patch; ///< radius of the part of the emitter that candidates begin on [m]; none: all of it
     std::optional<double> tolerance; ///< how far a point may be from its surface [m]
     FilePosition where{};
@@ -36,7 +44,7 @@ constexpr double kDefaultBeta = 5 * kPi / 180;
 /// Most points of a path: as many as a path of the renderer can have, without its eye.
 constexpr std::size_t kMostUserPoints = 31;
 
-/// Reads a file of user paths; there is at least one.
+/// Reads a file of user paths; there is at least one. An entry for several numbers of bounces becomes a path for each.
 /// @throws InputError "file:line:column: what was found, what was expected" for every mistake in the file.
 UserPathFile load_user_paths(const std::string& path);
 

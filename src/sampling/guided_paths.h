@@ -1,0 +1,34 @@
+// Independent paths along user paths: what stage one adds to its own technique where there are some, so that B_eye and
+// the seeds of the chains don't wait for chance to find the passage that a person has shown.
+#pragma once
+
+#include "sampling/light_guides.h"
+
+#include <functional>
+
+namespace keyhole {
+
+/// Joins every vertex of a sub-path from the light, from the end of a user path on, to every one of a sub-path from the
+/// eye, and shares what it finds with another
+/// technique by the balance heuristic (Veach 1997, section 9.2.2): one sample of either.
+class GuidedPaths {
+  public:
+    /// `set`: the paths to be found, of at most `max_scatterings`. The scene and the set's reach must outlive it.
+    GuidedPaths(const Scene& scene, const UserPaths& paths, PathSet set, int max_scatterings);
+
+    /// Density with which sample() makes the measured path y, by all user paths together, in the convention of
+    /// measure.h.
+    double density(const Path& y) const;
+
+    /// One sample: a sub-path along one of the user paths, and one from the eye through window point `image`; every
+    /// join of the two that carries light is told to `found`, measured. Each such path has density().
+    void sample(const Vec2& image, Rng& rng, const std::function<void(const Path&)>& found) const;
+
+  private:
+    const Scene* scene_;
+    PathSet set_;
+    int max_scatterings_;
+    LightGuides guides_;
+};
+
+} // namespace keyhole

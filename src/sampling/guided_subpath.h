@@ -1,0 +1,36 @@
+// The light's side of a path, traced along one that a person gave: what user-path proposals begin with, and stage one's
+// independent paths where there are user paths.
+#pragma once
+
+#include "sampling/proposals/edit.h"
+#include "sampling/user_paths.h"
+
+namespace keyhole {
+
+/// Sub-paths from the light along a user path. Each direction lies in a cone about the one from the new vertex to the
+/// user's next point, or leads through a portal, or is that of light which is emitted or scattered; specular vertices
+/// follow the user path's events. x0 lies in a patch of the emitter around the user's. The scene must outlive it.
+class GuidedSubPath {
+  public:
+    GuidedSubPath(const Scene& scene, const UserPath& path);
+
+    const UserPath& user_path() const { return path_; }
+    /// Vertices of every sub-path, that on the light included.
+    int vertices() const { return events_.vertices(); }
+    /// Traces one into `light`. False where light doesn't get along, for the reason in `why`.
+    bool trace(SubPath& light, Rng& rng, Failure& why) const;
+    /// Density with which trace() makes the first vertices of y, in the convention of measure.h.
+    double density(const Path& y) const;
+
+  private:
+    const UserVertex& user_vertex(int i) const { return path_.vertices[static_cast<std::size_t>(i) - 1]; }
+    bool bounce(SubPath& light, Rng& rng, Failure& why) const;
+    Vec3 sample_direction(const Vertex& from, int i, Rng& rng) const;
+    double direction_density(const Vertex& from, const Vec3& w, int i) const;
+
+    const Scene* scene_;
+    UserPath path_;
+    Path events_; ///< only the events of its vertices count; x0 and those of path_
+};
+
+} // namespace keyhole

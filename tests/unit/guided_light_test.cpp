@@ -1,0 +1,131 @@
+// Independent paths along user paths: they change what is found often, and nothing of what is found on average.
+#include "core/parallel.h"
+#include "core/statistics.h"
+#include "sampling/brightness.h"
+#include "sampling/guided_light.h"
+#include "support/test_scenes.h"
+#include "support/user_paths.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+namespace keyhole {
+namespace {
+
+class AlongUserPaths : public testing::TestWithParam<std::size_t> {
+  protected:
+    std::unique_ptr<Scene> scene = test::guided_scenes()[GetParam()].make();
+    UserPaths paths = bind_user_paths(*scene, test::guided_scenes()[GetParam()].paths(*scene));
+};
+
+/// What two estimates of one number differ by, in standard errors.
+double z(const RunningStats& a, const RunningStats& b) {
+    return (a.mean() - b.mean()) / std::hypot(a.standard_error(), b.standard_error());
+}
+
+constexpr int kDepth = 8;
+constexpr std::size_t kParts = 16; // of the scene, along its diagonal; twice: before and after a specular vertex
+
+/// Power that arrives in parts of the scene.
+struct Arrivals {
+    const Scene& scene;
+    std::array<double, 2 * kParts> power{};
+
+    bool arrival(const Vertex& v, const Vec3&, const Rgb& carried, const LightPast& past) {
+        const Vec3 size = scene.upper() - scene.lower(), p = v.point.p - scene.lower();
+        const double along = (p.x / size.x + p.y / size.y + p.z / size.z) / 3;
+        const auto part = std::min(kParts - 1, static_cast<std::size_t>(along * kParts));
+        power[part + (past.specular ? kParts : 0)] += luminance(carried);
+        return past.scatterings + 1 < kDepth;
+    }
+};
+
+using PowerByPart = std::array<RunningStats, 2 * kParts>;
+
+PowerByPart trace(const Scene& scene, std::int64_t count, std::uint64_t seed, auto&& trace_one) {
+    PowerByPart all;
+    for (std::int64_t i = 0; i < count; ++i) {
+        Rng rng(seed, StreamPurpose::test, static_cast<std::uint64_t>(i));
+        Arrivals sink{scene};
+        trace_one(rng, sink);
+        for (std::size_t k = 0; k < all.size(); ++k) all[k].add(sink.power[k]);
+    }
+    return all;
+}
+
+TEST_P(AlongUserPaths, LightArrivesWithThePowerThatItHasWithoutThem) {
+    const LightGuides guides(*scene, paths);
+    const PowerByPart free =
+        trace(*scene, 400'000, 1, [&](Rng& rng, Arrivals& sink) { trace_light_path(*scene, kDepth, rng, sink); });
+    int led = 0;
+    const PowerByPart guided = trace(*scene, 400'000, 2, [&](Rng& rng, Arrivals& sink) {
+        trace_guided_light_path(*scene, guides, kDepth, rng, sink);
+    });
+    for (std::size_t k = 0; k < free.size(); ++k) {
+        if (!(free[k].mean() > 20 * free[k].standard_error())) continue; // too little light to say
+        EXPECT_LT(std::abs(z(free[k], guided[k])), 4.5)
+            << "part " << k << ", ratio " << guided[k].mean() / free[k].mean();
+        ++led;
+    }
+    EXPECT_GE(led, 8);
+}
+
+TEST_P(AlongUserPaths, StageOneFindsTheSameBrightness) {
+    const GuidedPaths guides(*scene, paths, PathSet::stored, kDepth);
+    StageOneSettings settings{.max_scatterings = kDepth, .samples = 150'000, .seed = 3};
+    const StageOne without = run_stage_one(*scene, settings, {});
+    settings.seed = 4;
+    settings.guides = &guides;
+    const StageOne with = run_stage_one(*scene, settings, {});
+    EXPECT_LT(std::abs(z(with.brightness, without.brightness)), 4)
+        << with.brightness.mean() / without.brightness.mean();
+    if (without.caustic.mean() > 20 * without.caustic.standard_error()) {
+        EXPECT_LT(std::abs(z(with.caustic, without.caustic)), 4) << with.caustic.mean() / without.caustic.mean();
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, AlongUserPaths, testing::Range<std::size_t>(0, test::guided_scenes().size()),
+                         [](const auto& info) { return test::guided_scenes()[info.param].name; });
+
+/// Through a slit of 3 cm in a wall of 10, by which a free path goes once in some hundred times.
+TEST(ThroughASlit, UserPathsFindLightThatIsHardToFind) {
+    constexpr float kSlit = 0.03f;
+    const auto scene = test::two_rooms(kSlit);
+    UserPathFile file = test::opening_paths(*scene, kSlit, kDepth - 1);
+    file.paths.pop_back(); // its cone would have to hit the slit
+    const UserPaths paths = bind_user_paths(*scene, file);
+    const GuidedPaths guides(*scene, paths, PathSet::stored, kDepth);
+    StageOneSettings settings{.max_scatterings = kDepth, .samples = 100'000, .seed = 3};
+    const StageOne without = run_stage_one(*scene, settings, {});
+    settings.guides = &guides;
+    const StageOne with = run_stage_one(*scene, settings, {});
+    EXPECT_LT(with.brightness.standard_error(), 0.5 * without.brightness.standard_error());
+    EXPECT_LT(std::abs(z(with.brightness, without.brightness)), 4);
+
+    const auto beyond = [&](auto&& trace_one) {
+        RunningStats power;
+        for (std::uint64_t i = 0; i < 100'000; ++i) {
+            Rng rng(5, StreamPurpose::test, i);
+            struct {
+                double power = 0;
+                bool arrival(const Vertex& v, const Vec3&, const Rgb& carried, const LightPast&) {
+                    if (v.point.p.z > 0) power += luminance(carried);
+                    return true;
+                }
+            } sink;
+            trace_one(rng, sink);
+            power.add(sink.power);
+        }
+        return power;
+    };
+    const LightGuides light(*scene, paths);
+    const RunningStats free = beyond([&](Rng& rng, auto& sink) { trace_light_path(*scene, kDepth, rng, sink); });
+    const RunningStats led =
+        beyond([&](Rng& rng, auto& sink) { trace_guided_light_path(*scene, light, kDepth, rng, sink); });
+    EXPECT_LT(led.standard_error(), 0.5 * free.standard_error());
+    EXPECT_LT(std::abs(z(led, free)), 4);
+}
+
+} // namespace
+} // namespace keyhole
