@@ -223,7 +223,8 @@ void add_render_command(CLI::App& app, Action& action, const std::string& comman
     for (const auto& [option, key] :
          {std::pair("--photon-memory", "photon_memory"), {"--target-error", "target_error"}})
         command->add_option_function<std::string>(
-            option, [o, key](const std::string& value) { o->overrides.push_back(std::string(key) + "=" + value); },
+            option,
+            [o, key = key](const std::string& value) { o->overrides.push_back(std::string(key) + "=" + value); },
             std::string("the setting ") + key);
     command
         ->add_option_function<std::vector<std::string>>(

@@ -23,7 +23,7 @@ enum class SameRender { seed, method };
 void check_same_render(const NamedPicture& a, const NamedPicture& b, SameRender same);
 
 /// The units of work in a share. @throws InputError
-UnitSet units_of(const NamedPicture& share);
+UnitSet units_of(const NamedPicture& p);
 
 /// The sum of shares of one render, a share itself. There is at least one.
 /// @throws InputError for shares that don't belong together or overlap.

@@ -30,6 +30,7 @@ RepeatError repeat_error(const std::vector<Image>& repeats, const Image& referen
     const double floor = 0.01 * mean(r.y) * mean(r.y);
 
     std::vector<Grey> pictures;
+    pictures.reserve(repeats.size());
     for (const Image& image : repeats) pictures.push_back(finite_grey(image, reference));
     const auto error_of = [&](const Grey& picture, std::size_t p) {
         return (picture.y[p] - r1.y[p]) * (picture.y[p] - r2.y[p]) / (smoothed[p] * smoothed[p] + floor);

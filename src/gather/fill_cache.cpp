@@ -39,8 +39,9 @@ class LevelFill {
         for (const int pixel : level_pixels(window, step)) {
             if (context.stopped()) return;
             Rng rng(options_.seed, StreamPurpose::cache, (2 * level + 1) * pixels + static_cast<std::uint64_t>(pixel));
-            const Vec2 at(static_cast<float>(pixel % window.width + rng.next()),
-                          static_cast<float>(pixel / window.width + rng.next()));
+            const int column = pixel % window.width, row = pixel / window.width;
+            const double across = column + rng.next(), down = row + rng.next();
+            const Vec2 at(static_cast<float>(across), static_cast<float>(down));
             const auto c = visible_point(rays_, window.to_window(at), rng);
             if (!c || is_covered(*c)) continue;
             batch_.push_back(*c);

@@ -28,7 +28,8 @@ HemisphereGrid::HemisphereGrid(int rays)
       columns_(std::max(4, static_cast<int>(std::lround(static_cast<double>(rays) / rows_)))) {}
 
 Vec3 HemisphereGrid::direction(int cell, double u0, double u1) const {
-    const double sin2 = (cell / columns_ + u0) / rows_;
+    const int row = cell / columns_;
+    const double sin2 = (row + u0) / rows_;
     return spherical(std::sqrt(1 - sin2), 2 * kPi * (cell % columns_ + u1) / columns_);
 }
 

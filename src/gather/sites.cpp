@@ -14,7 +14,7 @@ std::optional<SurfacePoint> surface_at(const Scene& scene, const Photon& place) 
     SurfacePoint start;
     start.p = place.position() + n * above;
     start.site = Site::point;
-    const auto hit = scene.trace(start, -n);
+    auto hit = scene.trace(start, -n);
     if (!hit || hit->site != Site::surface || !((hit->p - place.position()).length() < 0.1f * above) ||
         std::abs(hit->ng.dot(n)) < SurfaceRegion::kMinCosine)
         return std::nullopt;

@@ -24,13 +24,14 @@ bool sample_direct(const Scene& scene, const Settings& settings, const PathSet& 
                    RunningStats& luminance, RenderStats& stats, const RunContext& context) {
     const StageClock clock(stats, "direct light");
     const auto depth = static_cast<int>(settings.max_depth);
-    const auto rounds = sample_pass(scene, film, pass, settings.spp, static_cast<std::uint64_t>(settings.seed),
-                                    StreamPurpose::path_tracing, "direct light", context, luminance,
-                                    [&](const Vec2& image, SampleSource& source) {
-                                        PixelSink sink{&chains};
-                                        trace_path(scene, image, depth, source, sink);
-                                        return sink.pixel;
-                                    });
+    const SamplePass rounds_of{pass, settings.spp, static_cast<std::uint64_t>(settings.seed),
+                               StreamPurpose::path_tracing, "direct light"};
+    const auto rounds =
+        sample_pass(scene, film, rounds_of, context, luminance, [&](const Vec2& image, SampleSource& source) {
+            PixelSink sink{&chains};
+            trace_path(scene, image, depth, source, sink);
+            return sink.pixel;
+        });
     return rounds == settings.spp;
 }
 

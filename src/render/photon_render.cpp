@@ -23,7 +23,7 @@ namespace {
 std::string choose_method(const SamplerContext& c, RenderStats& stats, const RunContext& context) {
     const StageClock clock(stats, "trial of samplers");
     const SamplerTrial trial = try_samplers(c, context);
-    const std::string method(trial.best());
+    std::string method(trial.best());
     const double better = std::min(trial.emission, trial.metropolis);
     stats.remarks.push_back(
         std::isfinite(better)
@@ -109,7 +109,7 @@ bool gather_pass(const SamplerContext& c, const RenderPlan& plan, std::int64_t p
         rays, cache ? &*cache : nullptr,
         {.light = static_cast<int>(s.light_samples), .rays = plan.gather ? static_cast<int>(s.gather_rays) : 1});
     const auto rounds = sample_pass(
-        c.scene, film, pass, s.spp, static_cast<std::uint64_t>(s.seed), StreamPurpose::gather, "gather", context,
+        c.scene, film, {pass, s.spp, static_cast<std::uint64_t>(s.seed), StreamPurpose::gather, "gather"}, context,
         luminance, [&](const Vec2& image, SampleSource& source) { return gather.sample(image, source); });
     return rounds == s.spp;
 }

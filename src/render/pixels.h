@@ -75,15 +75,22 @@ class SamplingStage {
     const RunContext& context_;
 };
 
-/// The rounds of pass `pass`, `spp` of them, as a stage. Returns how many it got through.
+/// The rounds of one pass, as a stage.
+struct SamplePass {
+    std::int64_t pass, spp; ///< its number; rounds of each
+    std::uint64_t seed;
+    StreamPurpose purpose;
+    std::string_view name; ///< of the stage
+};
+
+/// Takes the samples of a pass, as sample_round() does. Returns how many rounds it got through.
 template <class Sample>
-std::int64_t sample_pass(const Scene& scene, Film& film, std::int64_t pass, std::int64_t spp, std::uint64_t seed,
-                         StreamPurpose purpose, std::string_view name, const RunContext& context,
+std::int64_t sample_pass(const Scene& scene, Film& film, const SamplePass& p, const RunContext& context,
                          RunningStats& luminance_of_samples, Sample&& sample) {
-    const SamplingStage stage(scene, spp, name, context);
+    const SamplingStage stage(scene, p.spp, p.name, context);
     std::int64_t rounds = 0;
-    while (rounds < spp &&
-           sample_round(scene, film, pass * spp + rounds, seed, purpose, context, luminance_of_samples, sample))
+    while (rounds < p.spp &&
+           sample_round(scene, film, p.pass * p.spp + rounds, p.seed, p.purpose, context, luminance_of_samples, sample))
         ++rounds;
     return rounds;
 }

@@ -40,7 +40,7 @@ struct Extent {
 constexpr double kMutationRay = 3;
 
 constexpr int kCells = 4; // along each axis
-constexpr std::size_t kParts = kCells * kCells * kCells;
+constexpr std::size_t kParts = std::size_t{kCells} * kCells * kCells;
 using Shares = std::array<double, kParts>;
 
 /// The part of the scene that a point lies in: equal cells of its bounding box.

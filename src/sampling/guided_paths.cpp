@@ -4,8 +4,8 @@ namespace keyhole {
 namespace {
 
 /// Walks go on surely for so many steps, then end at random.
-constexpr int kSurely = 3;
-constexpr double kGoOn = 0.7;
+constexpr int kSurely = 2;
+constexpr double kGoOn = 0.5;
 
 /// Probability that a walk makes its step `n`, counted from 1.
 double step_probability(int n) { return std::pow(kGoOn, std::max(0, n - kSurely)); }

@@ -31,6 +31,8 @@ struct Vertex {
 /// Densities and contribution follow the convention of measure.h, in which only their ratios mean anything where
 /// specular vertices take part.
 struct Path {
+    Path() {} // NOLINT(modernize-use-equals-default): that would let std::optional clear the room for all vertices
+
     InlineVector<Vertex, kMaxScatterings + 2> x;
     Vec2 image{0, 0};      ///< window point of the eye edge
     Rgb contribution{0.0}; ///< f of measure.h

@@ -25,7 +25,7 @@ class FixedCone final : public Proposal<Path> {
         const Vec3 local(static_cast<float>(std::sin(theta) * std::cos(phi)),
                          static_cast<float>(std::sin(theta) * std::sin(phi)), static_cast<float>(std::cos(theta)));
         const Vec3 w = Frame((target_ - eye.back().point.p).normalized()).to_world(local).normalized();
-        return perturb_from_eye(scene_, set_, x, pieces_from_eye(x, d1), eye, w, x.image, kLaterSteps, rng, why);
+        return perturb_from_eye(scene_, set_, x, pieces_from_eye(x, d1), eye, {w, x.image}, kLaterSteps, rng, why);
     }
 
     double transition_density(const Path& x, const Path& y) const override {

@@ -64,7 +64,8 @@ class TechniqueChange::Edits {
 
   private:
     PrimaryState* state_;
-    InlineVector<Edit, 6 * (kMaxScatterings + 4)> edits_; // three numbers of each vertex in either sub-path
+    InlineVector<Edit, std::size_t{6} * (kMaxScatterings + 4)>
+        edits_; // three numbers of each vertex in either sub-path
 };
 
 /// The numbers with which eye vertex j finds vertex j + 1.

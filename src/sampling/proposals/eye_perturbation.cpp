@@ -13,8 +13,9 @@ Pieces pieces_from_eye(const Path& x, int pivot) {
 }
 
 std::optional<Path> perturb_from_eye(const Scene& scene, PathSet set, const Path& x, const Pieces& pieces, SubPath& eye,
-                                     Vec3 w, const Vec2& image, const DirectionStep& step, SampleSource& source,
+                                     const EyeEdge& edge, const DirectionStep& step, SampleSource& source,
                                      Failure& why) {
+    Vec3 w = edge.w;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         const Piece& piece = pieces[i];
         if (i > 0) w = step.sample(leaving_direction(x, piece.pivot, -1), source);
@@ -24,7 +25,7 @@ std::optional<Path> perturb_from_eye(const Scene& scene, PathSet set, const Path
     if (last == 0 && !eye.back().point.is_emitter()) return why = Failure::no_light, std::nullopt;
     SubPath light;
     for (int i = 0; i < last; ++i) light.push_back(x.x[static_cast<std::size_t>(i)]);
-    return join(scene, set, light, eye, image, why);
+    return join(scene, set, light, eye, edge.image, why);
 }
 
 double eye_perturbation_density(const Path& x, const Path& y, const Pieces& pieces, double first_density,

@@ -21,10 +21,16 @@ struct Piece {
 using Pieces = InlineVector<Piece, kMaxScatterings + 2>;
 Pieces pieces_from_eye(const Path& x, int pivot);
 
-/// Traces the pieces after the first, whose first direction is `w`, with directions perturbed by `step`, and evaluates
-/// the path. `eye`: the kept vertices, with the first pivot as the last of them.
+/// How a piece begins that leaves the eye's side.
+struct EyeEdge {
+    Vec3 w;     ///< unit
+    Vec2 image; ///< window point of the whole path
+};
+
+/// Traces the pieces from `edge` on, those after the first with directions perturbed by `step`, and evaluates the path.
+/// `eye`: the kept vertices, with the first pivot as the last of them.
 std::optional<Path> perturb_from_eye(const Scene& scene, PathSet set, const Path& x, const Pieces& pieces, SubPath& eye,
-                                     Vec3 w, const Vec2& image, const DirectionStep& step, SampleSource& source,
+                                     const EyeEdge& edge, const DirectionStep& step, SampleSource& source,
                                      Failure& why);
 
 /// Density of the traced vertices of y, made from x with `pieces`. `first_density`: that of the first traced vertex.

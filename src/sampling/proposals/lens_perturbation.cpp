@@ -37,7 +37,7 @@ class EyePerturbation final : public Proposal<Path> {
         SubPath eye;
         eye.push_back(x.x.back());
         const Vec3 w = scene_.camera().ray_direction(eye[0].point, image);
-        return perturb_from_eye(scene_, set_, x, pieces_from_eye(x, x.vertices() - 1), eye, w, image, kDirectionStep,
+        return perturb_from_eye(scene_, set_, x, pieces_from_eye(x, x.vertices() - 1), eye, {w, image}, kDirectionStep,
                                 rng, why);
     }
 

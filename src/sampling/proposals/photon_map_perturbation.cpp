@@ -21,7 +21,7 @@ class PhotonMapPerturbation final : public Proposal<Path> {
         SubPath eye;
         for (int i = x.vertices() - 1; i >= d1; --i) eye.push_back(x.x[static_cast<std::size_t>(i)]);
         const Vec3 w = kStep.sample(leaving_direction(x, d1, -1), rng);
-        return perturb_from_eye(scene_, set_, x, pieces_from_eye(x, d1), eye, w, x.image, kStep, rng, why);
+        return perturb_from_eye(scene_, set_, x, pieces_from_eye(x, d1), eye, {w, x.image}, kStep, rng, why);
     }
 
     double transition_density(const Path& x, const Path& y) const override {

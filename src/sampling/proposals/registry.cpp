@@ -22,7 +22,7 @@ Mixture<Path> make_mixture(const ProposalContext& context, const Settings& setti
     for (const ProposalKind& kind : kKinds)
         if (kind.wanted(*context.scene, settings))
             mixture.add(kind.make(context), settings.*kind.weight,
-                        kind.make == make_bidirectional ? kFamily : mixture.kAlone);
+                        kind.make == make_bidirectional ? kFamily : Mixture<Path>::kAlone);
     double total = 0;
     for (const UserPath& path : paths) total += path.weight;
     for (const UserPath& path : paths)

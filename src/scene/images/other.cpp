@@ -21,6 +21,7 @@ std::vector<std::filesystem::path> module_places() {
     const auto folder = std::filesystem::canonical(here.dli_fname, error).parent_path();
     constexpr std::array places{"", "..", "../lib/keyhole"};
     std::vector<std::filesystem::path> paths;
+    paths.reserve(places.size());
     for (const char* place : places) paths.push_back(folder / place / kImageModule);
     return paths;
 }

@@ -112,6 +112,7 @@ EmitterPtr read_emitter(const YamlNode& node) {
     static const std::map<std::string_view, EmitterPtr (*)(const YamlNode&)> readers{
         {"point", read_point}, {"spot", read_spot}, {"distant", read_distant}, {"environment", read_environment}};
     std::vector<std::string_view> types;
+    types.reserve(readers.size());
     for (const auto& [type, reader] : readers) types.push_back(type);
     return readers.at(read_type(node, "an emitter", types))(node);
 }

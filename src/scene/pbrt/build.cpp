@@ -78,6 +78,7 @@ class Builder {
         for (std::size_t i = 0; i < records_.size(); ++i)
             if (!records_[i].source.ply_path.empty()) users[records_[i].source.ply_path].push_back(i);
         std::vector<const std::vector<std::size_t>*> files;
+        files.reserve(users.size());
         for (const auto& [path, list] : users) files.push_back(&list);
         parallel_attempt(files.size(), [&](std::size_t f) {
             const ShapeRecord& first = records_[files[f]->front()];

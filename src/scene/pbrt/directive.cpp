@@ -99,6 +99,7 @@ const std::map<std::string_view, Type>& types() {
 
 template <class T> std::vector<std::string_view> keys(const std::map<std::string_view, T>& table) {
     std::vector<std::string_view> names;
+    names.reserve(table.size());
     for (const auto& [name, entry] : table) names.push_back(name);
     return names;
 }

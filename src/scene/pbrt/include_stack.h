@@ -22,7 +22,7 @@ class IncludeStack {
     /// Goes on with another file, and comes back after its end. Paths are relative to the outermost file, as in pbrt,
     /// or else to the one that includes.
     /// @throws InputError with the position of `directive` for missing files, cycles, and too many of them.
-    void enter(const Directive& directive, const std::string& path);
+    void enter(const Directive& directive, const std::string& name);
 
     /// Of the outermost file.
     const std::string& directory() const { return directory_; }

@@ -14,6 +14,7 @@ const std::shared_ptr<const T>& look_up(const std::map<std::string, std::shared_
     const auto found = table.find(name);
     if (found != table.end()) return found->second;
     std::vector<std::string_view> names;
+    names.reserve(table.size());
     for (const auto& [known, texture] : table) names.push_back(known);
     directive.fail(parameter,
                    fmt::format("found the unknown {} texture '{}', {}", kind, name, expected_one_of(name, names)));
