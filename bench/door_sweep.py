@@ -1,16 +1,11 @@
-#!/ usr / bin / env python3
-""
-    "Two rooms and an ever narrower door: the error of each sampler at equal CPU time, with user paths and without.
+#!/usr/bin/env python3
+"""Two rooms and an ever narrower door: the error of each sampler at equal CPU time, with user paths and without.
 
-    usage
-    : bench /
-      door_sweep
-          .py[--keyhole build / keyhole][--widths 0.3, 0.1, ...][--seconds 5][--repeats 2][--reference - seconds 40]
+usage: bench/door_sweep.py [--keyhole build/keyhole] [--widths 0.3,0.1,...] [--seconds 5] [--repeats 2] [--reference-seconds 40]
 
-      The lamp stands behind a screen in one room,
-    the eye looks at the far wall of the other,
-    so that all light in the picture has come through the door after a scattering or more.Without doors to compare with,
-    the references are two independent long renders by mlt with user paths; their difference is printed beside the errors, which are free of it: root of the mean of (A - R1)(A - R2) / R^2 over 4x4
+The lamp stands behind a screen in one room, the eye looks at the far wall of the other, so that all light in the picture has come
+through the door after a scattering or more. Without doors to compare with, the references are two independent long renders by mlt
+with user paths; their difference is printed beside the errors, which are free of it: root of the mean of (A - R1)(A - R2) / R^2 over 4x4
 blocks of pixels. The brightness over the width of the door tends to a constant: a method that misses light shows there.
 Needs numpy and OpenImageIO for Python."""
 import argparse
@@ -22,58 +17,26 @@ import numpy
 import OpenImageIO as oiio
 
 GUIDED = ["--user-paths", "USER_PATHS"]
-METHODS = {"pm": [], "ipm": [], "mps": [], "pss": [], "auto": [], "ipm, user paths": GUIDED, "mps, user paths": GUIDED, "auto, user paths": GUIDED,
-           "mlt, user paths": GUIDED}
+METHODS = {"pm": [], "ipm": [], "mps": [], "pss": [], "auto": [], "ipm, user paths": GUIDED, "mps, user paths": GUIDED,
+           "auto, user paths": GUIDED, "mlt, user paths": GUIDED}
 SCENE = """film: {{resolution: [64, 48]}}
-camera: {
-    {
-    from:
-        [ 0.4, 1.2, -1.2 ], to : [ 3, 1, 0.3 ], fov : 60
-    }
-}
-materials : white : {
-    {
-    type:
-        diffuse, reflectance : 0.7
-    }
-}
-black : {
-    {
-    type:
-        diffuse, reflectance : 0
-    }
-}
-shapes
-    : -{{type : rectangle, material : white, corner : [ -3, 0, -1.5 ], u : [ 0, 0, 3 ], v : [ 6, 0, 0 ]}} #floor -
-      {{type : rectangle, material : white, corner : [ -3, 2.4, -1.5 ], u : [ 6, 0, 0 ], v : [ 0, 0, 3 ]}} #ceiling -
-      {{type : rectangle, material : white, corner : [ -3, 0, -1.5 ], u : [ 6, 0, 0 ], v : [ 0, 2.4, 0 ]}} -
-      {{type : rectangle, material : white, corner : [ -3, 0, 1.5 ], u : [ 0, 2.4, 0 ], v : [ 6, 0, 0 ]}} -
-      {{type : rectangle, material : white, corner : [ -3, 0, -1.5 ], u : [ 0, 2.4, 0 ], v : [ 0, 0, 3 ]}} -
-      {{type : rectangle, material : white, corner : [ 3, 0, -1.5 ], u : [ 0, 0, 3 ], v : [ 0, 2.4, 0 ]}} -
-      {
-          {type : rectangle, material : white, corner : [ 0, 0, -1.5 ], u : [ 0, 2.4, 0 ], v : [ 0, 0,
-                                                                                                 {side} ]}} #the wall,
-    and a door in it -
-        {{type : rectangle, material : white, corner : [ 0, 0, {half} ], u : [ 0, 2.4, 0 ], v : [ 0, 0, {side} ]}} -
-        {
-            {type : rectangle,
-             material : white,
-             corner : [ -1.5, 0, 0.4 ],
-             u : [ 0, 2.4, 0 ],
-             v : [ 0, 0, 1.1 ]}} #the screen -
-{
-    {
-    type:
-        rectangle, material : black, corner : [ -2.7, 2.39, 0.9 ], u : [ 0.4, 0, 0 ], v : [ 0, 0, 0.4 ], emission : {
-            {
-            power:
-                100
-            }
-        }
-    }
-}
+camera: {{from: [0.4, 1.2, -1.2], to: [3, 1, 0.3], fov: 60}}
+materials:
+  white: {{type: diffuse, reflectance: 0.7}}
+  black: {{type: diffuse, reflectance: 0}}
+shapes:
+  - {{type: rectangle, material: white, corner: [-3, 0, -1.5], u: [0, 0, 3], v: [6, 0, 0]}}    # floor
+  - {{type: rectangle, material: white, corner: [-3, 2.4, -1.5], u: [6, 0, 0], v: [0, 0, 3]}}  # ceiling
+  - {{type: rectangle, material: white, corner: [-3, 0, -1.5], u: [6, 0, 0], v: [0, 2.4, 0]}}
+  - {{type: rectangle, material: white, corner: [-3, 0, 1.5], u: [0, 2.4, 0], v: [6, 0, 0]}}
+  - {{type: rectangle, material: white, corner: [-3, 0, -1.5], u: [0, 2.4, 0], v: [0, 0, 3]}}
+  - {{type: rectangle, material: white, corner: [3, 0, -1.5], u: [0, 0, 3], v: [0, 2.4, 0]}}
+  - {{type: rectangle, material: white, corner: [0, 0, -1.5], u: [0, 2.4, 0], v: [0, 0, {side}]}}   # the wall, and a door in it
+  - {{type: rectangle, material: white, corner: [0, 0, {half}], u: [0, 2.4, 0], v: [0, 0, {side}]}}
+  - {{type: rectangle, material: white, corner: [-1.5, 0, 0.4], u: [0, 2.4, 0], v: [0, 0, 1.1]}}    # the screen
+  - {{type: rectangle, material: black, corner: [-2.7, 2.39, 0.9], u: [0.4, 0, 0], v: [0, 0, 0.4], emission: {{power: 100}}}}
 """
-#Any way from the lamp to the door.
+# Any way from the lamp to the door.
 PATHS = """tolerance: 0.1
 paths:
   - name: door

@@ -57,8 +57,13 @@ class Progress {
 struct RunContext {
     StopToken* stop = nullptr;    ///< may be null: never stopped
     Progress* progress = nullptr; ///< may be null: silent
+    double reserve = 0;           ///< of the time until `stop`, what is left to later stages [s]
 
-    bool stopped() const { return stop != nullptr && stop->stopped(); }
+    bool stopped() const {
+        return stop != nullptr && (stop->stopped() || (reserve > 0 && stop->seconds_left() < reserve));
+    }
+    /// For the last stage, which may use all of the time.
+    RunContext without_reserve() const { return {stop, progress}; }
     void begin(std::string_view stage, std::uint64_t total, std::string_view unit) const {
         if (progress != nullptr) progress->begin(stage, total, unit);
     }

@@ -45,6 +45,7 @@ std::string differences(const Settings& a, const Settings& b) {
 /// What a render with some effort cost.
 struct Experience {
     double effort, seconds;
+    double gather; ///< share of it that stage three took
 };
 
 constexpr double kFirst = 0.02; // effort of the first render, as a share of what should fill the time
@@ -76,6 +77,24 @@ double without_choice(const RenderStats& stats, double seconds) {
         if (stage.name == "trial of samplers") choice += stage.wall_seconds;
     }
     return all > 0 ? seconds * (1 - choice / all) : seconds;
+}
+
+/// Share of the time that stage three took.
+double gather_share(const RenderStats& stats) {
+    double all = 0, gather = 0;
+    for (const StageStats& stage : stats.stages) {
+        if (stage.name == "trial of samplers") continue;
+        all += stage.wall_seconds;
+        if (stage.name == "gather") gather += stage.wall_seconds;
+    }
+    return all > 0 ? gather / all : 0;
+}
+
+/// What a render of some effort has to keep for stage three [s], should the stages before it cost more than was
+/// foreseen.
+double reserve_for_gather(const Experience& last, double effort, double seconds) {
+    const double foreseen = last.gather * last.seconds * std::pow(effort / last.effort, 0.75);
+    return std::min(1.2 * foreseen, seconds / 2);
 }
 
 /// One line of all stages of a render that a better one takes the place of.
@@ -143,7 +162,9 @@ RenderResult render_in_time(Scene& scene, const Settings& settings, const std::s
     while (true) {
         const double start = context.stop->seconds_left();
         const Settings chosen = with_effort(s, effort, pixels, given);
-        RenderResult result = render(scene, chosen, context, user_paths, share);
+        RunContext limited = context;
+        if (!past.empty() && keeps_photons(s.method)) limited.reserve = reserve_for_gather(past.back(), effort, start);
+        RenderResult result = render(scene, chosen, limited, user_paths, share);
         s.method = result.stats.method; // what `auto` stands for
         const double left = context.stop->seconds_left();
         // Where time was up before each pixel had a sample, the picture before is the better one.
@@ -154,7 +175,7 @@ RenderResult render_in_time(Scene& scene, const Settings& settings, const std::s
         result.stats.values["effort"] = effort;
         result.stats.remarks.push_back("set by the time:" + differences(settings, chosen));
         if (best) add_stages(others, best->stats);
-        past.push_back({effort, without_choice(result.stats, start - left)});
+        past.push_back({effort, without_choice(result.stats, start - left), gather_share(result.stats)});
         best = std::move(result);
         const double next = affordable(past, kUse * left);
         if (context.stopped() || next < kWorthwhile * effort) break;

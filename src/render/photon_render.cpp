@@ -135,7 +135,8 @@ RenderResult render_photons(const Scene& scene, const Settings& settings, const 
             save_photons(settings.save_map, photon_file_key(scene, settings, c.reach), photons);
         // The photons of a pass that was cut short are good for a first picture, not for one that is there.
         if (!work.is_first() && context.stopped()) break;
-        if (gather_pass(c, plan, *pass, seed, std::move(photons), *work.unit().film, luminance, stats, context))
+        if (gather_pass(c, plan, *pass, seed, std::move(photons), *work.unit().film, luminance, stats,
+                        context.without_reserve()))
             work.end_unit(stats);
     }
     sampler->finish(stats);
