@@ -120,5 +120,72 @@ TEST(Gallery, CloseGatherHitsLeaveNoSpeckles) {
     EXPECT_LT(worst, 1.3);
 }
 
+/// A point light over a floor and a mirror beside it, seen from above: what it throws on the floor has sharp edges, and
+/// is known in closed form from the light's mirror image.
+class CausticEdges : public testing::TestWithParam<const char*> {
+  protected:
+    static constexpr int kSize = 64;
+
+    static std::unique_ptr<Scene> make() {
+        test::SceneMaker m;
+        m.rectangle({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, make_diffuse(Rgb(0.6)))
+            .rectangle({1, 0.2f, -0.3f}, {0, 0.4f, 0}, {0, 0, 0.6f}, make_mirror(Rgb(0.9)), Rgb(0.0), true)
+            .emitter(make_point_emitter({0, 1, 0}, Rgb(5.0)))
+            .camera({0, 4, 0.001f}, {0, 0, 0}, 28)
+            .window(kSize, kSize);
+        return m.build();
+    }
+    /// Where a ray through window point (u, v) meets the floor, which fills the picture.
+    static Vec3 on_floor(const Scene& scene, float u, float v) {
+        const SurfacePoint eye = scene.camera().eye(0, 0);
+        const Vec3 w = scene.camera().ray_direction(eye, {u, v});
+        return eye.p + w * (eye.p.y / -w.y);
+    }
+    /// Irradiance up to a factor, 0 outside. `margin`: how far the edges of the mirror are moved out, as seen from the
+    /// light's image [m].
+    static double exact(const Vec3& p, double margin) {
+        const Imath::V3d image(2, 1, 0), d = Imath::V3d(p) - image;
+        const double t = -1 / d.x; // where the way from there passes the plane of the mirror
+        if (!(t > 0)) return 0;
+        const double y = 1 + t * d.y, z = t * d.z;
+        const bool inside = y > 0.2 - margin && y < 0.6 + margin && std::abs(z) < 0.3 + margin;
+        return inside ? 1 / std::pow(d.length(), 3) : 0;
+    }
+};
+
+TEST_P(CausticEdges, AreSharpAndNeitherDarkNorBright) {
+    const auto scene = make();
+    Settings settings = small_settings();
+    settings.method = GetParam();
+    settings.light_paths = 2'000'000;
+    settings.mutations = 1'500'000;
+    settings.photons = 200'000;
+    const Grey grey = render_layer(*scene, settings, "caustic");
+    // Lookups reach a fiftieth of the scene at most, two pixels here; seen at the mirror, that is less than this.
+    constexpr double kEdge = 0.06;
+    double found = 0, expected = 0, outside = 0, total = 0;
+    std::vector<std::pair<double, double>> inside;
+    for (int y = 0; y < kSize; ++y)
+        for (int x = 0; x < kSize; ++x) {
+            const Vec3 p =
+                on_floor(*scene, (static_cast<float>(x) + 0.5f) / kSize, (static_cast<float>(y) + 0.5f) / kSize);
+            total += grey.at(x, y);
+            if (exact(p, kEdge) == 0) outside += grey.at(x, y);
+            if (const double e = exact(p, -kEdge); e > 0) {
+                inside.emplace_back(grey.at(x, y), e);
+                found += grey.at(x, y);
+                expected += e;
+            }
+        }
+    ASSERT_GT(inside.size(), 200u);
+    double square = 0;
+    for (const auto& [a, e] : inside) square += std::pow(a * expected / (e * found) - 1, 2);
+    EXPECT_LT(outside / total, 0.01);
+    EXPECT_LT(std::sqrt(square / static_cast<double>(inside.size())), 0.1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Gallery, CausticEdges, testing::Values("ipm", "mps", "pm"),
+                         [](const auto& info) { return std::string(info.param); });
+
 } // namespace
 } // namespace keyhole
