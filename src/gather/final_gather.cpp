@@ -81,7 +81,11 @@ std::optional<Rgb> FinalGather::ask_cache(const Vertex& v, const Vec3& back) con
     if (cache_ == nullptr || !v.bsdf.traits().near_lambertian) return std::nullopt;
     const Vec3 normal = cache_normal(v, back);
     const auto answer = cache_->irradiance(v.point.p, normal);
-    if (!(answer.weight > 0)) return std::nullopt;
+    asked_.fetch_add(1, std::memory_order_relaxed);
+    if (!(answer.weight > 0)) {
+        unanswered_.fetch_add(1, std::memory_order_relaxed);
+        return std::nullopt;
+    }
     return v.bsdf.eval(normal, back) * answer.irradiance;
 }
 

@@ -5,6 +5,8 @@
 #include "gather/gather_rays.h"
 #include "gather/irradiance_cache.h"
 
+#include <atomic>
+
 namespace keyhole {
 
 /// At each visible point.
@@ -13,7 +15,7 @@ struct GatherSamples {
     int rays;  ///< gather rays, where the cache doesn't serve
 };
 
-/// Immutable and thread-safe.
+/// Thread-safe; immutable but for what it counts.
 class FinalGather {
   public:
     /// `cache` may be null: gather rays from every sample.
@@ -22,6 +24,11 @@ class FinalGather {
 
     /// Estimates what arrives at the eye through window point `image`. Unbiased but for the maps and the cache.
     PixelSample sample(const Vec2& image, SampleSource& source) const;
+
+    /// Share of the questions to the cache, by all samples so far, that it had no record for; 0 before any.
+    double starving() const {
+        return asked_ > 0 ? static_cast<double>(unanswered_) / static_cast<double>(asked_) : 0.0;
+    }
 
   private:
     struct EyeRay {
@@ -43,6 +50,7 @@ class FinalGather {
     const GatherRays& rays_;
     const IrradianceCache* cache_;
     GatherSamples samples_;
+    mutable std::atomic<std::uint64_t> asked_ = 0, unanswered_ = 0;
 };
 
 } // namespace keyhole

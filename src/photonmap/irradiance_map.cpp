@@ -12,7 +12,7 @@ IrradianceMap::IrradianceMap(const PhotonMap& scouts, const PhotonMap& carriers,
     : scouts_(scouts), estimates_(scouts.photons().size()), max_radius_(options.max_radius), scene_(options.scene) {
     constexpr std::int64_t kBlock = 256;
     const auto count = static_cast<std::int64_t>(estimates_.size());
-    std::vector<std::int64_t> used(static_cast<std::size_t>((count + kBlock - 1) / kBlock), 0);
+    std::vector<Count> used(static_cast<std::size_t>((count + kBlock - 1) / kBlock));
     context.begin("irradiance", static_cast<std::uint64_t>(count), "estimates");
     parallel_for(static_cast<std::int64_t>(used.size()), [&](std::int64_t b) {
         for (std::int64_t i = b * kBlock; i < std::min(count, (b + 1) * kBlock); ++i)
@@ -20,23 +20,31 @@ IrradianceMap::IrradianceMap(const PhotonMap& scouts, const PhotonMap& carriers,
         context.advance(kBlock);
     });
     context.end();
-    std::int64_t sum = 0;
-    for (const std::int64_t u : used) sum += u;
-    mean_photons_ = count > 0 ? static_cast<double>(sum) / static_cast<double>(count) : 0.0;
+    if (count == 0) return;
+    for (const Count& u : used) mean_ += u;
+    mean_.photons /= static_cast<double>(count);
+    mean_.effective /= static_cast<double>(count);
 }
 
-int IrradianceMap::estimate(std::uint32_t i, const PhotonMap& carriers, const IrradianceOptions& options) {
+IrradianceMap::Count IrradianceMap::estimate(std::uint32_t i, const PhotonMap& carriers,
+                                             const IrradianceOptions& options) {
     const Photon& place = scouts_[i];
     const PhotonQuery query{{place.position(), place.normal().decode()}, options.max_radius, options.k, options.shrink};
     // The scout in the middle is there by choice of the place, so it is no evidence of the density there.
     const float r = scouted_radius(scouts_, query, 1);
-    const auto one = [](const Photon&) { return 1.0; };
+    double sum = 0, squares = 0;
+    const auto one = [&](const Photon& p) {
+        const double power = luminance(p.power());
+        sum += power;
+        squares += power * power;
+        return 1.0;
+    };
     DensityEstimate e = options.scene != nullptr ? estimate_density_in_sight(*options.scene, carriers, query.region, r,
                                                                              *options.patches, one)
                                                  : estimate_density(carriers, query.region, r, options.patches, one);
     e.value /= share_in_reach(options.reach, query.region, r);
     estimates_[i] = {SharedExponentRgb(e.value), e.obstructed, r};
-    return e.photons;
+    return {static_cast<double>(e.photons), squares > 0 ? sum * sum / squares : 0.0};
 }
 
 IrradianceMap::Answer IrradianceMap::irradiance(const Vec3& position, const Vec3& normal) const {

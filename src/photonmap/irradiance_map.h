@@ -44,8 +44,11 @@ class IrradianceMap {
     std::size_t bytes() const { return estimates_.capacity() * sizeof(Estimate); }
     /// Of it, for one scout [bytes].
     static constexpr std::size_t bytes_per_place() { return sizeof(Estimate); }
-    /// Mean number of photons that went into an estimate.
-    double mean_photons() const { return mean_photons_; }
+    /// Number of photons that went into an estimate, on average.
+    double mean_photons() const { return mean_.photons; }
+    /// How many equal ones would be as good, on average over estimates: squared sum of power over sum of squares
+    /// (Kish).
+    double effective_photons() const { return mean_.effective; }
 
   private:
     struct Estimate {
@@ -53,14 +56,22 @@ class IrradianceMap {
         bool obstructed; ///< whether something stands within the region
         float radius;
     };
+    struct Count {
+        double photons = 0, effective = 0;
+        Count& operator+=(const Count& o) {
+            photons += o.photons;
+            effective += o.effective;
+            return *this;
+        }
+    };
     /// Fills in place i; returns the number of photons that it is made from.
-    int estimate(std::uint32_t i, const PhotonMap& carriers, const IrradianceOptions& options);
+    Count estimate(std::uint32_t i, const PhotonMap& carriers, const IrradianceOptions& options);
 
     const PhotonMap& scouts_;
     std::vector<Estimate> estimates_;
     float max_radius_;
     const Scene* scene_;
-    double mean_photons_ = 0;
+    Count mean_;
 };
 
 } // namespace keyhole

@@ -80,8 +80,7 @@ bool gather_pass(const SamplerContext& c, const RenderPlan& plan, std::int64_t p
     std::optional<IrradianceMap> irradiance;
     if (plan.photons && static_cast<float>(s.nearest) * radii.shrink * radii.shrink > 2.0f * kScoutEvery)
         irradiance.emplace(global.scouts(), global.carriers(), estimates, context);
-    if (irradiance)
-        report_lookups(irradiance->mean_photons(), static_cast<double>(s.nearest) * radii.shrink * radii.shrink, stats);
+    if (irradiance) report_lookups(*irradiance, static_cast<double>(s.nearest) * radii.shrink * radii.shrink, stats);
 
     std::optional<Sites> sites;
     if (irradiance) {
@@ -111,6 +110,7 @@ bool gather_pass(const SamplerContext& c, const RenderPlan& plan, std::int64_t p
     const auto rounds = sample_pass(
         c.scene, film, {pass, s.spp, static_cast<std::uint64_t>(s.seed), StreamPurpose::gather, "gather"}, context,
         luminance, [&](const Vec2& image, SampleSource& source) { return gather.sample(image, source); });
+    if (cache) report_starving(gather.starving(), stats);
     return rounds == s.spp;
 }
 

@@ -13,11 +13,15 @@ namespace {
 
 constexpr const char* kBrightest = "photon power, share of the brightest 0.1 %";
 constexpr const char* kFound = "photons per lookup";
+constexpr const char* kEffective = "photons per lookup, effective";
+constexpr const char* kStarving = "cached irradiances, share of points without";
 constexpr const char* kShare = "photons per lookup, share of those asked for";
 
 /// Beyond these photons are not to be trusted.
 constexpr double kMostOfPower = 0.25;
+constexpr double kLeastEffective = 0.5; ///< of those found; where that is known
 constexpr double kLeastFound = 0.25;
+constexpr double kMostStarving = 0.1;
 
 double share_of_brightest(const std::vector<Photon>& photons) {
     if (photons.empty()) return 0;
@@ -37,10 +41,13 @@ void report_power(const Photons& photons, RenderStats& stats) {
         std::max(share_of_brightest(photons.global.carriers), share_of_brightest(photons.caustic.carriers));
 }
 
-void report_lookups(double found, double asked, RenderStats& stats) {
-    stats.values[kFound] = found;
-    stats.values[kShare] = found / asked;
+void report_lookups(const IrradianceMap& map, double asked, RenderStats& stats) {
+    stats.values[kFound] = map.mean_photons();
+    stats.values[kEffective] = map.effective_photons();
+    stats.values[kShare] = map.mean_photons() / asked;
 }
+
+void report_starving(double share, RenderStats& stats) { stats.values[kStarving] = share; }
 
 void warn_of_photons(RenderStats& stats) {
     const auto value = [&](const char* name, double otherwise) {
@@ -52,7 +59,8 @@ void warn_of_photons(RenderStats& stats) {
                                     "light_paths or mutations");
         return;
     }
-    if (value(kBrightest, 0) > kMostOfPower)
+    // Where light is brightest no lookup may ask: a room behind a narrow door has most of the power, in few photons.
+    if (value(kBrightest, 0) > kMostOfPower && value(kEffective, 0) < kLeastEffective * value(kFound, 1))
         stats.warnings.push_back(fmt::format("the brightest 0.1 % of the photons carry {:.0f} % of the power: expect "
                                              "blotches. Try more passes, or another method",
                                              100 * value(kBrightest, 0)));
@@ -60,6 +68,11 @@ void warn_of_photons(RenderStats& stats) {
         stats.warnings.push_back(fmt::format("the photon map is too sparse where it is asked: {:.1f} photons within "
                                              "reach of a lookup, {:.0f} % of those asked for. Try more photons",
                                              value(kFound, 0), 100 * value(kShare, 1)));
+    if (value(kStarving, 0) > kMostStarving)
+        stats.warnings.push_back(fmt::format("the irradiance cache has no record for {:.0f} % of what is seen: a few "
+                                             "gather rays of each sample have to do, "
+                                             "and make noise. Try more spp, or more gather_rays",
+                                             100 * value(kStarving, 0)));
 }
 
 } // namespace keyhole

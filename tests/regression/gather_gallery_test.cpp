@@ -120,6 +120,30 @@ TEST(Gallery, CloseGatherHitsLeaveNoSpeckles) {
     EXPECT_LT(worst, 1.3);
 }
 
+TEST(Gallery, ACacheThatKnowsLittleOfWhatIsSeenSaysSo) {
+    // A cloud of balls far smaller than a pixel: each sample meets another one, of which no record can be there. And a
+    // plain room, of which the cache knows everything.
+    const auto warned = [](int balls) {
+        test::SceneMaker m;
+        m.room({-1, 0, -1}, {1, 2, 3}, make_diffuse(Rgb(0.7)));
+        m.rectangle({-0.3f, 1.95f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}, make_diffuse(Rgb(0.0)), Rgb(20.0));
+        Rng rng(1, StreamPurpose::test, 0);
+        for (int i = 0; i < balls; ++i) {
+            const auto at = [&](float from, float to) { return std::lerp(from, to, static_cast<float>(rng.next())); };
+            const float x = at(-0.9f, 0.9f), y = at(0.1f, 1.7f), z = at(-0.9f, 0);
+            m.sphere({x, y, z}, 0.01f, make_diffuse(Rgb(0.5)));
+        }
+        m.camera({0, 1, 2}, {0, 1, -1}, 50).window(24, 24);
+        const auto scene = m.build();
+        const RenderStats stats = render(*scene, small_settings(), {}).stats;
+        return std::any_of(stats.warnings.begin(), stats.warnings.end(), [](const std::string& w) {
+            return w.find("irradiance cache has no record") != std::string::npos;
+        });
+    };
+    EXPECT_TRUE(warned(8000));
+    EXPECT_FALSE(warned(0));
+}
+
 /// A point light over a floor and a mirror beside it, seen from above: what it throws on the floor has sharp edges, and
 /// is known in closed form from the light's mirror image.
 class CausticEdges : public testing::TestWithParam<const char*> {
