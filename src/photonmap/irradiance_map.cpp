@@ -54,7 +54,9 @@ IrradianceMap::Answer IrradianceMap::irradiance(const Vec3& position, const Vec3
     const Neighbourhood near = scouts_.nearest(query);
     if (near.found.empty()) return {};
     std::uint32_t place = near.found[0].index;
-    if (scene_ != nullptr && estimates_[place].obstructed) {
+    const Estimate& nearest = estimates_[place];
+    // Whether something stands between is known within the region of the estimate.
+    if (scene_ != nullptr && (nearest.obstructed || near.found[0].distance2 > nearest.radius * nearest.radius)) {
         const auto visible = [&](const Photon& p) {
             const float lift = 0.25f * (p.position() - position).length();
             return in_sight(*scene_, query.region, lift, p.position());

@@ -1,5 +1,6 @@
 // Density estimates beside walls that stand on a surface.
 #include "photon_support.h"
+#include "photonmap/irradiance_map.h"
 #include "photonmap/sight.h"
 #include "support/test_scenes.h"
 
@@ -58,6 +59,28 @@ TEST(Sight, HidesWhatLiesBeyondAWall) {
         const RunningStats stats = estimates(*scene, 0.5f, {x, 0, 0.5f});
         // The share in sight is that of 16 places.
         EXPECT_NEAR(stats.mean(), 300, 300 * 0.12);
+    }
+}
+
+TEST(Sight, TakesNoAnswerFromBeyondAWall) {
+    // Close behind a wall photons are dense, and regions so small that the wall stands in none of them; before it they
+    // are rare. The nearest estimate is one of the other side.
+    const auto scene = floor_with_wall(0.5f);
+    const SurfacePatches patches(scene->shapes());
+    Rng rng = make_rng(7);
+    const Rectangle behind{{0.44f, 0, 0}, {0, 0, 1}, {0.04f, 0, 0}}, before{{0.56f, 0, 0}, {0, 0, 1}, {0.4f, 0, 0}};
+    const auto both = [&](int dense, int rare) {
+        std::vector<Photon> photons = throw_photons(behind, dense, rng);
+        throw_photons(before, rare, rng, photons);
+        return PhotonMap(std::move(photons));
+    };
+    const PhotonMap scouts = both(2000, 40), carriers = both(20'000, 400);
+    const IrradianceMap map(scouts, carriers, {.k = 20, .max_radius = 0.2f, .patches = &patches, .scene = scene.get()},
+                            {});
+    for (float z = 0.1f; z < 0.95f; z += 0.1f) {
+        const auto answer = map.irradiance({0.505f, 0, z}, kUp);
+        EXPECT_TRUE(answer.known) << z;
+        EXPECT_LT(answer.irradiance.x, 5000) << z; // it is 1000 here, and 500,000 there
     }
 }
 

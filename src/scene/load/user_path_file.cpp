@@ -14,7 +14,7 @@ namespace {
 constexpr NumberRange kBeta{"an angle in degrees", 0, 90, true};
 constexpr NumberRange kAnyBeta{"an angle in degrees", 0, 90};
 constexpr NumberRange kWeight{"a weight", 1e-6, 1e6};
-constexpr std::int64_t kMostBounces = 16;
+constexpr std::int64_t kMostBounces = 24;
 constexpr NumberRange kBounces{"a number of bounces", 1, kMostBounces};
 
 /// What a file says for all paths that say nothing themselves.
