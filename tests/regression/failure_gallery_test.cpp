@@ -2,6 +2,7 @@
 #include "core/error.h"
 #include "render/render.h"
 #include "scene/load/load.h"
+#include "scene/load/user_path_file.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -37,16 +38,18 @@ double mean_luminance(const Picture& picture) {
     return sum / static_cast<double>(beauty.data.size() / 3);
 }
 
-RenderResult make(const Case& c, const std::string& method) {
-    LoadedScene loaded = load(fmt::format("{}/scenes/failures/{}.yaml", KEYHOLE_SOURCE_DIR, c.scene),
-                              {"method=" + method, "spp=8", "mutations=20k", "chains=64", "brightness_samples=10k",
-                               "light_paths=20k", "importons=10k", "photon_memory=2MiB", "cache_rays=100"});
+RenderResult make(const Case& c, const std::vector<std::string>& more, const UserPathFile& user_paths = {}) {
+    std::vector<std::string> settings{"spp=8",           "mutations=20k",     "chains=64",
+                                      "light_paths=20k", "importons=10k",     "brightness_samples=10k",
+                                      "cache_rays=100",  "photon_memory=2MiB"};
+    settings.insert(settings.end(), more.begin(), more.end());
+    LoadedScene loaded = load(fmt::format("{}/scenes/failures/{}.yaml", KEYHOLE_SOURCE_DIR, c.scene), settings);
     if (loaded.description.window.width > 1) {
         loaded.description.window.width = 24;
         loaded.description.window.height = 16;
     }
     Scene scene(std::move(loaded.description));
-    return render(scene, loaded.settings, {});
+    return render(scene, loaded.settings, {}, user_paths);
 }
 
 class FailureGallery : public testing::TestWithParam<Case> {};
@@ -55,7 +58,7 @@ TEST_P(FailureGallery, EveryMethodIsRightOrSaysThatItIsNot) {
     const Case& c = GetParam();
     std::string line = fmt::format("| {} |", c.scene);
     for (const char* method : kMethods) {
-        const RenderResult result = make(c, method);
+        const RenderResult result = make(c, {fmt::format("method={}", method)});
         const double mean = mean_luminance(result.picture);
         ASSERT_TRUE(std::isfinite(mean)) << method;
         const bool right = std::abs(mean - c.mean) <= c.bound * c.mean, alarmed = !result.stats.warnings.empty();
@@ -68,6 +71,21 @@ TEST_P(FailureGallery, EveryMethodIsRightOrSaysThatItIsNot) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, FailureGallery, testing::ValuesIn(kCases),
                          [](const auto& info) { return std::string(info.param.scene); });
+
+/// Whoever sees the hole can say so.
+TEST(FailureGallery_Keyhole, IsOpenedByAUserPath) {
+    const Case& c = kCases[0];
+    const UserPathFile paths = load_user_paths(KEYHOLE_SOURCE_DIR "/userpaths/keyhole.yaml");
+    for (const char* method : {"auto", "ipm", "mps", "mlt"}) {
+        const RenderResult result = make(c,
+                                         {fmt::format("method={}", method), "light_paths=200k", "importons=100k",
+                                          "spp=64", "mutations=200k", "chains=400", "brightness_samples=40k"},
+                                         paths);
+        EXPECT_NEAR(mean_luminance(result.picture), c.mean, 0.15 * c.mean) << method;
+        for (const std::string& w : result.stats.warnings)
+            EXPECT_TRUE(w.find("photon") == std::string::npos || result.stats.method == "mps") << method << ": " << w;
+    }
+}
 
 } // namespace
 } // namespace keyhole
