@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <string_view>
@@ -58,12 +59,27 @@ struct RunContext {
     StopToken* stop = nullptr;    ///< may be null: never stopped
     Progress* progress = nullptr; ///< may be null: silent
     double reserve = 0;           ///< of the time until `stop`, what is left to later stages [s]
+    bool whole_round = false;     ///< every pixel gets its first sample even if time is up
+    bool in_overtime = false;     ///< goes on when time is up, until somebody asks for a stop
 
     bool stopped() const {
-        return stop != nullptr && (stop->stopped() || (reserve > 0 && stop->seconds_left() < reserve));
+        if (stop == nullptr) return false;
+        if (in_overtime) return stop->requested();
+        return stop->stopped() || (reserve > 0 && stop->seconds_left() < reserve);
     }
-    /// For the last stage, which may use all of the time.
-    RunContext without_reserve() const { return {stop, progress}; }
+    /// With a reserve of so much of the time that is left; 0: none.
+    RunContext with_reserve(double share) const {
+        RunContext c = *this;
+        const double left = stop != nullptr && share > 0 ? stop->seconds_left() : 0;
+        c.reserve = std::isfinite(left) ? share * left : 0;
+        return c;
+    }
+    /// For the first round of samples.
+    RunContext first_round() const {
+        RunContext c = *this;
+        c.in_overtime = whole_round;
+        return c;
+    }
     void begin(std::string_view stage, std::uint64_t total, std::string_view unit) const {
         if (progress != nullptr) progress->begin(stage, total, unit);
     }

@@ -163,7 +163,10 @@ RenderResult render_in_time(Scene& scene, const Settings& settings, const std::s
         const double start = context.stop->seconds_left();
         const Settings chosen = with_effort(s, effort, pixels, given);
         RunContext limited = context;
-        if (!past.empty() && keeps_photons(s.method)) limited.reserve = reserve_for_gather(past.back(), effort, start);
+        if (!past.empty() && keeps_photons(s.method)) {
+            limited.reserve = reserve_for_gather(past.back(), effort, start);
+            limited.whole_round = true; // the render before had one, and time left: photons are worth that little more
+        }
         RenderResult result = render(scene, chosen, limited, user_paths, share);
         s.method = result.stats.method; // what `auto` stands for
         const double left = context.stop->seconds_left();

@@ -59,6 +59,9 @@ std::unique_ptr<PhotonSampler> make_sampler(const SamplerContext& c, const Rende
     return make_emission_sampler(c, method == "ipm");
 }
 
+/// Share of the time for stage three that the samples of pixels get at least.
+constexpr double kForSamples = 0.25;
+
 /// Stage three: what the eye sees, from the photons of a pass. Returns whether it was completed.
 bool gather_pass(const SamplerContext& c, const RenderPlan& plan, std::int64_t pass, std::uint64_t seed,
                  Photons photons, Film& film, RunningStats& luminance, RenderStats& stats, const RunContext& context) {
@@ -102,7 +105,7 @@ bool gather_pass(const SamplerContext& c, const RenderPlan& plan, std::int64_t p
                                 .shrink = radii.shrink};
     const GatherRays rays(c.scene, maps, lookups, static_cast<int>(s.max_depth));
     std::optional<IrradianceCache> cache;
-    if (plan.cache) cache = fill_cache(rays, cache_options(s, seed), context);
+    if (plan.cache) cache = fill_cache(rays, cache_options(s, seed), context.with_reserve(kForSamples));
     if (cache) stats.values["cached irradiances"] = static_cast<double>(cache->size());
     const FinalGather gather(
         rays, cache ? &*cache : nullptr,
@@ -136,7 +139,7 @@ RenderResult render_photons(const Scene& scene, const Settings& settings, const 
         // The photons of a pass that was cut short are good for a first picture, not for one that is there.
         if (!work.is_first() && context.stopped()) break;
         if (gather_pass(c, plan, *pass, seed, std::move(photons), *work.unit().film, luminance, stats,
-                        context.without_reserve()))
+                        context.with_reserve(0)))
             work.end_unit(stats);
     }
     sampler->finish(stats);

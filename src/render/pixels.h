@@ -89,8 +89,9 @@ std::int64_t sample_pass(const Scene& scene, Film& film, const SamplePass& p, co
                          RunningStats& luminance_of_samples, Sample&& sample) {
     const SamplingStage stage(scene, p.spp, p.name, context);
     std::int64_t rounds = 0;
-    while (rounds < p.spp &&
-           sample_round(scene, film, p.pass * p.spp + rounds, p.seed, p.purpose, context, luminance_of_samples, sample))
+    const auto context_of = [&](std::int64_t round) { return round == 0 ? context.first_round() : context; };
+    while (rounds < p.spp && sample_round(scene, film, p.pass * p.spp + rounds, p.seed, p.purpose,
+                                          context_of(p.pass * p.spp + rounds), luminance_of_samples, sample))
         ++rounds;
     return rounds;
 }
