@@ -43,7 +43,7 @@ std::vector<double> read_beta(const YamlNode* node, std::size_t segments, double
 Opening read_opening(const YamlNode& node) {
     const MapReader map(node, "an opening", {"corner", "u", "v"});
     const auto edge = [&](std::string_view key) { return read_vec3(map.at(key), kCoordinate); };
-    const Opening opening{edge("corner"), edge("u"), edge("v")};
+    Opening opening{edge("corner"), edge("u"), edge("v")};
     if (!(opening.u.cross(opening.v).length() > 1e-9 * opening.u.length() * opening.v.length()))
         fail_expected(node, "edges u and v that are neither zero nor parallel");
     return opening;
