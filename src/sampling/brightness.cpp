@@ -25,9 +25,9 @@ template <class Sink> struct BesideGuides {
     void contribution(const Rgb& value, PhotonKind kind, auto&& make_path) {
         const Path path = make_path();
         const double guided = guides.density(path);
-        if (!(guided > 0)) return sink.contribution(value, kind, [&] { return path; });
+        if (!(guided > 0)) return sink.contribution(value, kind, [&]() -> const Path& { return path; });
         const double own = independent_density(technique, path);
-        sink.contribution(value * (own / (own + guided)), kind, [&] { return path; });
+        sink.contribution(value * (own / (own + guided)), kind, [&]() -> const Path& { return path; });
     }
 };
 
@@ -43,7 +43,7 @@ void trace_sample(const Scene& scene, const StageOneSettings& settings, Techniqu
         const double guided = settings.guides->density(path);
         if (!(guided > 0)) return; // rounding carried it out of cones or openings
         sink.contribution(path.contribution / (guided + independent_density(technique, path)),
-                          settings.set.storage_point(path).kind, [&] { return path; });
+                          settings.set.storage_point(path).kind, [&]() -> const Path& { return path; });
     });
 }
 
