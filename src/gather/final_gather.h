@@ -50,7 +50,9 @@ class FinalGather {
     const GatherRays& rays_;
     const IrradianceCache* cache_;
     GatherSamples samples_;
-    mutable std::atomic<std::uint64_t> asked_ = 0, unanswered_ = 0;
+    // Apart from what every thread reads all the time.
+    alignas(64) mutable std::atomic<std::uint64_t> asked_ = 0;
+    mutable std::atomic<std::uint64_t> unanswered_ = 0;
 };
 
 } // namespace keyhole

@@ -78,10 +78,7 @@ Block trace_block(const Scene& scene, const EmissionOptions& options, Range path
     for (std::int64_t i = paths.begin; i < paths.end; ++i) {
         Rng rng(options.seed, StreamPurpose::emission, static_cast<std::uint64_t>(i));
         collector.begin(role_of_path(i), rng);
-        if (options.user_paths != nullptr)
-            trace_guided_light_path(scene, *options.user_paths, options.rule.max_scatterings, rng, collector);
-        else
-            trace_light_path(scene, options.rule.max_scatterings, rng, collector);
+        trace_light_path(scene, options.user_paths, options.rule.max_scatterings, rng, collector);
     }
     return std::move(collector.block);
 }

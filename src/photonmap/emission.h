@@ -16,7 +16,7 @@ struct EmissionOptions {
     std::size_t photons; ///< ceiling for both maps together; they share it as they share the weight of what arrives
     StorageRule rule{};
     std::uint64_t seed;
-    const LightGuides* user_paths = nullptr; ///< that half of the light paths follow; null: there are none
+    LightGuides user_paths{}; ///< that half of the light paths follow, where there are any
 };
 
 struct EmittedPhotons : Photons {

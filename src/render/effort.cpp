@@ -90,11 +90,11 @@ double gather_share(const RenderStats& stats) {
     return all > 0 ? gather / all : 0;
 }
 
-/// What a render of some effort has to keep for stage three [s], should the stages before it cost more than was
-/// foreseen.
-double reserve_for_gather(const Experience& last, double effort, double seconds) {
+/// What each pass of a render of some effort has to keep for stage three [s], should the stages before it cost more
+/// than was foreseen.
+double reserve_for_gather(const Experience& last, double effort, double seconds, std::int64_t passes) {
     const double foreseen = last.gather * last.seconds * std::pow(effort / last.effort, 0.75);
-    return std::min(1.2 * foreseen, seconds / 2);
+    return std::min(1.2 * foreseen, seconds / 2) / static_cast<double>(passes);
 }
 
 /// One line of all stages of a render that a better one takes the place of.
@@ -164,7 +164,7 @@ RenderResult render_in_time(Scene& scene, const Settings& settings, const std::s
         const Settings chosen = with_effort(s, effort, pixels, given);
         RunContext limited = context;
         if (!past.empty() && keeps_photons(s.method)) {
-            limited.reserve = reserve_for_gather(past.back(), effort, start);
+            limited.reserve = reserve_for_gather(past.back(), effort, start, chosen.passes);
             limited.whole_round = true; // the render before had one, and time left: photons are worth that little more
         }
         RenderResult result = render(scene, chosen, limited, user_paths, share);

@@ -12,8 +12,7 @@ namespace {
 
 class EmissionSampler final : public PhotonSampler {
   public:
-    EmissionSampler(const SamplerContext& context, bool by_importance)
-        : c_(context), by_importance_(by_importance), user_paths_(context.scene, context.user_paths) {}
+    EmissionSampler(const SamplerContext& context, bool by_importance) : c_(context), by_importance_(by_importance) {}
 
     Photons sample(std::uint64_t seed, RenderStats& stats, const RunContext& context) override {
         const MemoryPlan plan =
@@ -28,7 +27,7 @@ class EmissionSampler final : public PhotonSampler {
                           .photons = plan.photons,
                           .rule = c_.storage(),
                           .seed = seed,
-                          .user_paths = by_importance_ && !user_paths_.empty() ? &user_paths_ : nullptr},
+                          .user_paths = by_importance_ ? LightGuides(c_.scene, c_.user_paths) : LightGuides()},
                          context);
         stats.values["light paths"] = static_cast<double>(photons.paths);
         stats.values["photons before storing"] = static_cast<double>(photons.arrivals);
@@ -39,7 +38,6 @@ class EmissionSampler final : public PhotonSampler {
   private:
     SamplerContext c_;
     bool by_importance_;
-    LightGuides user_paths_; ///< not for the standard method
 };
 
 } // namespace

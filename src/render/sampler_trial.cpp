@@ -102,10 +102,7 @@ double try_emission(const SamplerContext& c, const Scene* walls, const RunContex
     parallel_for(extent.light_paths, [&](std::int64_t i) {
         Rng rng(seed, StreamPurpose::emission, static_cast<std::uint64_t>(i));
         VisiblePower sink{c.scene, global, caustic, c.storage()};
-        if (user_paths.empty())
-            trace_light_path(c.scene, depth, rng, sink);
-        else
-            trace_guided_light_path(c.scene, user_paths, depth, rng, sink);
+        trace_light_path(c.scene, user_paths, depth, rng, sink);
         samples[static_cast<std::size_t>(i)] = sink.shares;
     });
     return relative_variance(samples) * static_cast<double>(rays_traced() - before) /

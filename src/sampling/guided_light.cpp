@@ -48,14 +48,17 @@ void GuidedLightWalk::arrive(const Vertex& v) {
 }
 
 double GuidedLightWalk::leave(Event event, const Vec3& w) {
-    const Vec3 back = to_light();
+    const SurfacePoint& from = last().point;
+    const ScatterValue s = scatter(from, last().bsdf, event, to_light(), w);
+    return s.pdf_to_eye > 0 ? leave(event, s.value * (from.abs_cos(w) / s.pdf_to_eye), s.pdf_to_eye) : 0.0;
+}
+
+double GuidedLightWalk::leave(Event event, const Rgb& weight, double pdf) {
     Vertex& v = path_->x.back();
     v.event = event;
-    const ScatterValue s = scatter(v.point, v.bsdf, event, back, w);
-    if (!(s.pdf_to_eye > 0)) return 0;
-    next_pdf_ = s.pdf_to_eye;
-    power_ *= s.value * (v.point.abs_cos(w) / s.pdf_to_eye);
-    past_.meet(v, back);
+    next_pdf_ = pdf;
+    power_ *= weight;
+    past_.meet(v, to_light());
     const double survive = std::min(1.0, luminance(power()) / reference_);
     if (survive > 0) density_ *= survive;
     return survive;

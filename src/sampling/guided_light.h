@@ -20,8 +20,10 @@ class GuidedLightWalk {
     bool emit(const Vertex& x0, const Vec3& w);
     /// Light arrives at `v` on its way.
     void arrive(const Vertex& v);
-    /// Scatters light by `event` into `w` (unit). Returns the probability with which a free walk has to survive this:
-    /// roulette keeps its power near that which was emitted, or came along a user path. 0 where no light goes there.
+    /// Goes on as continue_walk() chose. Returns the probability with which a free walk has to survive this: roulette
+    /// keeps its power near that which was emitted, or came along a user path. 0 where no light goes there.
+    double leave(const Continuation& next) { return leave(next.event, next.weight, next.forward); }
+    /// The same for light that is scattered by `event` into `w` (unit).
     double leave(Event event, const Vec3& w);
 
     const Vertex& last() const { return path_->x.back(); }
@@ -35,6 +37,8 @@ class GuidedLightWalk {
     bool guided() const { return guided_; }
 
   private:
+    double leave(Event event, const Rgb& weight, double pdf);
+
     const Scene* scene_;
     const LightGuides* guides_;
     Path* path_;                   ///< its events and pdf_from_light only
@@ -76,12 +80,21 @@ void trace_guided_light_path(const Scene& scene, const LightGuides& guides, int 
            walk.vertices() <= max_scatterings) {
         const auto next = continue_walk(walk.last(), walk.to_light(), From::light, rng);
         if (!next) return;
-        const double survive = walk.leave(next->event, next->w);
+        const double survive = walk.leave(*next);
         if (survive < 1 && rng.next() >= survive) return;
         const auto hit = next_vertex(scene, walk.last(), next->w);
         if (!hit || hit->point.site == Site::infinite) return;
         walk.arrive(*hit);
     }
+}
+
+/// Along user paths where there are some.
+template <class Sink>
+void trace_light_path(const Scene& scene, const LightGuides& guides, int max_scatterings, Rng& rng, Sink& sink) {
+    if (guides.empty())
+        trace_light_path(scene, max_scatterings, rng, sink);
+    else
+        trace_guided_light_path(scene, guides, max_scatterings, rng, sink);
 }
 
 } // namespace keyhole

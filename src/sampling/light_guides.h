@@ -9,6 +9,7 @@ namespace keyhole {
 
 class LightGuides {
   public:
+    LightGuides() = default;
     /// The scene must outlive them.
     LightGuides(const Scene& scene, const UserPaths& paths) {
         double total = 0;
