@@ -88,7 +88,11 @@ Share Keeping::share(const std::string& exr, const Picture& render, const Settin
         throw InputError(fmt::format("found passes={} and target_error={}, expected a number of passes that is known "
                                      "beforehand and not below what is to be shared out",
                                      settings.passes, settings.target_error));
-    if (team != nullptr) share.take_number = [team] { return team->take_number(); };
+    if (team != nullptr) {
+        share.take_number = [team] { return team->take_number(); };
+        share.processes = team->size();
+        share.crew = team;
+    }
     if (checkpoint && std::isnan(*checkpoint)) throw InputError("--checkpoint: found nan, expected seconds");
     if (file(exr).empty()) return share;
     const int rank = team != nullptr ? team->rank() : 0;

@@ -1,28 +1,19 @@
 // Several processes that render one picture.
 #pragma once
 
+#include "core/crew.h"
 #include "film/picture.h"
 
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <stdexcept>
 
 namespace keyhole {
 
-/// A process has died, or can't be reached any more. The command line exits with 1.
-class TeamLost : public std::runtime_error {
+/// What one process knows of the others. All of them make the same calls, apart from take_number(). Rank 0 talks and
+/// writes.
+class Team : public Crew {
   public:
-    using std::runtime_error::runtime_error;
-};
-
-/// What one process knows of the others. All of them make the same calls, apart from take_number().
-class Team {
-  public:
-    virtual ~Team() = default;
-
-    virtual int rank() const = 0; ///< rank 0 talks and writes
-
     /// The n-th call made by any process returns n, from 0. None: one of them is lost, and the others end too.
     virtual std::optional<std::int64_t> take_number() = 0;
 

@@ -1,8 +1,7 @@
 // Samples in blocks, of which a stop leaves the first ones.
 #pragma once
 
-#include "core/parallel.h"
-#include "core/progress.h"
+#include "core/shared_work.h"
 
 #include <algorithm>
 #include <optional>
@@ -13,11 +12,12 @@ namespace keyhole {
 
 /// Calls make(range) for blocks of `size` of `count` samples on many threads, then use(what it made) one after the
 /// other, in their order. After a stop only the leading blocks that were made are used: a valid smaller run. Tells
-/// `context` of its progress, between begin() and end().
+/// `context` of its progress, between begin() and end(). A crew shares the blocks out; what they make is as ByteWriter
+/// has it.
 template <class Make, class Use>
 void leading_blocks(std::int64_t count, std::int64_t size, const RunContext& context, Make&& make, Use&& use) {
     std::vector<std::optional<decltype(make(Range{}))>> blocks(static_cast<std::size_t>((count + size - 1) / size));
-    parallel_for(static_cast<std::int64_t>(blocks.size()), [&](std::int64_t b) {
+    shared_for(blocks, context, [&](std::int64_t b) {
         if (context.stopped()) return;
         const Range range{b * size, std::min(count, (b + 1) * size)};
         blocks[static_cast<std::size_t>(b)].emplace(make(range));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/cpu_time.h"
+#include "core/crew.h"
 
 #include <algorithm>
 #include <atomic>
@@ -61,8 +62,12 @@ struct RunContext {
     double reserve = 0;           ///< of the time until `stop`, what is left to later stages [s]
     bool whole_round = false;     ///< every pixel gets its first sample even if time is up
     bool in_overtime = false;     ///< goes on when time is up, until somebody asks for a stop
+    Crew* crew = nullptr;         ///< that does this together; null: this process is alone
 
-    bool stopped() const {
+    /// Whether to finish early: where there is a crew, by what it has agreed on.
+    bool stopped() const { return crew != nullptr ? crew->stopped() : asked_to_stop(); }
+    /// Whether this process is to.
+    bool asked_to_stop() const {
         if (stop == nullptr) return false;
         if (in_overtime) return stop->requested();
         return stop->stopped() || (reserve > 0 && stop->seconds_left() < reserve);
@@ -72,6 +77,12 @@ struct RunContext {
         RunContext c = *this;
         const double left = stop != nullptr && share > 0 ? stop->seconds_left() : 0;
         c.reserve = std::isfinite(left) ? share * left : 0;
+        return c;
+    }
+    /// For what each process does by itself.
+    RunContext alone() const {
+        RunContext c = *this;
+        c.crew = nullptr;
         return c;
     }
     /// For the first round of samples.

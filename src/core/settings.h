@@ -38,6 +38,7 @@ struct Settings {
     std::int64_t brightness_samples = 400'000;
     std::int64_t importons = 600'000;
     std::int64_t chains = 1000;
+    std::int64_t chain_groups = 0;
     std::int64_t mutations = 1'000'000;
     std::int64_t light_paths = 1'000'000;
     std::int64_t photons = 0;
@@ -89,6 +90,8 @@ template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
     visit("brightness_samples", s.brightness_samples, I{1000}, I{1} << 40, "path samples of stage one");
     visit("importons", s.importons, I{1000}, I{1} << 30, "eye paths traced for the importance map");
     visit("chains", s.chains, I{1}, I{1} << 20, "Markov chains; their number never follows the threads");
+    visit("chain_groups", s.chain_groups, I{0}, I{1} << 20,
+          "units of work that the chains of a pass are shared out among, where they draw; 0: by `mutations`");
     visit("mutations", s.mutations, I{1}, I{1} << 50, "Metropolis steps over all chains");
     visit("light_paths", s.light_paths, I{1}, I{1} << 50, "light paths that ipm and pm trace");
     visit("photons", s.photons, I{0}, I{1} << 30, "most photons kept in a pass; 0: what the memory holds");

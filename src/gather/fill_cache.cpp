@@ -1,6 +1,6 @@
 #include "gather/fill_cache.h"
 
-#include "core/parallel.h"
+#include "core/shared_work.h"
 #include "gather/compute_record.h"
 
 #include <algorithm>
@@ -46,18 +46,18 @@ class LevelFill {
             if (!c || is_covered(*c)) continue;
             batch_.push_back(*c);
             indices_.push_back(2 * level * pixels + static_cast<std::uint64_t>(pixel));
-            if (batch_.size() == kBatch) flush();
+            if (batch_.size() == kBatch) flush(context);
         }
-        flush();
+        flush(context);
     }
 
   private:
     bool is_covered(const VisiblePoint& c) const {
         return cache_.irradiance(c.vertex.point.p, cache_normal(c.vertex, c.back)).weight >= kCovered;
     }
-    void flush() {
+    void flush(const RunContext& context) {
         std::vector<IrradianceRecord> records(batch_.size());
-        parallel_for(static_cast<std::int64_t>(batch_.size()), [&](std::int64_t i) {
+        shared_for(records, context, [&](std::int64_t i) {
             const auto k = static_cast<std::size_t>(i);
             records[k] = maker_.compute(batch_[k], indices_[k]);
         });

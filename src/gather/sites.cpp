@@ -1,6 +1,6 @@
 #include "gather/sites.h"
 
-#include "core/parallel.h"
+#include "core/shared_work.h"
 #include "gather/site_light.h"
 #include "photonmap/surface_region.h"
 
@@ -26,13 +26,14 @@ std::optional<SurfacePoint> surface_at(const Scene& scene, const Photon& place) 
 Sites::Sites(const Scene& scene, std::span<const Photon> places, const SiteOptions& options, const RunContext& context)
     : places_(places), sites_(places.size()) {
     constexpr std::int64_t kBlock = 256;
-    const auto count = static_cast<std::int64_t>(places.size());
+    const Range own = own_part(static_cast<std::int64_t>(places.size()), context);
     context.begin("direct light of sites", places.size(), "sites");
-    parallel_for((count + kBlock - 1) / kBlock, [&](std::int64_t b) {
-        for (std::int64_t i = b * kBlock; i < std::min(count, (b + 1) * kBlock); ++i)
+    parallel_for((own.size() + kBlock - 1) / kBlock, [&](std::int64_t b) {
+        for (std::int64_t i = own.begin + b * kBlock; i < std::min(own.end, own.begin + (b + 1) * kBlock); ++i)
             sites_[static_cast<std::size_t>(i)] = at(scene, static_cast<std::uint32_t>(i), options);
         context.advance(kBlock);
     });
+    exchange_parts(sites_, context);
     context.end();
 }
 

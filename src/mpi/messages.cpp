@@ -1,8 +1,11 @@
 #include "mpi/messages.h"
 
+#include "core/error.h"
+
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <limits>
 #include <thread>
 
 namespace keyhole {
@@ -58,6 +61,40 @@ void send_bytes(MPI_Comm comm, int to, const std::vector<char>& bytes, const Che
         MPI_Isend(bytes.data() + at, part, MPI_BYTE, to, kBytes, comm, &request);
         wait_for(request, check);
     }
+}
+
+Exchanged exchange_bytes(MPI_Comm comm, const std::vector<char>& part, bool stop, const Check& check) {
+    int size = 0;
+    MPI_Comm_size(comm, &size);
+    struct Head {
+        std::uint64_t bytes, stop;
+    };
+    const Head own{part.size(), stop ? std::uint64_t{1} : std::uint64_t{0}};
+    std::vector<Head> heads(static_cast<std::size_t>(size));
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Iallgather(&own, 2, MPI_UINT64_T, heads.data(), 2, MPI_UINT64_T, comm, &request);
+    wait_for(request, check);
+
+    std::vector<int> counts, begins;
+    std::uint64_t total = 0;
+    Exchanged all{{}, false};
+    for (const Head& h : heads) {
+        counts.push_back(static_cast<int>(h.bytes));
+        begins.push_back(static_cast<int>(total));
+        total += h.bytes;
+        all.stop = all.stop || h.stop != 0;
+    }
+    if (total > std::numeric_limits<int>::max())
+        throw InputError("found a pass that sends 2 GiB at once, expected less: ask for more passes of fewer photons");
+    std::vector<char> bytes(total);
+    MPI_Iallgatherv(part.data(), static_cast<int>(part.size()), MPI_BYTE, bytes.data(), counts.data(), begins.data(),
+                    MPI_BYTE, comm, &request);
+    wait_for(request, check);
+    for (std::size_t r = 0; r < heads.size(); ++r) {
+        const auto* begin = bytes.data() + begins[r];
+        all.parts.emplace_back(begin, begin + counts[r]);
+    }
+    return all;
 }
 
 std::vector<char> receive_bytes(MPI_Comm comm, int from, const Check& check) {

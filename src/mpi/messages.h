@@ -31,4 +31,12 @@ void wait_for(MPI_Request& request, const Check& check);
 void send_bytes(MPI_Comm comm, int to, const std::vector<char>& bytes, const Check& check);
 std::vector<char> receive_bytes(MPI_Comm comm, int from, const Check& check);
 
+/// What all processes have sent each other.
+struct Exchanged {
+    std::vector<std::vector<char>> parts; ///< by rank
+    bool stop;                            ///< whether one of them wants to
+};
+/// Sends each process what all have. @throws InputError for 2 GiB and more together.
+Exchanged exchange_bytes(MPI_Comm comm, const std::vector<char>& part, bool stop, const Check& check);
+
 } // namespace keyhole

@@ -12,6 +12,9 @@ namespace keyhole {
 class MpiTeam final : public Team {
   public:
     int rank() const override { return pulse_.rank(); }
+    int size() const override { return pulse_.size(); }
+    std::vector<std::vector<char>> exchange(std::vector<char> part, bool stop) override;
+    bool stopped() const override { return stopped_; }
     /// Whether this process has lost touch with rank 0.
     bool is_cut_off() const { return rank() > 0 && pulse_.lost(); }
     std::optional<std::int64_t> take_number() override;
@@ -22,6 +25,7 @@ class MpiTeam final : public Team {
     void wait_until_all_are_done();
 
     Pulse pulse_;
+    bool stopped_ = false;
 };
 
 } // namespace keyhole

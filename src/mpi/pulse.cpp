@@ -13,10 +13,11 @@
 namespace keyhole {
 namespace {
 
-enum Tag : int { kAsk, kNumber, kNoMore, kAlive, kGone };
+enum Tag : int { kAsk, kNumber, kNoMore, kAlive, kGone, kLost };
 
 constexpr int kHost = 64; // characters of a host's name that are kept
 constexpr std::int64_t kNone = -1;
+constexpr const char* kOtherLost = "rank 0 has lost another process";
 
 /// Seconds since the last call, as far as this process was awake: one that was suspended, with the others or alone,
 /// must not take them for lost.
@@ -77,7 +78,7 @@ void Pulse::take_message(const MPI_Status& status) {
     take_signal(comm_, from, status.MPI_TAG);
     if (silence_[r] < 0) return; // was taken for lost
     silence_[r] = 0;
-    if (status.MPI_TAG == kAlive) send_signal(comm_, from, kAlive);
+    if (status.MPI_TAG == kAlive) send_signal(comm_, from, lost() ? kLost : kAlive);
     if (status.MPI_TAG == kAsk) {
         const std::int64_t number = lost() ? kNone : next_++;
         MPI_Send(&number, 1, MPI_INT64_T, from, kNumber, comm_);
@@ -119,6 +120,10 @@ void Pulse::ask() {
         if (asked && look_for(comm_, 0, kAlive)) {
             take_signal(comm_, 0, kAlive);
             asked = false;
+        } else if (asked && look_for(comm_, 0, kLost)) {
+            take_signal(comm_, 0, kLost);
+            asked = false;
+            others_lost_ = true;
         } else if (!asked && since >= pause) {
             send_signal(comm_, 0, kAlive);
             asked = true;
@@ -140,7 +145,7 @@ std::int64_t Pulse::take_number() {
     wait_for(comm_, 0, kNumber, [this] { check(); });
     std::int64_t number = kNone;
     MPI_Recv(&number, 1, MPI_INT64_T, 0, kNumber, comm_, MPI_STATUS_IGNORE);
-    if (number == kNone) throw TeamLost("rank 0 has lost another process");
+    if (number == kNone) throw TeamLost(kOtherLost);
     return number;
 }
 
@@ -154,6 +159,11 @@ void Pulse::check() const {
     const char* host = rank_ == 0 ? hosts_.data() + static_cast<std::size_t>(lost_) * kHost : "";
     throw TeamLost(fmt::format("rank {} has heard nothing of rank {}{}{} for {} s", rank_, lost_.load(),
                                *host != '\0' ? " on " : "", host, patience_));
+}
+
+void Pulse::check_all() const {
+    check();
+    if (others_lost_) throw TeamLost(kOtherLost);
 }
 
 } // namespace keyhole

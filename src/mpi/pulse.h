@@ -33,8 +33,10 @@ class Pulse {
 
     /// Whether somebody is lost: of ranks above 0, rank 0.
     bool lost() const { return lost_ >= 0; }
-    /// @throws TeamLost
+    /// @throws TeamLost if somebody is.
     void check() const;
+    /// The same, on every rank, once rank 0 has lost anyone: for what needs all processes. @throws TeamLost
+    void check_all() const;
 
   private:
     void answer();
@@ -49,7 +51,7 @@ class Pulse {
     std::vector<bool> taking_;    // of rank 0: who may still ask for numbers
     std::atomic<std::int64_t> next_{0};
     std::atomic<int> working_{0}, lost_{-1};
-    std::atomic<bool> leaving_{false};
+    std::atomic<bool> leaving_{false}, others_lost_{false};
     bool stopped_ = false;
     std::thread thread_;
 };

@@ -1,6 +1,6 @@
 #include "photonmap/emission.h"
 
-#include "core/parallel.h"
+#include "core/shared_work.h"
 #include "photonmap/map_stores.h"
 #include "sampling/guided_light.h"
 
@@ -20,6 +20,7 @@ struct Block {
         weights += o.weights;
         arrivals += o.arrivals;
     }
+    auto parts() { return std::tie(scouts, carriers, weights, arrivals); }
 };
 
 /// Receives the arrivals of one light path after the other.
@@ -85,9 +86,9 @@ Block trace_block(const Scene& scene, const EmissionOptions& options, Range path
 
 /// Traces a range of paths in blocks, in parallel.
 std::vector<Block> trace_blocks(const Scene& scene, const EmissionOptions& options, Range paths,
-                                const Collector& collector) {
+                                const Collector& collector, const RunContext& context) {
     std::vector<Block> blocks(static_cast<std::size_t>((paths.size() + kBlock - 1) / kBlock));
-    parallel_for(static_cast<std::int64_t>(blocks.size()), [&](std::int64_t b) {
+    shared_for(blocks, context, [&](std::int64_t b) {
         const std::int64_t begin = paths.begin + b * kBlock;
         blocks[static_cast<std::size_t>(b)] =
             trace_block(scene, options, {begin, std::min(begin + kBlock, paths.end)}, collector);
@@ -96,12 +97,13 @@ std::vector<Block> trace_blocks(const Scene& scene, const EmissionOptions& optio
 }
 
 /// Weights of the first paths; nothing is stored.
-Block learn_from_pilot(const Scene& scene, const EmissionGuide& guide, const EmissionOptions& options) {
+Block learn_from_pilot(const Scene& scene, const EmissionGuide& guide, const EmissionOptions& options,
+                       const RunContext& context) {
     const double infinity = std::numeric_limits<double>::infinity();
     const MapStores::Thresholds never{infinity, infinity};
     Block sum;
     for (const Block& b : trace_blocks(scene, options, {0, std::min(kPilot, options.paths)},
-                                       Collector({guide, 1}, never, never, options.rule)))
+                                       Collector({guide, 1}, never, never, options.rule), context))
         sum.learn(b);
     sum.arrivals = 0;
     return sum;
@@ -113,7 +115,7 @@ EmittedPhotons emit_photons(const Scene& scene, const EmissionGuide& guide, cons
                             const RunContext& context) {
     EmittedPhotons out;
     if (scene.emitter_distribution().empty()) return out;
-    Block learnt = learn_from_pilot(scene, guide, options);
+    Block learnt = learn_from_pilot(scene, guide, options, context);
     const std::size_t for_caustic = options.rule.caustics ? learnt.weights.for_caustic(options.photons) : 0;
     MapStores stores(options.photons - for_caustic, for_caustic, {}, options.seed);
 
@@ -126,7 +128,7 @@ EmittedPhotons emit_photons(const Scene& scene, const EmissionGuide& guide, cons
         const PhotonWeighing weighing{guide, learnt.weights.unknown_scale()};
         const Collector collector(weighing, stores.thresholds(PhotonRole::scout),
                                   stores.thresholds(PhotonRole::carrier), options.rule);
-        for (Block& b : trace_blocks(scene, options, range, collector)) {
+        for (Block& b : trace_blocks(scene, options, range, collector, context)) {
             stores.absorb(PhotonRole::scout, b.scouts);
             stores.absorb(PhotonRole::carrier, b.carriers);
             learnt.learn(b);

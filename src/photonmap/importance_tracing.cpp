@@ -1,11 +1,10 @@
 #include "photonmap/importance_tracing.h"
 
-#include "core/parallel.h"
+#include "core/shared_work.h"
 #include "sampling/eye_path_head.h"
 #include "sampling/image_lattice.h"
 
 #include <algorithm>
-#include <array>
 
 namespace keyhole {
 namespace {
@@ -31,7 +30,7 @@ void append(std::vector<Photon>& from, std::vector<Photon>& to) {
 
 Importons trace_importance(const Scene& scene, const ImportanceTracing& options, const RunContext& context) {
     constexpr std::int64_t kBlock = 512, kBlocks = 64;
-    std::array<Importons, kBlocks> parts;
+    std::vector<Importons> parts(kBlocks);
     Importons all;
     // A vertex with a finite and a specular part may leave several importons at its image's path: rare enough for the
     // vectors to grow then.
@@ -39,7 +38,7 @@ Importons trace_importance(const Scene& scene, const ImportanceTracing& options,
     if (options.at_d1) all.first.reserve(static_cast<std::size_t>(options.samples));
     context.begin("importance", static_cast<std::uint64_t>(options.samples), "paths");
     for (std::int64_t begin = 0; begin < options.samples; begin += kBlock * kBlocks) {
-        parallel_for(kBlocks, [&](std::int64_t b) {
+        shared_for(parts, context, [&](std::int64_t b) {
             const std::int64_t first = begin + b * kBlock, end = std::min(options.samples, first + kBlock);
             for (std::int64_t i = first; i < end; ++i) {
                 Rng rng(options.seed, StreamPurpose::importance, static_cast<std::uint64_t>(i));

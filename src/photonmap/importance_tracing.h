@@ -6,6 +6,7 @@
 #include "scene/scene.h"
 
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 namespace keyhole {
@@ -22,6 +23,8 @@ struct ImportanceTracing {
 struct Importons {
     std::vector<Photon> first;  ///< at d1
     std::vector<Photon> second; ///< at d2
+
+    auto parts() { return std::tie(first, second); }
 };
 
 /// Traces eye paths as far as their second non-specular vertex. Takes no more memory than the result, and a little.

@@ -1,6 +1,6 @@
 #include "photonmap/irradiance_map.h"
 
-#include "core/parallel.h"
+#include "core/shared_work.h"
 #include "photonmap/sight.h"
 
 #include <algorithm>
@@ -11,19 +11,20 @@ IrradianceMap::IrradianceMap(const PhotonMap& scouts, const PhotonMap& carriers,
                              const RunContext& context)
     : scouts_(scouts), estimates_(scouts.photons().size()), max_radius_(options.max_radius), scene_(options.scene) {
     constexpr std::int64_t kBlock = 256;
-    const auto count = static_cast<std::int64_t>(estimates_.size());
-    std::vector<Count> used(static_cast<std::size_t>((count + kBlock - 1) / kBlock));
-    context.begin("irradiance", static_cast<std::uint64_t>(count), "estimates");
+    const Range own = own_part(static_cast<std::int64_t>(estimates_.size()), context);
+    std::vector<Count> used(static_cast<std::size_t>((own.size() + kBlock - 1) / kBlock));
+    context.begin("irradiance", static_cast<std::uint64_t>(own.size()), "estimates");
     parallel_for(static_cast<std::int64_t>(used.size()), [&](std::int64_t b) {
-        for (std::int64_t i = b * kBlock; i < std::min(count, (b + 1) * kBlock); ++i)
+        for (std::int64_t i = own.begin + b * kBlock; i < std::min(own.end, own.begin + (b + 1) * kBlock); ++i)
             used[static_cast<std::size_t>(b)] += estimate(static_cast<std::uint32_t>(i), carriers, options);
         context.advance(kBlock);
     });
+    exchange_parts(estimates_, context);
     context.end();
-    if (count == 0) return;
+    if (own.size() == 0) return;
     for (const Count& u : used) mean_ += u;
-    mean_.photons /= static_cast<double>(count);
-    mean_.effective /= static_cast<double>(count);
+    mean_.photons /= static_cast<double>(own.size());
+    mean_.effective /= static_cast<double>(own.size());
 }
 
 IrradianceMap::Count IrradianceMap::estimate(std::uint32_t i, const PhotonMap& carriers,

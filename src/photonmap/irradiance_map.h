@@ -44,7 +44,7 @@ class IrradianceMap {
     std::size_t bytes() const { return estimates_.capacity() * sizeof(Estimate); }
     /// Of it, for one scout [bytes].
     static constexpr std::size_t bytes_per_place() { return sizeof(Estimate); }
-    /// Number of photons that went into an estimate, on average.
+    /// Number of photons that went into an estimate, on average over those that this process made.
     double mean_photons() const { return mean_.photons; }
     /// How many equal ones would be as good, on average over estimates: squared sum of power over sum of squares
     /// (Kish).

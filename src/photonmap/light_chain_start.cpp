@@ -22,6 +22,8 @@ struct Find {
 struct Block {
     std::vector<Find> finds; ///< one for each sample
     PhotonWeights weights;
+
+    auto parts() { return std::tie(finds, weights); }
 };
 
 Block sample_block(const LightBuilder& builder, std::uint64_t seed, Range samples) {

@@ -1,11 +1,13 @@
 #include "photonmap/light_chains.h"
 
-#include "core/parallel.h"
+#include "core/shared_work.h"
 #include "photonmap/light_chain.h"
 #include "sampling/primary/primary_start.h"
 
 #include <algorithm>
 #include <memory>
+#include <tuple>
+#include <utility>
 
 namespace keyhole {
 namespace {
@@ -43,9 +45,14 @@ class LightChains {
         collect(stores);
     }
     /// Stores what the states still hold.
-    void flush(MapStores& stores) {
-        for (const auto& chain : chains_) chain->store(chain->state.sample(), chain->stay, part(chain->role).weights);
-        collect(stores);
+    void flush(MapStores& stores, const RunContext& context) {
+        std::vector<MapBuffers> left(chains_.size());
+        shared_for(left, context, [&](std::int64_t c) {
+            LightChain& chain = *chains_[static_cast<std::size_t>(c)];
+            chain.store(chain.state.sample(), chain.stay, part(chain.role).weights);
+            left[static_cast<std::size_t>(c)] = std::exchange(chain.buffers, {});
+        });
+        for (std::size_t c = 0; c < chains_.size(); ++c) stores.absorb(chains_[c]->role, left[c]);
     }
 
     PrimaryCounts counts() const {
@@ -78,8 +85,18 @@ class LightChains {
             chains_.push_back(std::move(chain));
         }
     }
+    /// What a chain hands on after a round, to all processes.
+    struct Haul {
+        MapBuffers buffers;
+        RunningStats large;
+        PrimaryCounts counts;
+
+        auto parts() { return std::tie(buffers, large, counts); }
+    };
+
     void run(const PrimaryKernel& kernel, std::int64_t steps, const RunContext& context, bool storing) {
-        parallel_for(size(), [&](std::int64_t c) {
+        std::vector<Haul> hauls(chains_.size());
+        shared_for(hauls, context, [&](std::int64_t c) {
             LightChain& chain = *chains_[static_cast<std::size_t>(c)];
             chain.large = {};
             const std::uint64_t failed = chain.counts.large.failed;
@@ -87,9 +104,15 @@ class LightChains {
             for (std::int64_t i = 0; i < steps; ++i) kernel.step(space, chain.rng, chain.counts, space);
             space.settle();
             for (std::uint64_t i = failed; i < chain.counts.large.failed; ++i) chain.large.add(0);
+            hauls[static_cast<std::size_t>(c)] = {std::exchange(chain.buffers, {}), chain.large, chain.counts};
             context.advance(static_cast<std::uint64_t>(steps));
         });
-        for (const auto& chain : chains_) part(chain->role).target.merge(chain->large);
+        for (std::size_t c = 0; c < chains_.size(); ++c) {
+            LightChain& chain = *chains_[c];
+            chain.buffers = std::move(hauls[c].buffers);
+            chain.counts = hauls[c].counts;
+            part(chain.role).target.merge(hauls[c].large);
+        }
     }
     void collect(MapStores& stores) {
         for (const auto& chain : chains_) stores.absorb(chain->role, chain->buffers);
@@ -140,7 +163,7 @@ LightChainPhotons run_light_chains(const Scene& scene, const EmissionGuide& guid
         steps += now;
     }
     context.end();
-    chains.flush(stores);
+    chains.flush(stores, context);
 
     out.chains = chains.size();
     out.counts = chains.counts();

@@ -11,6 +11,8 @@ namespace keyhole {
 /// What waits for the stores of either map.
 struct MapBuffers {
     PhotonBuffer global, caustic;
+
+    auto parts() { return std::tie(global, caustic); }
 };
 
 /// Stores for what a sampler finds; both maps together hold no more than they were made for. Not thread-safe.

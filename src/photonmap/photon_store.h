@@ -7,6 +7,7 @@
 #include <cassert>
 #include <cmath>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 namespace keyhole {
@@ -22,6 +23,8 @@ inline double roulette(double weight, double threshold, Rng& rng) {
 struct PhotonBuffer {
     std::vector<Photon> photons;
     std::vector<float> weights;
+
+    auto parts() { return std::tie(photons, weights); }
 };
 
 /// Collects weighted photons and never holds more than its capacity. Weights below a threshold t survive with

@@ -45,7 +45,7 @@ RenderResult render_bdpt(const Scene& scene, const Settings& settings, const Run
     RenderResult result;
     const ImageWindow& window = scene.camera().window();
     RunningStats luminance;
-    Work work(settings, window, Exposure::Parts::both, share, settings.spp);
+    Work work(settings, window, Exposure::Parts::both, share, settings.spp, Work::PassStart::free);
     SplatFilm splats(window.width, window.height, PixelFilter(settings));
     // One light sub-path for each pixel and round, each an estimate of the whole window.
     const double scale = window.pixels() / (static_cast<double>(window.width) * window.height);

@@ -5,6 +5,7 @@
 // estimation find them at once, and chains would spend most of their steps there. Where few paths from the eye come,
 // direct light at the second surface is left to the chains as well.
 #include "film/splats.h"
+#include "render/chain_groups.h"
 #include "render/chain_report.h"
 #include "render/find_reach.h"
 #include "render/methods.h"
@@ -16,23 +17,49 @@
 #include "render/work.h"
 #include "sampling/proposals/registry.h"
 
+#include <span>
+
 namespace keyhole {
 namespace {
 
-/// Samples everything that the chains leave out. Returns whether it was completed.
-bool sample_direct(const Scene& scene, const Settings& settings, const PathSet& chains, std::int64_t pass, Film& film,
+/// What the units of a pass have in common.
+struct PassStart {
+    std::int64_t pass = -1;
+    StageOneSettings settings{};
+    StageOne one;
+    std::vector<Path> seeds;
+    bool whole = false; ///< not cut short by a stop
+
+    bool is_dark() const { return !(one.brightness.mean() > 0); }
+};
+
+PassStart start_pass(const Scene& scene, const Settings& settings, const StageOneSettings& first, std::int64_t pass,
+                     ChainReports& reports, RenderStats& stats, const RunContext& context) {
+    PassStart start{.pass = pass, .settings = first, .one = {}, .seeds = {}};
+    start.one = reports.measure_brightness(scene, first, stats, context);
+    start.whole = start.one.samples == first.samples;
+    if (start.is_dark()) return start;
+    const StageClock clock(stats, "chains");
+    start.seeds = choose_seeds(scene, first, start.one, start.one.all_groups(), settings.chains);
+    return start;
+}
+
+/// Takes some rounds of samples of everything that the chains leave out. Returns whether it got through them.
+bool sample_direct(const Scene& scene, const Settings& settings, const PathSet& chains, Range rounds, Film& film,
                    RunningStats& luminance, RenderStats& stats, const RunContext& context) {
     const StageClock clock(stats, "direct light");
     const auto depth = static_cast<int>(settings.max_depth);
-    const SamplePass rounds_of{pass, settings.spp, static_cast<std::uint64_t>(settings.seed),
-                               StreamPurpose::path_tracing, "direct light"};
-    const auto rounds =
-        sample_pass(scene, film, rounds_of, context, luminance, [&](const Vec2& image, SampleSource& source) {
-            PixelSink sink{&chains};
-            trace_path(scene, image, depth, source, sink);
-            return sink.pixel;
-        });
-    return rounds == settings.spp;
+    const SamplingStage stage(scene, rounds.size(), "direct light", context);
+    for (std::int64_t round = rounds.begin; round < rounds.end; ++round)
+        if (!sample_round(scene, film, round, static_cast<std::uint64_t>(settings.seed), StreamPurpose::path_tracing,
+                          round == 0 ? context.first_round() : context, luminance,
+                          [&](const Vec2& image, SampleSource& source) {
+                              PixelSink sink{&chains};
+                              trace_path(scene, image, depth, source, sink);
+                              return sink.pixel;
+                          }))
+            return false;
+    return true;
 }
 
 void splat(SplatFilm& splats, const ImageWindow& window, const Path& path, double weight) {
@@ -41,20 +68,20 @@ void splat(SplatFilm& splats, const ImageWindow& window, const Path& path, doubl
     splats.add(window.to_pixel(path.image), layer, path.contribution * (weight / path.target));
 }
 
-/// Runs the chains of a pass and adds what they draw. Returns whether they got to their end.
-bool draw_chains(const Scene& scene, const Settings& settings, const UserPaths& paths, const StageOneSettings& first,
-                 const StageOne& one, Work& work, ChainReports& reports, RenderStats& stats,
-                 const RunContext& context) {
+/// Runs a group of the chains of a pass and adds what they draw. Returns whether they got to their end.
+bool draw_chains(const Scene& scene, const Settings& settings, const UserPaths& paths, const PassStart& start,
+                 Range group, Work& work, ChainReports& reports, RenderStats& stats, const RunContext& context) {
     const StageClock clock(stats, "chains");
-    const ChainMixtures mixtures({&scene, first.set, static_cast<int>(settings.max_depth)}, settings, paths);
-    ChainSet chains(choose_seeds(scene, first, one, one.all_groups(), settings.chains), mixtures.mixture, first.seed,
-                    mixtures.control_or_null());
+    const ChainMixtures mixtures({&scene, start.settings.set, static_cast<int>(settings.max_depth)}, settings, paths);
+    const auto seeds =
+        std::span(start.seeds).subspan(static_cast<std::size_t>(group.begin), static_cast<std::size_t>(group.size()));
+    ChainSet chains(seeds, mixtures.mixture, start.settings.seed, mixtures.control_or_null(), group.begin);
     const ImageWindow& window = scene.camera().window();
     SplatFilm splats(window.width, window.height, PixelFilter(settings));
 
     // In rounds, so that a stop finds all chains equally long.
     constexpr std::int64_t kRound = 64;
-    const std::int64_t per_chain = std::max<std::int64_t>(1, settings.mutations / chains.size());
+    const std::int64_t per_chain = steps_of_chains(settings, static_cast<std::int64_t>(start.seeds.size()));
     context.begin("chains", static_cast<std::uint64_t>(per_chain * chains.size()), "mutations");
     while (chains.steps() < per_chain && !(context.stopped() && chains.steps() > 0))
         chains.advance(std::min(std::clamp<std::int64_t>(per_chain / 32, 1, kRound), per_chain - chains.steps()),
@@ -66,7 +93,7 @@ bool draw_chains(const Scene& scene, const Settings& settings, const UserPaths& 
     const ChainSummary summary = chains.summary();
     if (!whole && !work.is_first()) return false;
     reports.add(mixtures.mixture, summary, stats);
-    work.unit().drawn->add(splats, one.brightness.mean() * window.pixels() / static_cast<double>(summary.steps));
+    work.unit().drawn->add(splats, start.one.brightness.mean() * window.pixels() / static_cast<double>(summary.steps));
     return whole;
 }
 
@@ -76,24 +103,33 @@ RenderResult render_mlt(const Scene& scene, const Settings& settings, const User
                         const Share& share) {
     RenderResult result;
     RenderStats& stats = result.stats;
-    Work work(settings, scene.camera().window(), Exposure::Parts::both, share);
+    const std::int64_t groups = chain_groups(settings);
+    Work work(settings, scene.camera().window(), Exposure::Parts::both, share, groups, Work::PassStart::costly);
     ChainReports reports;
     RunningStats luminance; // of direct light
     const ReachFound found = find_reach(scene, settings);
     const PathSet set{.reach = found.reach ? &*found.reach : nullptr};
     const GuidedPaths guides(scene, paths, set, static_cast<int>(settings.max_depth));
-    while (const auto pass = work.take(context)) {
-        const StageOneSettings first{.set = set,
-                                     .max_scatterings = static_cast<int>(settings.max_depth),
-                                     .samples = settings.brightness_samples,
-                                     .seed = seed_of_pass(settings, *pass),
-                                     .guides = paths.empty() ? nullptr : &guides};
-        bool whole = sample_direct(scene, settings, set, *pass, *work.unit().film, luminance, stats, context);
+    PassStart start;
+    while (const auto unit = work.take(context)) {
+        const std::int64_t pass = work.pass_of(*unit), group = *unit % groups;
+        const Range of_pass = rounds_of_group(settings.spp, groups, group);
+        const Range rounds{pass * settings.spp + of_pass.begin, pass * settings.spp + of_pass.end};
+        bool whole = sample_direct(scene, settings, set, rounds, *work.unit().film, luminance, stats, context);
         if (!whole && !work.is_first()) break;
-        const StageOne one = reports.measure_brightness(scene, first, stats, context);
-        whole = whole && one.samples == first.samples;
-        if (one.brightness.mean() > 0)
-            whole = draw_chains(scene, settings, paths, first, one, work, reports, stats, context) && whole;
+        if (start.pass != pass) {
+            const StageOneSettings first{.set = set,
+                                         .max_scatterings = static_cast<int>(settings.max_depth),
+                                         .samples = settings.brightness_samples,
+                                         .seed = seed_of_pass(settings, pass),
+                                         .guides = paths.empty() ? nullptr : &guides};
+            start = start_pass(scene, settings, first, pass, reports, stats, context);
+        }
+        whole = whole && start.whole;
+        if (!start.is_dark())
+            whole = draw_chains(scene, settings, paths, start, chains_of_group(start.seeds.size(), groups, group), work,
+                                reports, stats, context) &&
+                    whole;
         else if (whole)
             work.unit().drawn->add(SplatFilm(scene.camera().window().width, scene.camera().window().height), 0);
         if (whole) work.end_unit(stats);

@@ -11,7 +11,7 @@ namespace keyhole {
 RenderResult render_path(const Scene& scene, const Settings& settings, const RunContext& context, const Share& share) {
     RenderResult result;
     RunningStats luminance;
-    Work work(settings, scene.camera().window(), Exposure::Parts::film, share, settings.spp);
+    Work work(settings, scene.camera().window(), Exposure::Parts::film, share, settings.spp, Work::PassStart::free);
     {
         const StageClock clock(result.stats, "path tracing");
         const SamplingStage stage(scene, work.left(), "path tracing", context);

@@ -1,14 +1,12 @@
 // The methods that render from photon maps: pass by pass a sampler, the maps, the gather.
-#include "gather/fill_cache.h"
-#include "gather/final_gather.h"
 #include "render/methods.h"
+#include "render/pass_gather.h"
 #include "render/pass_seed.h"
 #include "render/photon_file.h"
 #include "render/photon_report.h"
 #include "render/photon_sampler.h"
 #include "render/pixels.h"
 #include "render/plan.h"
-#include "render/radii.h"
 #include "render/sample_report.h"
 #include "render/sampler_trial.h"
 #include "render/stage_clock.h"
@@ -59,63 +57,74 @@ std::unique_ptr<PhotonSampler> make_sampler(const SamplerContext& c, const Rende
     return make_emission_sampler(c, method == "ipm");
 }
 
-/// Share of the time for stage three that the samples of pixels get at least.
-constexpr double kForSamples = 0.25;
+/// Renders one pass after the other.
+class Passes {
+  public:
+    Passes(const SamplerContext& c, const RenderPlan& plan, PhotonSampler& sampler, Work& work, RenderStats& stats)
+        : c_(c), plan_(plan), sampler_(sampler), work_(work), stats_(stats) {}
 
-/// Stage three: what the eye sees, from the photons of a pass. Returns whether it was completed.
-bool gather_pass(const SamplerContext& c, const RenderPlan& plan, std::int64_t pass, std::uint64_t seed,
-                 Photons photons, Film& film, RunningStats& luminance, RenderStats& stats, const RunContext& context) {
-    const StageClock clock(stats, "gather");
-    const Settings& s = c.settings;
-    const Radii radii(c.scene, pass);
-    stats.photons_global = photons.global.size();
-    stats.photons_caustic = photons.caustic.size();
-    report_power(photons, stats);
-    const ScoutedMap global(std::move(photons.global)), caustic(std::move(photons.caustic));
-    const IrradianceOptions estimates{.k = static_cast<int>(s.nearest),
-                                      .max_radius = radii.global,
-                                      .shrink = radii.shrink,
-                                      .patches = &c.patches,
-                                      .reach = c.reach,
-                                      .scene = &c.scene};
-    // An estimate made beforehand is asked from a little way off. Once regions get as small as that, each is made where
-    // it is asked.
-    std::optional<IrradianceMap> irradiance;
-    if (plan.photons && static_cast<float>(s.nearest) * radii.shrink * radii.shrink > 2.0f * kScoutEvery)
-        irradiance.emplace(global.scouts(), global.carriers(), estimates, context);
-    if (irradiance) report_lookups(*irradiance, static_cast<double>(s.nearest) * radii.shrink * radii.shrink, stats);
-
-    std::optional<Sites> sites;
-    if (irradiance) {
-        sites.emplace(c.scene, irradiance->places(), SiteOptions{.seed = seed}, context);
+    /// All passes that there are units of.
+    void run(const RunContext& context) {
+        next_ = work_.take(context);
+        while (next_ && run_pass(work_.pass_of(*next_), context)) {
+        }
     }
-    if (plan.photons)
-        stats.photon_bytes =
-            std::max<std::uint64_t>(stats.photon_bytes, global.bytes() + caustic.bytes() +
-                                                            (irradiance ? irradiance->bytes() + sites->bytes() : 0));
-    const GatherMaps maps{.global = global.carriers().photons().empty() ? nullptr : &global,
-                          .irradiance = irradiance ? &*irradiance : nullptr,
-                          .sites = sites ? &*sites : nullptr,
-                          .caustic = caustic.carriers().photons().empty() ? nullptr : &caustic,
-                          .patches = &c.patches,
-                          .reach = c.reach};
-    const LookupOptions lookups{.nearest = static_cast<int>(s.nearest),
-                                .max_radius = radii.global,
-                                .caustic_radius = radii.caustic,
-                                .shrink = radii.shrink};
-    const GatherRays rays(c.scene, maps, lookups, static_cast<int>(s.max_depth));
-    std::optional<IrradianceCache> cache;
-    if (plan.cache) cache = fill_cache(rays, cache_options(s, seed), context.with_reserve(kForSamples));
-    if (cache) stats.values["cached irradiances"] = static_cast<double>(cache->size());
-    const FinalGather gather(
-        rays, cache ? &*cache : nullptr,
-        {.light = static_cast<int>(s.light_samples), .rays = plan.gather ? static_cast<int>(s.gather_rays) : 1});
-    const auto rounds = sample_pass(
-        c.scene, film, {pass, s.spp, static_cast<std::uint64_t>(s.seed), StreamPurpose::gather, "gather"}, context,
-        luminance, [&](const Vec2& image, SampleSource& source) { return gather.sample(image, source); });
-    if (cache) report_starving(gather.starving(), stats);
-    return rounds == s.spp;
-}
+    /// The same by a crew: each helps with every pass, whether or not it gets to sample pixels from it.
+    void run_together(const RunContext& context) {
+        RunContext together = context;
+        together.crew = work_.crew();
+        try {
+            next_ = work_.take(context);
+            for (auto pass = work_.pass_from(0); pass; pass = work_.pass_from(*pass + 1))
+                if (!run_pass(*pass, together)) break;
+        } catch (const TeamLost&) { // whoever collects what is done says so
+        }
+    }
+    const RunningStats& luminance() const { return luminance_; }
+
+  private:
+    /// Returns whether to go on.
+    bool run_pass(std::int64_t pass, const RunContext& context) {
+        const std::uint64_t seed = seed_of_pass(c_.settings, pass);
+        Photons photons = sampler_.sample(seed, stats_, context);
+        if (pass == 0 && !c_.settings.save_map.empty() && (context.crew == nullptr || context.crew->rank() == 0))
+            save_photons(c_.settings.save_map, photon_file_key(c_.scene, c_.settings, c_.reach), photons);
+        // The photons of a pass that was cut short are good for a first picture, not for one that is there.
+        if (context.stopped() && (context.crew != nullptr || !work_.is_first())) return false;
+        report_photons(photons, stats_);
+        const StageClock clock(stats_, "gather");
+        const RunContext all_time = context.with_reserve(0);
+        const PassGather gather(c_, plan_, pass, seed, std::move(photons), stats_, all_time);
+        if (context.crew != nullptr && context.stopped()) return false;
+        const bool whole = sample_rounds(gather, pass, all_time.alone());
+        gather.report(stats_);
+        return whole || context.crew != nullptr; // a crew ends where all can agree on it: in the next pass
+    }
+
+    /// Samples pixels, round by round of a pass. Returns whether the last round came to its end.
+    bool sample_rounds(const PassGather& gather, std::int64_t pass, const RunContext& context) {
+        const SamplingStage stage(c_.scene, c_.settings.spp, "gather", context);
+        while (next_ && work_.pass_of(*next_) == pass) {
+            if (!sample_round(c_.scene, *work_.unit().film, *next_, static_cast<std::uint64_t>(c_.settings.seed),
+                              StreamPurpose::gather, *next_ == 0 ? context.first_round() : context, luminance_,
+                              [&](const Vec2& image, SampleSource& source) { return gather.sample(image, source); })) {
+                next_.reset();
+                return false;
+            }
+            work_.end_unit(stats_);
+            next_ = work_.take(context);
+        }
+        return true;
+    }
+
+    const SamplerContext& c_;
+    const RenderPlan& plan_;
+    PhotonSampler& sampler_;
+    Work& work_;
+    RenderStats& stats_;
+    RunningStats luminance_;
+    std::optional<std::int64_t> next_; // unit
+};
 
 } // namespace
 
@@ -129,22 +138,15 @@ RenderResult render_photons(const Scene& scene, const Settings& settings, const 
     c.reach = plan.reach ? &*plan.reach : nullptr;
     c.caustics = plan.caustics || c.reach != nullptr;
     const auto sampler = make_sampler(c, plan, stats, context);
-    Work work(settings, scene.camera().window(), Exposure::Parts::film, share);
-    RunningStats luminance;
-    while (const auto pass = work.take(context)) {
-        const std::uint64_t seed = seed_of_pass(settings, *pass);
-        Photons photons = sampler->sample(seed, stats, context);
-        if (*pass == 0 && !settings.save_map.empty())
-            save_photons(settings.save_map, photon_file_key(scene, settings, c.reach), photons);
-        // The photons of a pass that was cut short are good for a first picture, not for one that is there.
-        if (!work.is_first() && context.stopped()) break;
-        if (gather_pass(c, plan, *pass, seed, std::move(photons), *work.unit().film, luminance, stats,
-                        context.with_reserve(0)))
-            work.end_unit(stats);
-    }
+    Work work(settings, scene.camera().window(), Exposure::Parts::film, share, settings.spp, Work::PassStart::costly);
+    Passes passes(c, plan, *sampler, work, stats);
+    if (work.crew() == nullptr)
+        passes.run(context);
+    else
+        passes.run_together(context);
     sampler->finish(stats);
     warn_of_photons(stats);
-    report_eye_samples(luminance, scene, stats);
+    report_eye_samples(passes.luminance(), scene, stats);
     result.picture = work.finish(stats);
     return result;
 }

@@ -36,7 +36,9 @@ double share_of_brightest(const std::vector<Photon>& photons) {
 
 } // namespace
 
-void report_power(const Photons& photons, RenderStats& stats) {
+void report_photons(const Photons& photons, RenderStats& stats) {
+    stats.photons_global = photons.global.size();
+    stats.photons_caustic = photons.caustic.size();
     stats.values[kBrightest] =
         std::max(share_of_brightest(photons.global.carriers), share_of_brightest(photons.caustic.carriers));
 }

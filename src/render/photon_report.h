@@ -7,8 +7,9 @@
 
 namespace keyhole {
 
-/// Puts into `stats` how much of the power the brightest 0.1 % of the photons carry, of the map where that is more.
-void report_power(const Photons& photons, RenderStats& stats);
+/// Puts into `stats` how many photons there are, and how much of the power the brightest 0.1 % of them carry, of the
+/// map where that is more.
+void report_photons(const Photons& photons, RenderStats& stats);
 
 /// Puts into `stats` how many photons went into an estimate, on average, how many equal ones would be as good, and what
 /// share of `asked` was found.

@@ -75,25 +75,4 @@ class SamplingStage {
     const RunContext& context_;
 };
 
-/// The rounds of one pass, as a stage.
-struct SamplePass {
-    std::int64_t pass, spp; ///< its number; rounds of each
-    std::uint64_t seed;
-    StreamPurpose purpose;
-    std::string_view name; ///< of the stage
-};
-
-/// Takes the samples of a pass, as sample_round() does. Returns how many rounds it got through.
-template <class Sample>
-std::int64_t sample_pass(const Scene& scene, Film& film, const SamplePass& p, const RunContext& context,
-                         RunningStats& luminance_of_samples, Sample&& sample) {
-    const SamplingStage stage(scene, p.spp, p.name, context);
-    std::int64_t rounds = 0;
-    const auto context_of = [&](std::int64_t round) { return round == 0 ? context.first_round() : context; };
-    while (rounds < p.spp && sample_round(scene, film, p.pass * p.spp + rounds, p.seed, p.purpose,
-                                          context_of(p.pass * p.spp + rounds), luminance_of_samples, sample))
-        ++rounds;
-    return rounds;
-}
-
 } // namespace keyhole

@@ -1,6 +1,7 @@
 // --method pssmlt, mmlt, rjmlt: chains in primary sample space, drawn to the film.
 #include "core/parallel.h"
 #include "film/splats.h"
+#include "render/chain_groups.h"
 #include "render/chain_report.h"
 #include "render/methods.h"
 #include "render/mis_heuristic.h"
@@ -40,19 +41,17 @@ Failures failures_of(std::string_view word) {
                                      : Failures::reject;
 }
 
-std::vector<PrimaryStratum> start(const Scene& scene, const Settings& settings, std::uint64_t seed,
-                                  const EmitterInverse& inverses, RenderStats& stats, const RunContext& context) {
+PrimaryStart start(const Scene& scene, const Settings& settings, std::uint64_t seed, const EmitterInverse& inverses,
+                   RenderStats& stats, const RunContext& context) {
     const StageClock clock(stats, "brightness");
     const BuilderContext builders{&scene, static_cast<int>(settings.max_depth), mis_heuristic(settings.mis)};
-    const PrimaryStartOptions options{.samples = settings.brightness_samples, .chains = settings.chains, .seed = seed};
-    if (settings.method == "mmlt") return start_by_length(builders, nullptr, options, context);
-    if (settings.method == "rjmlt") return start_by_length(builders, &inverses, options, context);
+    const PrimaryStartOptions options{.samples = settings.brightness_samples, .seed = seed};
+    if (settings.method == "mmlt") return PrimaryStart::by_length(builders, nullptr, options, context);
+    if (settings.method == "rjmlt") return PrimaryStart::by_length(builders, &inverses, options, context);
     auto builder = settings.builder == "path"        ? make_path_builder(builders)
                    : settings.builder == "endpoints" ? make_endpoint_builder(builders)
                                                      : make_bidirectional_builder(builders);
-    std::vector<PrimaryStratum> strata;
-    strata.push_back(start_whole(std::move(builder), options, context));
-    return strata;
+    return PrimaryStart::whole(std::move(builder), options, context);
 }
 
 /// Learns p_large where it is not prescribed.
@@ -120,7 +119,7 @@ class PassReports {
     double passes_ = 0;
 };
 
-/// Runs the chains of a pass and adds what they draw. Returns whether they got to their end.
+/// Runs the chains of a group and adds what they draw. Returns whether they got to their end.
 bool draw(PrimaryChains& chains, const Scene& scene, const Settings& settings, Work& work, RenderStats& stats,
           const RunContext& context) {
     const StageClock clock(stats, "chains");
@@ -131,7 +130,8 @@ bool draw(PrimaryChains& chains, const Scene& scene, const Settings& settings, W
     const auto deposit = [&](const Splat& s, double factor) {
         film.add(window.to_pixel(s.image), SplatFilm::layer_of(s.light), s.value * (factor / unit));
     };
-    const std::int64_t per_chain = std::max<std::int64_t>(1, settings.mutations / chains.size());
+    const std::int64_t per_chain =
+        std::max<std::int64_t>(1, settings.mutations / chain_groups(settings) / chains.size());
     context.begin("chains", static_cast<std::uint64_t>(per_chain * chains.size()), "steps");
     const std::int64_t stretch = std::max<std::int64_t>(1, per_chain / kStretch);
     PrimaryKernel kernel{failures_of(settings.failures), learn_p_large(chains, settings, stretch, stats, context)};
@@ -157,12 +157,18 @@ RenderResult render_primary(const Scene& scene, const Settings& settings, const 
     RenderStats& stats = result.stats;
     const EmitterInverse inverses(scene);
     const ImageWindow& window = scene.camera().window();
-    Work work(settings, window, Exposure::Parts::drawn, share);
+    const std::int64_t groups = chain_groups(settings);
+    Work work(settings, window, Exposure::Parts::drawn, share, groups, Work::PassStart::costly);
     PassReports reports;
-    while (const auto pass = work.take(context)) {
-        const std::uint64_t seed = seed_of_pass(settings, *pass);
-        const std::vector<PrimaryStratum> strata = start(scene, settings, seed, inverses, stats, context);
-        PrimaryChains chains(strata, seed, settings.large_step_mis == "on");
+    std::optional<PrimaryStart> started;
+    std::int64_t pass = -1; // that it is of
+    while (const auto unit = work.take(context)) {
+        const std::uint64_t seed = seed_of_pass(settings, work.pass_of(*unit));
+        if (work.pass_of(*unit) != pass) started.emplace(start(scene, settings, seed, inverses, stats, context));
+        pass = work.pass_of(*unit);
+        const auto group = static_cast<std::uint64_t>(*unit % groups);
+        PrimaryChains chains(started->choose_seeds(settings.chains / groups, group), seed,
+                             settings.large_step_mis == "on", group);
         bool whole = !context.stopped();
         if (!whole && !work.is_first()) break;
         if (chains.size() > 0) {

@@ -1,6 +1,7 @@
 // A share of a render, and what becomes of it.
 #pragma once
 
+#include "core/crew.h"
 #include "film/picture.h"
 
 #include <cstdint>
@@ -10,9 +11,9 @@
 
 namespace keyhole {
 
-/// A render is a row of units of work: passes, or, of methods that sample pixels only, rounds of one sample for each
-/// pixel (settings.spp of them to a pass). The random streams of a unit follow from its number alone, and sums of units
-/// don't depend on how they are grouped (Exposure), so that any process may do any of them.
+/// A render is a row of units of work: rounds of one sample for each pixel (settings.spp of them to a pass), or, of
+/// methods whose chains draw, groups of the chains of a pass. The random streams of a unit follow from its number
+/// alone, and sums of units don't depend on how they are grouped (Exposure), so that any process may do any of them.
 struct Share {
     std::int64_t first_pass = 0;
     std::optional<std::int64_t> end_pass; ///< the pass after the last one; none: settings.passes
@@ -32,9 +33,13 @@ struct Share {
     std::function<void(const Picture&)> look;
     std::function<bool()> wants_look;
 
-    /// Tells different processes which units to do: the n-th call made by any of them returns n, from 0; none: it is
-    /// time to stop. Empty: there is only this process.
+    /// Tells different processes what to do: the n-th call made by any of them returns n, from 0; none: it is time to
+    /// stop. Empty: there is only this process.
     std::function<std::optional<std::int64_t>()> take_number;
+    std::int64_t processes = 1; ///< that take numbers
+    /// All processes, which do what comes before the first unit of a pass together where there are fewer passes than
+    /// processes. Null: there is only this one.
+    Crew* crew = nullptr;
 };
 
 } // namespace keyhole

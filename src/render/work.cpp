@@ -33,7 +33,7 @@ std::vector<std::string> lines(const std::string& text) {
 } // namespace
 
 Work::Work(const Settings& settings, const ImageWindow& window, Exposure::Parts parts, const Share& share,
-           std::int64_t units_per_pass)
+           std::int64_t units_per_pass, PassStart start)
     : settings_(settings), share_(share), per_pass_(units_per_pass), begin_(units(share.first_pass, per_pass_)),
       end_(units(
           share.end_pass.value_or(settings.passes > 0 ? settings.passes : std::numeric_limits<std::int64_t>::max()),
@@ -42,6 +42,17 @@ Work::Work(const Settings& settings, const ImageWindow& window, Exposure::Parts 
     if (share_.keep_sums || share_.save) pending_.emplace(window.width, window.height, PixelFilter(settings), parts);
     if (share_.done != nullptr) load(*share_.done);
     knows_error_ = knows_error_ && !share_.take_number;
+    if (start == PassStart::free) return;
+    if ((end_ - begin_) / per_pass_ >= share_.processes)
+        per_number_ = per_pass_;
+    else
+        crew_ = share_.crew;
+}
+
+std::optional<std::int64_t> Work::pass_from(std::int64_t pass) const {
+    const std::int64_t from = std::max(begin_, pass * per_pass_);
+    const std::int64_t unit = before_.missing(0, from);
+    return unit < end_ ? std::optional(pass_of(unit)) : std::nullopt;
 }
 
 void Work::load(const Picture& done) {
@@ -72,9 +83,10 @@ bool Work::enough() const {
 
 std::optional<std::int64_t> Work::take(const RunContext& context) {
     if ((context.stopped() && taken_ + done_.size() > 0) || enough()) return std::nullopt;
-    const std::optional<std::int64_t> k = share_.take_number ? share_.take_number() : taken_;
-    if (!k) return std::nullopt;
-    const std::int64_t unit = before_.missing(*k, begin_);
+    const std::int64_t of_number = taken_ % per_number_;
+    if (of_number == 0) number_ = share_.take_number ? share_.take_number() : taken_ / per_number_;
+    if (!number_) return std::nullopt;
+    const std::int64_t unit = before_.missing(*number_ * per_number_ + of_number, begin_);
     if (unit >= end_) return std::nullopt;
     ++taken_;
     under_way_ = unit;
@@ -98,8 +110,8 @@ void Work::end_unit(const RenderStats& stats) {
 
 double Work::samples() const {
     if (total_.film) return total_.film->samples_per_pixel();
-    return static_cast<double>(done_.size()) * static_cast<double>(settings_.mutations) /
-           static_cast<double>(total_.pixels());
+    return static_cast<double>(done_.size()) / static_cast<double>(per_pass_) *
+           static_cast<double>(settings_.mutations) / static_cast<double>(total_.pixels());
 }
 
 Picture Work::snapshot(const RenderStats& stats) const {

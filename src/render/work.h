@@ -22,13 +22,21 @@ namespace keyhole {
 class Work {
   public:
     /// @param units_per_pass units that settings.passes counts as one.
+    /// @param start what a process does before its first unit of a pass. Where that costs more than a unit, processes
+    /// take whole passes, as long as there are enough for all of them.
     /// @throws InputError for a `share.done` that isn't of this render.
+    enum class PassStart { free, costly };
     Work(const Settings& settings, const ImageWindow& window, Exposure::Parts parts, const Share& share,
-         std::int64_t units_per_pass = 1);
+         std::int64_t units_per_pass, PassStart start);
 
     /// The next unit to do; none: all are done, the error is small enough, or it is time to stop and there is something
     /// to show.
     std::optional<std::int64_t> take(const RunContext& context);
+    std::int64_t pass_of(std::int64_t unit) const { return unit / per_pass_; }
+    /// Those that do a pass together; null: each does its own.
+    Crew* crew() const { return crew_; }
+    /// The first pass from `pass` on of which units were left to do when the render began; none: all were done.
+    std::optional<std::int64_t> pass_from(std::int64_t pass) const;
     /// Where the unit under way goes.
     Exposure& unit() { return pending_ ? *pending_ : total_; }
     /// The unit is whole. What of one is in unit() when work ends counts for the picture, but isn't saved.
@@ -51,6 +59,9 @@ class Work {
     Settings settings_;
     Share share_;
     std::int64_t per_pass_, begin_, end_; // in units
+    std::int64_t per_number_ = 1;         // units that a number stands for
+    Crew* crew_ = nullptr;
+    std::optional<std::int64_t> number_; // taken last
     Exposure total_;
     std::optional<Exposure> pending_; // where sums must not have a part of a unit in them
     UnitSet before_, done_;           // what was done elsewhere; all that is

@@ -77,6 +77,8 @@ struct SeedSink {
 struct Block {
     RunningStats brightness, caustic;
     std::vector<double> groups;
+
+    auto parts() { return std::tie(brightness, caustic, groups); }
 };
 
 Block run_block(const Scene& scene, const StageOneSettings& settings, Technique technique, Range samples) {

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <span>
 
 namespace keyhole {
 
@@ -32,16 +33,16 @@ struct ChainSummary {
 class ChainSet {
   public:
     /// The mixtures must outlive the set. `control`: what the control chains use; the first kinds of `mixture`. Null:
-    /// there are no controls.
-    ChainSet(const std::vector<Path>& seeds, const Mixture<Path>& mixture, std::uint64_t seed,
-             const Mixture<Path>* control = nullptr)
+    /// there are no controls. `first`: number of the first chain, where others run those before it.
+    ChainSet(std::span<const Path> seeds, const Mixture<Path>& mixture, std::uint64_t seed,
+             const Mixture<Path>* control = nullptr, std::int64_t first = 0)
         : chains_(seeds.size()) {
-        if (control != nullptr) tally_.emplace(size());
+        if (control != nullptr) tally_.emplace(size(), first);
         parallel_for(size(), [&](std::int64_t c) {
             const auto i = static_cast<std::size_t>(c);
             chains_[i] = std::make_unique<Chain<Path, ChainStream>>(
-                seeds[i], control != nullptr && is_control(c) ? *control : mixture,
-                ChainStream(seed, static_cast<std::uint64_t>(c)));
+                seeds[i], control != nullptr && is_control(first + c) ? *control : mixture,
+                ChainStream(seed, static_cast<std::uint64_t>(first + c)));
         });
     }
 

@@ -18,7 +18,7 @@ std::optional<GuidanceEffect> GuidanceTally::effect() const {
     for (std::size_t b = 0; b < kBlocks; ++b) {
         RunningStats with, without;
         for (std::size_t c = 0; c < sums_.size(); ++c)
-            (is_control(static_cast<std::int64_t>(c)) ? without : with).add(sums_[c][b]);
+            (is_control(first_ + static_cast<std::int64_t>(c)) ? without : with).add(sums_[c][b]);
         effect.chains_with = static_cast<std::size_t>(with.count());
         effect.chains_without = static_cast<std::size_t>(without.count());
         if (effect.chains_with < 2 || effect.chains_without < 2) return std::nullopt;

@@ -25,8 +25,11 @@ constexpr bool is_control(std::int64_t chain) { return chain % kControlEvery == 
 /// Adds up what each chain deposits, by blocks of the image. Different chains may add at once.
 class GuidanceTally {
   public:
-    explicit GuidanceTally(std::int64_t chains) : sums_(static_cast<std::size_t>(chains)) {}
+    /// Of so many chains, the numbers of which begin with `first`.
+    explicit GuidanceTally(std::int64_t chains, std::int64_t first = 0)
+        : sums_(static_cast<std::size_t>(chains)), first_(first) {}
 
+    /// `chain` counts from 0.
     void add(std::int64_t chain, const Vec2& image, double weight);
     /// None with fewer than two chains of either sort, or where nothing was deposited.
     std::optional<GuidanceEffect> effect() const;
@@ -36,6 +39,7 @@ class GuidanceTally {
     static constexpr std::size_t kBlocks = static_cast<std::size_t>(kAcross) * kAcross;
 
     std::vector<std::array<double, kBlocks>> sums_;
+    std::int64_t first_;
 };
 
 } // namespace keyhole

@@ -21,8 +21,8 @@ TEST(Reach_AgreesWithBidirectionalTracing, BlockByBlock) {
     photons.spp = 4;
     photons.brightness_samples = 100'000;
     photons.importons = 200'000;
-    photons.mutations = 200'000;
-    photons.light_paths = 200'000;
+    photons.mutations = 120'000;
+    photons.light_paths = 120'000;
     photons.photons = 60'000;
     for (const char* method : {"mps", "ipm"}) {
         photons.method = method;

@@ -20,6 +20,7 @@ class Shares : public testing::TestWithParam<const char*> {
         s.brightness_samples = 10'000;
         s.importons = 5'000;
         s.chains = 40;
+        s.chain_groups = 3;
         s.mutations = 8'000;
         s.light_paths = 8'000;
         s.photons = 5'000;

@@ -63,6 +63,16 @@ TEST_P(LongRenderBy, ChainsIsGoneOnFromToo) {
     expect_same("a.exr", "b.exr");
 }
 
+TEST_P(LongRenderBy, ASinglePassIsGoneOnFromToo) {
+    const std::string render = "render scene.yaml --no-png --passes 1 --spp 150 --mutations 750k --method " +
+                               std::string(GetParam()) +
+                               " -D chains=1500 -D chain_groups=150 -D brightness_samples=2000 -D importons=2000 "
+                               "-D photon_memory=512KiB";
+    kill_and_resume(render, 6);
+    ASSERT_EQ(run(render + " -o b.exr"), 0);
+    expect_same("a.exr", "b.exr");
+}
+
 INSTANTIATE_TEST_SUITE_P(Methods, LongRenderBy, testing::Values("mps", "mlt", "mmlt"),
                          [](const auto& info) { return std::string(info.param); });
 

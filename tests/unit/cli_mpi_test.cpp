@@ -55,6 +55,23 @@ TEST_P(RanksOfAScene, MakeThePictureThatOneMakes) {
 INSTANTIATE_TEST_SUITE_P(Scenes, RanksOfAScene, testing::Values("box", "rooms", "lantern"),
                          [](const auto& info) { return std::string(info.param); });
 
+class RanksOfAPass : public Ranks, public testing::WithParamInterface<const char*> {};
+
+TEST_P(RanksOfAPass, MakeThePictureThatOneMakes) {
+    const std::string render = "render scene.yaml --no-png -q -t 1 --passes 2 --spp 3 --mutations 30k -D chains=100 "
+                               "-D chain_groups=4 -D brightness_samples=5000 -D importons=5000 -D light_paths=20k "
+                               "-D photon_memory=512KiB --method " +
+                               std::string(GetParam()) + " ";
+    ASSERT_EQ(run(render + "-o whole.exr"), 0);
+    ASSERT_EQ(run_ranks(3, render + "-o a.exr"), 0) << read("err");
+    expect_same("whole.exr", "a.exr");
+    EXPECT_EQ(read_exr(scratch.path("a.exr")).metadata.at("complete"), "yes");
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, RanksOfAPass,
+                         testing::Values("mps", "ipm", "pm", "pss", "auto", "mlt", "pssmlt", "mmlt", "rjmlt", "bdpt"),
+                         [](const auto& info) { return std::string(info.param); });
+
 TEST_F(Ranks, RunWhatIsNoRender) {
     EXPECT_EQ(run_ranks(2, "render none.yaml"), 2);
     EXPECT_EQ(run_ranks(3, "render scene.yaml --no-png --passes 3 -o a.exr"), 0) << read("err");
@@ -81,6 +98,23 @@ TEST_F(Ranks, EndWhereOneIsSilent) {
     EXPECT_EQ(run_ranks(2, render), 2);
     EXPECT_THAT(read("err"), HasSubstr("KEYHOLE_MPI_PATIENCE: found 'long'"));
     unsetenv("KEYHOLE_MPI_PATIENCE");
+}
+
+/// Where a pass is done by all of them, the others wait for the silent one at the next exchange.
+TEST_F(Ranks, EndAPassOfAllWhereOneIsSilent) {
+    scratch.write("rank", "#!/bin/sh\necho $$ >pid.$OMPI_COMM_WORLD_RANK\nexec " KEYHOLE_MPI_EXECUTABLE " \"$@\"\n");
+    const std::string render =
+        "render scene.yaml --no-png -q -t 1 --method ipm --spp 100 --passes 2 -D light_paths=20k "
+        "-D importons=5k -D photon_memory=512KiB ";
+    const pid_t pid = start_line("mpirun --oversubscribe -np 3 -x KEYHOLE_MPI_PATIENCE=1 sh ./rank " + render +
+                                 "-o a.exr --checkpoint 0");
+    while (!exists("a.checkpoint.exr") && waitpid(pid, nullptr, WNOHANG) == 0) usleep(1000);
+    kill(std::stoi(read("pid.2")), SIGSTOP);
+    EXPECT_EQ(wait(pid), 1);
+    EXPECT_THAT(read("err"), HasSubstr("rank 0 has heard nothing of rank 2 on "));
+    ASSERT_EQ(run_ranks(3, render + "-o a.exr --resume"), 0) << read("err");
+    ASSERT_EQ(run(render + "-o whole.exr"), 0);
+    expect_same("whole.exr", "a.exr");
 }
 
 TEST_F(Ranks, KilledGoOnWithAnotherNumberOfThem) {

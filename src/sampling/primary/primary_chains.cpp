@@ -71,12 +71,13 @@ class PrimaryChains::Depositing {
     double stay_ = 0;
 };
 
-PrimaryChains::PrimaryChains(const std::vector<PrimaryStratum>& strata, std::uint64_t seed, bool mis_of_large_steps)
+PrimaryChains::PrimaryChains(const std::vector<PrimaryStratum>& strata, std::uint64_t seed, bool mis_of_large_steps,
+                             std::uint64_t group)
     : strata_(&strata), mis_of_large_steps_(mis_of_large_steps), members_(strata.size()), large_(strata.size()),
       counts_(strata.size()) {
     for (std::size_t k = 0; k < strata.size(); ++k)
         for (const PrimarySeed& s : strata[k].seeds) {
-            const auto index = static_cast<std::uint64_t>(chains_.size());
+            const auto index = group << 32 | static_cast<std::uint64_t>(chains_.size());
             auto chain = std::make_unique<Chain>(*strata[k].builder, k, Rng(seed, StreamPurpose::primary_chain, index));
             PrimaryRandom random(seed, s.sample);
             Fixed prescribed(s.choice);

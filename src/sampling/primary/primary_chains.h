@@ -21,7 +21,9 @@ class PrimaryChains {
     using Deposit = std::function<void(const Splat&, double)>;
 
     /// `strata` must outlive the chains. `mis_of_large_steps` false: large steps deposit as any others, F b / I.
-    PrimaryChains(const std::vector<PrimaryStratum>& strata, std::uint64_t seed, bool mis_of_large_steps = true);
+    /// `group`: chains of different groups have streams of their own.
+    PrimaryChains(const std::vector<PrimaryStratum>& strata, std::uint64_t seed, bool mis_of_large_steps = true,
+                  std::uint64_t group = 0);
 
     /// Advances every chain by `steps` steps, some of them after a change of technique where the stratum has that, not
     /// counting proposals that are left out. Without a first stretch nothing is known of how many are: see

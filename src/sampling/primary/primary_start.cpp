@@ -14,22 +14,35 @@ constexpr std::int64_t kBlock = 1024;
 /// Seeds are chosen among the first samples; brightness is measured by all.
 constexpr std::int64_t kMostRemembered = std::int64_t{1} << 21;
 
-/// Something that a sample found.
-struct Find {
-    std::int64_t sample;
-    int stratum;
-    int s; ///< technique; 0 where there is nothing to choose
-    double luminance;
-};
+/// Chains for each stratum in proportion to its brightness, one at least.
+std::vector<std::int64_t> share_out(const std::vector<PrimaryStratum>& strata, std::int64_t chains) {
+    const double total = std::accumulate(strata.begin(), strata.end(), 0.0,
+                                         [](double sum, const PrimaryStratum& s) { return sum + s.brightness.mean(); });
+    std::vector<std::int64_t> shares;
+    for (const PrimaryStratum& s : strata)
+        shares.push_back(
+            std::max<std::int64_t>(1, std::llround(s.brightness.mean() / total * static_cast<double>(chains))));
+    return shares;
+}
 
-struct Block {
-    std::vector<RunningStats> brightness; ///< by stratum
+} // namespace
+
+PrimaryRandom::PrimaryRandom(std::uint64_t seed, std::int64_t index)
+    : eye(seed, StreamPurpose::primary_start, 3 * static_cast<std::uint64_t>(index)),
+      light(seed, StreamPurpose::primary_start, 3 * static_cast<std::uint64_t>(index) + 1),
+      choice(seed, StreamPurpose::primary_start, 3 * static_cast<std::uint64_t>(index) + 2) {}
+
+struct PrimaryStart::Block {
+    std::vector<RunningStats> brightness; // by stratum
     std::vector<Find> finds;
+
+    auto parts() { return std::tie(brightness, finds); }
 };
 
 /// Runs all samples: sample(index, random, found) appends what sample `index` finds. Results by stratum.
 template <class Sample>
-Block run_samples(std::size_t strata, const PrimaryStartOptions& options, const RunContext& context, Sample&& sample) {
+PrimaryStart::Block PrimaryStart::run_samples(std::size_t strata, const PrimaryStartOptions& options,
+                                              const RunContext& context, Sample&& sample) {
     const auto run_block = [&](Range range) {
         Block block;
         block.brightness.resize(strata);
@@ -57,54 +70,23 @@ Block run_samples(std::size_t strata, const PrimaryStartOptions& options, const 
     return all;
 }
 
-/// `count` seeds among the finds of a stratum, with probability proportional to luminance: systematic resampling.
-template <class MakeSeed>
-std::vector<PrimarySeed> resample(const std::vector<Find>& finds, int stratum, std::int64_t count, Rng& rng,
-                                  MakeSeed&& make_seed) {
-    std::vector<PrimarySeed> seeds;
-    resample_systematically(
-        finds, count, rng, [&](const Find& f) { return f.stratum == stratum ? f.luminance : 0.0; },
-        [&](const Find& f) { seeds.push_back(make_seed(f)); });
-    return seeds;
-}
-
-/// Chains for each stratum in proportion to its brightness, one at least where there is any.
-std::vector<std::int64_t> share_out(const std::vector<RunningStats>& brightness, std::int64_t chains) {
-    const double total = std::accumulate(brightness.begin(), brightness.end(), 0.0,
-                                         [](double sum, const RunningStats& b) { return sum + b.mean(); });
-    std::vector<std::int64_t> shares;
-    for (const RunningStats& b : brightness) {
-        const double share = total > 0 ? b.mean() / total * static_cast<double>(chains) : 0.0;
-        shares.push_back(b.mean() > 0 ? std::max<std::int64_t>(1, std::llround(share)) : 0);
-    }
-    return shares;
-}
-
-} // namespace
-
-PrimaryRandom::PrimaryRandom(std::uint64_t seed, std::int64_t index)
-    : eye(seed, StreamPurpose::primary_start, 3 * static_cast<std::uint64_t>(index)),
-      light(seed, StreamPurpose::primary_start, 3 * static_cast<std::uint64_t>(index) + 1),
-      choice(seed, StreamPurpose::primary_start, 3 * static_cast<std::uint64_t>(index) + 2) {}
-
-PrimaryStratum start_whole(std::unique_ptr<PathBuilder> builder, const PrimaryStartOptions& options,
-                           const RunContext& context) {
-    const Block all =
-        run_samples(1, options, context, [&](std::int64_t i, PrimaryRandom& random, std::vector<Find>& found) {
-            PathSample sample;
-            builder->build(random.sources(), sample);
-            if (sample.target() > 0) found.push_back({i, 0, 0, sample.target()});
-        });
-    Rng rng(options.seed, StreamPurpose::seed_choice, 0);
-    PrimaryStratum stratum{std::move(builder), all.brightness[0], 1, {}, std::nullopt};
-    stratum.seeds = resample(all.finds, 0, options.chains, rng, [](const Find& f) {
-        return PrimarySeed{f.sample, -1};
+PrimaryStart PrimaryStart::whole(std::unique_ptr<PathBuilder> builder, const PrimaryStartOptions& options,
+                                 const RunContext& context) {
+    PrimaryStart start(options.seed);
+    Block all = run_samples(1, options, context, [&](std::int64_t i, PrimaryRandom& random, std::vector<Find>& found) {
+        PathSample sample;
+        builder->build(random.sources(), sample);
+        if (sample.target() > 0) found.push_back({i, 0, 0, sample.target()});
     });
-    return stratum;
+    if (all.finds.empty()) return start;
+    start.finds_ = std::move(all.finds);
+    start.strata_.push_back({std::move(builder), all.brightness[0], 1, {}, std::nullopt});
+    start.techniques_.push_back(0);
+    return start;
 }
 
-std::vector<PrimaryStratum> start_by_length(const BuilderContext& builders, const EmitterInverse* inverses,
-                                            const PrimaryStartOptions& options, const RunContext& context) {
+PrimaryStart PrimaryStart::by_length(const BuilderContext& builders, const EmitterInverse* inverses,
+                                     const PrimaryStartOptions& options, const RunContext& context) {
     const Scene& scene = *builders.scene;
     const int most = builders.max_scatterings;
     const auto sample = [&](std::int64_t i, PrimaryRandom& random, std::vector<Find>& found) {
@@ -121,21 +103,40 @@ std::vector<PrimaryStratum> start_by_length(const BuilderContext& builders, cons
         } sink{i, found};
         connect_subpaths(scene, light, eye, image, most, PathSet::all, builders.heuristic, sink);
     };
-    const Block all = run_samples(static_cast<std::size_t>(most) + 1, options, context, sample);
-    const auto chains = share_out(all.brightness, options.chains);
-    Rng rng(options.seed, StreamPurpose::seed_choice, 0);
-    std::vector<PrimaryStratum> strata;
+    PrimaryStart start(options.seed);
+    Block all = run_samples(static_cast<std::size_t>(most) + 1, options, context, sample);
+    std::vector<int> index(static_cast<std::size_t>(most) + 1, -1); // of the stratum of each length
+    for (const Find& f : all.finds) index[static_cast<std::size_t>(f.stratum)] = 0;
     for (int k = 0; k <= most; ++k) {
         const auto at = static_cast<std::size_t>(k);
-        auto seeds = resample(all.finds, k, chains[at], rng, [&](const Find& f) {
-            return PrimarySeed{f.sample, (f.s + rng.next()) / technique_count(k)};
-        });
-        if (seeds.empty()) continue;
-        strata.push_back({make_multiplexed_builder(builders, k), all.brightness[at],
-                          static_cast<double>(technique_count(k)), std::move(seeds), std::nullopt});
-        if (inverses != nullptr) strata.back().change.emplace(builders, *inverses, k);
+        if (index[at] < 0) continue;
+        index[at] = static_cast<int>(start.strata_.size());
+        start.strata_.push_back({make_multiplexed_builder(builders, k),
+                                 all.brightness[at],
+                                 static_cast<double>(technique_count(k)),
+                                 {},
+                                 std::nullopt});
+        if (inverses != nullptr) start.strata_.back().change.emplace(builders, *inverses, k);
+        start.techniques_.push_back(technique_count(k));
     }
-    return strata;
+    start.finds_ = std::move(all.finds);
+    for (Find& f : start.finds_) f.stratum = index[static_cast<std::size_t>(f.stratum)];
+    return start;
+}
+
+const std::vector<PrimaryStratum>& PrimaryStart::choose_seeds(std::int64_t chains, std::uint64_t group) {
+    const auto shares = share_out(strata_, chains);
+    Rng rng(seed_, StreamPurpose::seed_choice, group);
+    for (std::size_t k = 0; k < strata_.size(); ++k) {
+        strata_[k].seeds.clear();
+        resample_systematically(
+            finds_, shares[k], rng, [&](const Find& f) { return f.stratum == static_cast<int>(k) ? f.luminance : 0.0; },
+            [&](const Find& f) {
+                const int techniques = techniques_[k];
+                strata_[k].seeds.push_back({f.sample, techniques > 0 ? (f.s + rng.next()) / techniques : -1.0});
+            });
+    }
+    return strata_;
 }
 
 } // namespace keyhole

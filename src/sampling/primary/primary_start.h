@@ -27,7 +27,6 @@ struct PrimaryStratum {
 
 struct PrimaryStartOptions {
     std::int64_t samples = 100'000; ///< over all
-    std::int64_t chains = 1000;     ///< over all strata, in proportion to their brightness
     std::uint64_t seed = 1;
 };
 
@@ -38,14 +37,42 @@ struct PrimaryRandom {
     PrimarySources sources() { return {eye, light, choice}; }
 };
 
-/// One stratum, sampled by the builder itself. No seeds if no sample found light.
-PrimaryStratum start_whole(std::unique_ptr<PathBuilder> builder, const PrimaryStartOptions& options,
-                           const RunContext& context);
+/// What independent samples have found: the brightness of each stratum, and where chains may begin.
+class PrimaryStart {
+  public:
+    /// One stratum, sampled by the builder itself.
+    static PrimaryStart whole(std::unique_ptr<PathBuilder> builder, const PrimaryStartOptions& options,
+                              const RunContext& context);
 
-/// One stratum for each number of scatterings, with a multiplexed builder. Bidirectional path tracing samples them all
-/// at once; each of its joints is a state of one of them. Those that found no light are left out. `inverses`: chains
-/// change techniques by inverse mappings, too; may be null, and must outlive the strata.
-std::vector<PrimaryStratum> start_by_length(const BuilderContext& builders, const EmitterInverse* inverses,
-                                            const PrimaryStartOptions& options, const RunContext& context);
+    /// One stratum for each number of scatterings, with a multiplexed builder. Bidirectional path tracing samples them
+    /// all at once; each of its joints is a state of one of them. Those that found no light are left out. `inverses`:
+    /// chains change techniques by inverse mappings, too; may be null, and must outlive this.
+    static PrimaryStart by_length(const BuilderContext& builders, const EmitterInverse* inverses,
+                                  const PrimaryStartOptions& options, const RunContext& context);
+
+    /// The strata with new seeds for `chains` chains, in proportion to the strata's brightness, one at least each. No
+    /// strata if no sample found light. `group`: those of different groups are chosen independently of each other.
+    const std::vector<PrimaryStratum>& choose_seeds(std::int64_t chains, std::uint64_t group);
+
+  private:
+    /// Something that a sample found.
+    struct Find {
+        std::int64_t sample;
+        int stratum; ///< index among strata_
+        int s;       ///< technique; 0 where there is nothing to choose
+        double luminance;
+    };
+    struct Block;
+
+    explicit PrimaryStart(std::uint64_t seed) : seed_(seed) {}
+    template <class Sample>
+    static Block run_samples(std::size_t strata, const PrimaryStartOptions& options, const RunContext& context,
+                             Sample&& sample);
+
+    std::uint64_t seed_;
+    std::vector<Find> finds_;
+    std::vector<PrimaryStratum> strata_;
+    std::vector<int> techniques_; ///< of each stratum; 0: the builder chooses
+};
 
 } // namespace keyhole

@@ -1,0 +1,39 @@
+// How the chains of a pass become units of work.
+#pragma once
+
+#include "core/parallel.h"
+#include "core/settings.h"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace keyhole {
+
+/// Groups that the chains of a pass are shared out among, of methods that draw what chains find; each is a unit of
+/// work. Unless settings.chain_groups says how many, a group makes two million mutations or has 16 chains, whichever is
+/// more: enough that saving its picture costs little beside, and little enough that a death costs seconds.
+inline std::int64_t chain_groups(const Settings& settings) {
+    constexpr std::int64_t kMutations = 2'000'000, kChains = 16;
+    if (settings.chain_groups > 0) return std::min(settings.chain_groups, settings.chains);
+    return std::clamp<std::int64_t>(settings.mutations / kMutations, 1,
+                                    std::max<std::int64_t>(1, settings.chains / kChains));
+}
+
+/// Steps of each chain of a pass.
+inline std::int64_t steps_of_chains(const Settings& settings, std::int64_t chains) {
+    return std::max<std::int64_t>(1, settings.mutations / std::max<std::int64_t>(1, chains));
+}
+
+/// Chains of group `group` of so many: one at least, where there are any.
+inline Range chains_of_group(std::size_t chains, std::int64_t groups, std::int64_t group) {
+    const auto n = static_cast<std::int64_t>(chains);
+    const Range range = split(n, groups, group);
+    return {range.begin, std::max(range.end, std::min(n, range.begin + 1))};
+}
+
+/// Rounds of a pass that are taken along with group `group` of so many: the first has one at least.
+inline Range rounds_of_group(std::int64_t rounds, std::int64_t groups, std::int64_t group) {
+    return {(group * rounds + groups - 1) / groups, ((group + 1) * rounds + groups - 1) / groups};
+}
+
+} // namespace keyhole
