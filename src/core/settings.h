@@ -36,6 +36,7 @@ struct Settings {
     double filter_radius = 0;
     double filter_sigma = 0;
     std::int64_t brightness_samples = 400'000;
+    double brightness_error = 0.02;
     std::int64_t importons = 600'000;
     std::int64_t chains = 1000;
     std::int64_t chain_groups = 0;
@@ -87,7 +88,9 @@ template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
     visit("filter", s.filter, std::vector<std::string_view>{"gaussian", "box", "triangle"}, "reconstruction filter");
     visit("filter_radius", s.filter_radius, 0.0, 16.0, "its reach in pixels; 0: 0.5 of a box, 1 of the others");
     visit("filter_sigma", s.filter_sigma, 0.0, 16.0, "of a Gaussian, in pixels; 0: its radius");
-    visit("brightness_samples", s.brightness_samples, I{1000}, I{1} << 40, "path samples of stage one");
+    visit("brightness_samples", s.brightness_samples, I{1000}, I{1} << 40, "path samples of stage one, at least");
+    visit("brightness_error", s.brightness_error, 0.0, 1.0,
+          "relative error of B_eye for which up to 8 times as many are taken; 0: no more");
     visit("importons", s.importons, I{1000}, I{1} << 30, "eye paths traced for the importance map");
     visit("chains", s.chains, I{1}, I{1} << 20, "Markov chains; their number never follows the threads");
     visit("chain_groups", s.chain_groups, I{0}, I{1} << 20,

@@ -108,7 +108,7 @@ StageOne ChainReports::measure_brightness(const Scene& scene, const StageOneSett
                                           const RunContext& context) {
     const StageClock clock(stats, "brightness");
     StageOne one = run_stage_one(scene, settings, context);
-    stopped_ = one.samples < settings.samples;
+    stopped_ = !one.is_whole();
     brightness_.merge(one.brightness);
     stats.brightness = brightness_.mean();
     stats.brightness_error = brightness_.standard_error();

@@ -47,6 +47,7 @@ class MetropolisSampler final : public PhotonSampler {
         const StageOneSettings first{.set = set_,
                                      .max_scatterings = static_cast<int>(c_.settings.max_depth),
                                      .samples = c_.settings.brightness_samples,
+                                     .error = c_.settings.brightness_error,
                                      .seed = seed,
                                      .guides = c_.user_paths.empty() ? nullptr : &guides_};
         const StageOne one = reports_.measure_brightness(c_.scene, first, stats, context);

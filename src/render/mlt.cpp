@@ -37,7 +37,7 @@ PassStart start_pass(const Scene& scene, const Settings& settings, const StageOn
                      ChainReports& reports, RenderStats& stats, const RunContext& context) {
     PassStart start{.pass = pass, .settings = first, .one = {}, .seeds = {}};
     start.one = reports.measure_brightness(scene, first, stats, context);
-    start.whole = start.one.samples == first.samples;
+    start.whole = start.one.is_whole();
     if (start.is_dark()) return start;
     const StageClock clock(stats, "chains");
     start.seeds = choose_seeds(scene, first, start.one, start.one.all_groups(), settings.chains);
@@ -121,6 +121,7 @@ RenderResult render_mlt(const Scene& scene, const Settings& settings, const User
             const StageOneSettings first{.set = set,
                                          .max_scatterings = static_cast<int>(settings.max_depth),
                                          .samples = settings.brightness_samples,
+                                         .error = settings.brightness_error,
                                          .seed = seed_of_pass(settings, pass),
                                          .guides = paths.empty() ? nullptr : &guides};
             start = start_pass(scene, settings, first, pass, reports, stats, context);

@@ -5,7 +5,6 @@
 #include "scene/ray_counter.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 
 namespace keyhole {
@@ -94,38 +93,58 @@ Block run_block(const Scene& scene, const StageOneSettings& settings, Technique 
     return block;
 }
 
-/// The technique that needs fewer rays for the same error, tried on the first samples. Rays and not seconds, so that
-/// the choice is the same on every machine; a connection costs about as much again as its ray.
-Technique choose_technique(const Scene& scene, const StageOneSettings& settings) {
+/// First sample of trials: they are not among those of B.
+constexpr std::int64_t kTrial = std::int64_t{1} << 41;
+
+struct Trial {
+    RunningStats brightness;
+    double rays; ///< for all of it
+};
+
+/// A trial of a technique takes no more than what follows.
+Trial try_technique(const Scene& scene, const StageOneSettings& settings, Technique technique) {
+    const std::int64_t blocks = std::clamp<std::int64_t>(settings.samples / kBlock / 2, 1, 16);
+    std::vector<RunningStats> parts(static_cast<std::size_t>(blocks));
+    const std::uint64_t rays = rays_traced();
+    parallel_for(blocks, [&](std::int64_t b) {
+        parts[static_cast<std::size_t>(b)] =
+            run_block(scene, settings, technique, {kTrial + b * kBlock, kTrial + (b + 1) * kBlock}).brightness;
+    });
+    Trial trial{{}, static_cast<double>(rays_traced() - rays)};
+    for (const RunningStats& part : parts) trial.brightness.merge(part);
+    return trial;
+}
+
+/// Whether path tracing is out of the question.
+bool needs_light_paths(const Scene& scene, const StageOneSettings& settings) {
     // Who gives user paths says that light is hard to find. What they leave out a trial would see too little of.
-    if (settings.guides != nullptr) return Technique::bidirectional;
+    if (settings.guides != nullptr) return true;
     // Caustics of emitters that no ray can hit are found from the light alone; a trial couldn't know what it missed.
     const auto is_delta = [](const auto& emitter) { return emitter->is_delta(); };
-    if (scene.traits().delta && std::any_of(scene.emitters().begin(), scene.emitters().end(), is_delta))
-        return Technique::bidirectional;
-    std::array<RunningStats, 2> found;
-    std::array<double, 2> cost{};
-    for (const Technique technique : {Technique::path, Technique::bidirectional}) {
-        // A trial of both takes no more than what follows.
-        const std::int64_t blocks = std::clamp<std::int64_t>(settings.samples / kBlock / 2, 1, 16);
-        std::vector<RunningStats> parts(static_cast<std::size_t>(blocks));
-        const std::uint64_t rays = rays_traced();
-        parallel_for(blocks, [&](std::int64_t b) {
-            parts[static_cast<std::size_t>(b)] =
-                run_block(scene, settings, technique, {b * kBlock, (b + 1) * kBlock}).brightness;
-        });
-        RunningStats& all = found[static_cast<std::size_t>(technique)];
-        for (const RunningStats& part : parts) all.merge(part);
-        const double connections = technique == Technique::bidirectional ? 2 : 1;
-        // Nothing found is no reason to trust a technique.
-        const double spread = all.mean() > 0 ? all.variance() : std::numeric_limits<double>::infinity();
-        cost[static_cast<std::size_t>(technique)] = spread * static_cast<double>(rays_traced() - rays) * connections;
-    }
+    return scene.traits().delta && std::any_of(scene.emitters().begin(), scene.emitters().end(), is_delta);
+}
+
+/// The technique that needs fewer rays for the same error, tried. Rays and not seconds, so that the choice is the same
+/// on every machine; a connection costs about as much again as its ray.
+Technique choose_technique(const Trial& path, const Trial& bidirectional) {
     // One that never meets a small lamp behind glass seems precise: it is the one that found less light.
-    const double more = found[1].mean() - found[0].mean();
-    if (std::abs(more) > 4 * std::hypot(found[0].standard_error(), found[1].standard_error()))
+    const double more = bidirectional.brightness.mean() - path.brightness.mean();
+    if (std::abs(more) > 4 * std::hypot(path.brightness.standard_error(), bidirectional.brightness.standard_error()))
         return more > 0 ? Technique::bidirectional : Technique::path;
-    return cost[0] <= cost[1] ? Technique::path : Technique::bidirectional;
+    const auto cost = [](const Trial& t, double connections) {
+        // Nothing found is no reason to trust a technique.
+        const double infinity = std::numeric_limits<double>::infinity();
+        return (t.brightness.mean() > 0 ? t.brightness.variance() : infinity) * t.rays * connections;
+    };
+    return cost(path, 1) <= cost(bidirectional, 2) ? Technique::path : Technique::bidirectional;
+}
+
+/// Samples that should bring B to the error asked for, by a trial of the technique.
+std::int64_t enough_samples(const StageOneSettings& settings, const RunningStats& trial) {
+    if (!(settings.error > 0 && trial.mean() > 0)) return settings.samples;
+    const double samples = trial.variance() / (trial.mean() * trial.mean()) / (settings.error * settings.error);
+    const auto most = static_cast<double>(settings.samples) * static_cast<double>(StageOne::kMostTimes);
+    return std::max(settings.samples, static_cast<std::int64_t>(std::min(samples, most)));
 }
 
 double sum(const std::vector<double>& of, Range some) {
@@ -142,12 +161,19 @@ double StageOne::brightness_of(Range some) const {
 }
 
 StageOne run_stage_one(const Scene& scene, const StageOneSettings& settings, const RunContext& context) {
-    const Technique technique = choose_technique(scene, settings);
+    const Trial bidirectional = try_technique(scene, settings, Technique::bidirectional);
     StageOne stage;
-    stage.technique = technique;
-    context.begin("brightness", static_cast<std::uint64_t>(settings.samples), "paths");
+    stage.technique = Technique::bidirectional;
+    stage.wanted = enough_samples(settings, bidirectional.brightness);
+    if (!needs_light_paths(scene, settings)) {
+        const Trial path = try_technique(scene, settings, Technique::path);
+        stage.technique = choose_technique(path, bidirectional);
+        if (stage.technique == Technique::path) stage.wanted = enough_samples(settings, path.brightness);
+    }
+    const Technique technique = stage.technique;
+    context.begin("brightness", static_cast<std::uint64_t>(stage.wanted), "paths");
     leading_blocks(
-        settings.samples, kBlock, context, [&](Range range) { return run_block(scene, settings, technique, range); },
+        stage.wanted, kBlock, context, [&](Range range) { return run_block(scene, settings, technique, range); },
         [&](const Block& block) {
             stage.brightness.merge(block.brightness);
             stage.caustic.merge(block.caustic);
