@@ -234,7 +234,8 @@ TEST(Point_WithoutParametrisation, IsTheSamePlace) {
 }
 
 TEST(Materials, TellWhetherTheyReadAParametrisation) {
-    const auto zero = constant_texture(0.0), rough = constant_texture(0.2), slope = std::make_shared<Slope>();
+    const auto zero = constant_texture(0.0), rough = constant_texture(0.2);
+    const auto slope = std::make_shared<Slope>();
     const auto grey = constant_texture(Rgb(0.5)),
                tiles = checkerboard_texture(grey, constant_texture(Rgb(0.1)), UvMapping{});
     EXPECT_FALSE(make_diffuse(grey)->reads_parametrisation());
