@@ -21,6 +21,7 @@ struct ShorterTechniques {
     /// The same for one vertex more, whose density from the other end is `ratio` times that from this one. `cut`:
     /// whether there is a technique that makes all but this vertex.
     ShorterTechniques longer(double ratio, bool cut) const {
+        if (!(ratio > 0)) return {}; // also where a sum has grown beyond all bounds: 0 times that is 0 here
         const double own = cut ? 1 : 0;
         return {ratio * (own + sum), ratio * ratio * (own + squares), ratio * std::max(own, largest)};
     }
