@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cstddef>
 #include <memory>
+#include <new>
 #include <type_traits>
 
 namespace keyhole {
@@ -47,6 +48,11 @@ template <class T, std::size_t N> class InlineVector {
     void push_back(const T& v) {
         assert(!full());
         std::construct_at(items_ + size_++, v);
+    }
+    /// Appends an element as its default constructor leaves it. resize() would clear it before.
+    T& emplace_back() {
+        assert(!full());
+        return *::new (static_cast<void*>(items_ + size_++)) T;
     }
     void pop_back() {
         assert(!empty());

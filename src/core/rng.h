@@ -4,7 +4,9 @@
 #include <pcg_random.hpp>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace keyhole {
 
@@ -16,6 +18,16 @@ class SampleSource {
 
     /// The next number, uniform in [0,1) unless a chain says otherwise; never 1.
     virtual double next() = 0;
+
+    /// The numbers that as many calls of next() would give: one call where several are needed at once.
+    virtual void fill(std::span<double> numbers) {
+        for (double& u : numbers) u = next();
+    }
+    template <std::size_t N> std::array<double, N> take() {
+        std::array<double, N> numbers;
+        fill(numbers);
+        return numbers;
+    }
 };
 
 /// What a random stream is for. Streams of different purposes never coincide, whatever their indices.
@@ -52,6 +64,9 @@ class Rng : public SampleSource {
         : engine_(mix(seed, index), mix(index, static_cast<std::uint64_t>(purpose))) {}
 
     double next() final { return static_cast<double>(engine_()) * 0x1p-32; }
+    void fill(std::span<double> numbers) final {
+        for (double& u : numbers) u = Rng::next();
+    }
 
     /// A point of the unit square, uniform and independent of all that this stream gave before. Streams that run side
     /// by side may spread theirs evenly among each other.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/fixed_sum.h"
+#include "core/inline_vector.h"
 #include "core/vec.h"
 #include "film/filter.h"
 #include "film/picture.h"
@@ -45,8 +46,16 @@ class SplatFilm {
     void clear();
 
   private:
+    /// The pixels along one axis that a splat at `position` meets, of `size`, and what the filter gives them.
+    struct Footprint {
+        int first;
+        InlineVector<double, 34> weights; // filters reach 16 pixels at most
+    };
+    Footprint footprint(float position, int size) const;
+
     int width_, height_;
-    PixelFilter filter_;
+    double reach_;
+    std::vector<double> filter_; ///< its density at kNodes + 1 even distances from 0 to its reach
     std::vector<FixedSum> sums_; ///< by layer, pixel and channel: a splat meets few cache lines
 };
 

@@ -31,8 +31,8 @@ void LightBuilder::build(LightSources sources, LightArrivals& sample) const {
         const auto at = static_cast<std::size_t>(i);
         const Vertex& v = walk.vertices[at];
         if (v.point.site != Site::surface) return;
-        const Vec3 to_light = direction(v.point, walk.vertices[at - 1].point);
-        const Rgb& power = walk.throughput[at];
+        const Vec3& to_light = walk.notes[at].back;
+        const Rgb& power = walk.notes[at].throughput;
         if (v.bsdf.traits().finite && luminance(power) > 0) {
             const StorageRule::Kinds kinds = rule_(v.point, to_light, i, past);
             if (kinds.global) store(PhotonKind::global, v, to_light, power, sample);

@@ -12,8 +12,10 @@ Joint::Joint(const Scene& scene, const TracedSubPath& light, int s, const Traced
     // Whatever they did as walks, the two ends of a joint scatter finitely.
     const Vertex& y = vertex(s - 1);
     possible_ = (s == 1 || y.bsdf.traits().finite) && (t == 1 || z.bsdf.traits().finite);
-    if (!possible_ || t > 1) return;
-    const auto p = scene.camera().image_point(z.point, direction(z.point, y.point));
+    if (!possible_) return;
+    to_eye_ = direction(y.point, z.point);
+    if (t > 1) return;
+    const auto p = scene.camera().image_point(z.point, -to_eye_);
     possible_ = p.has_value();
     if (p) image_ = *p;
 }
@@ -46,15 +48,15 @@ Rgb Joint::leave_light(const Vec3& to_eye) {
     if (s_ == 1) {
         const Emitter& emitter = scene_->emitter(y.point.emitter);
         from_light_[0] = solid_angle_to_area(emitter.ray_pdf(y.point, to_eye), y.point, vertex(1).point, to_eye);
-        return light_->throughput[0] * emitter.radiance(y.point, to_eye);
+        return light_->notes[0].throughput * emitter.radiance(y.point, to_eye);
     }
     const Vertex& before = vertex(s_ - 2);
-    const Vec3 back = direction(y.point, before.point);
+    const Vec3& back = light_->notes[end].back;
     const ScatterValue f = scatter(y.point, y.bsdf, Event::finite, back, to_eye);
     from_light_[0] = solid_angle_to_area(f.pdf_to_eye, y.point, vertex(s_).point, to_eye);
     const bool unreachable = s_ == 2 && scene_->emitter(before.point.emitter).is_delta();
     from_eye_[1] = unreachable ? 0.0 : solid_angle_to_area(f.pdf_to_light, y.point, before.point, back);
-    return light_->throughput[end] * f.value;
+    return light_->notes[end].throughput * f.value;
 }
 
 /// What the eye asks of light that arrives from the light sub-path, and the densities that this changes.
@@ -68,27 +70,29 @@ Rgb Joint::leave_eye(const Vec3& to_light) {
         return Rgb(pdf);
     }
     const SurfacePoint& next = vertex(s_ + 1).point;
-    const Vec3 back = direction(z.point, next);
+    const TracedSubPath::Note& note = eye_->notes[static_cast<std::size_t>(t_) - 1];
+    const Vec3& back = note.back;
     const ScatterValue f = scatter(z.point, z.bsdf, Event::finite, to_light, back);
     from_eye_[0] = unreachable ? 0.0 : solid_angle_to_area(f.pdf_to_light, z.point, y.point, to_light);
     from_light_[1] = solid_angle_to_area(f.pdf_to_eye, z.point, next, back);
-    return eye_->throughput[static_cast<std::size_t>(t_) - 1] * f.value;
+    return note.throughput * f.value;
 }
 
 Rgb Joint::join() {
     if (s_ > 0) {
         const SurfacePoint &y = vertex(s_ - 1).point, &z = vertex(s_).point;
-        const Vec3 to_eye = direction(y, z);
-        const Rgb from_light = leave_light(to_eye);
+        const double geometry = geometry_term(y, z, to_eye_);
+        if (!(geometry > 0)) return Rgb(0.0);
+        const Rgb from_light = leave_light(to_eye_);
         if (is_black(from_light)) return from_light;
-        return from_light * leave_eye(-to_eye) * scene_->transmittance(y, z) * geometry_term(y, z);
+        return from_light * leave_eye(-to_eye_) * scene_->transmittance(y, z) * geometry;
     }
     const SurfacePoint &x0 = vertex(0).point, &x1 = vertex(1).point;
     const Emitter& emitter = scene_->emitter(x0.emitter);
-    const Vec3 to_eye = direction(x0, x1);
+    const TracedSubPath::Note& note = eye_->notes[static_cast<std::size_t>(t_) - 1];
     from_light_[0] = emitter_point_pdf(*scene_, x0);
-    from_light_[1] = solid_angle_to_area(emitter.ray_pdf(x0, to_eye), x0, x1, to_eye);
-    return eye_->throughput[static_cast<std::size_t>(t_) - 1] * emitter.radiance(x0, to_eye);
+    from_light_[1] = solid_angle_to_area(emitter.ray_pdf(x0, note.back), x0, x1, note.back);
+    return note.throughput * emitter.radiance(x0, note.back);
 }
 
 Rgb Joint::value(MisHeuristic heuristic) {
@@ -104,26 +108,44 @@ double Joint::pdf_from_eye(int i) const {
     return i == s_ - 1 ? from_eye_[0] : i == s_ - 2 ? from_eye_[1] : vertex(i).pdf_from_eye;
 }
 
-/// Technique k makes x[0], ..., x[k - 1] from the light. Ratios of its density to that of technique s are products of
-/// what each vertex changes (Veach 1997, section 10.2).
-double Joint::weight(MisHeuristic heuristic) const {
-    double sum = 1;
-    bool best = true;
-    const auto include = [&](int k, double ratio) {
-        if (k > 0 && (specular(k - 1) || specular(k))) return;
-        sum += heuristic == MisHeuristic::power ? ratio * ratio : ratio;
-        best = best && (k < s_ ? ratio < 1 : ratio <= 1); // of equals, the first
-    };
+double Joint::density_ratio(int k) const {
+    if (k > 0 && (specular(k - 1) || specular(k))) return 0;
     double ratio = 1;
-    for (int k = s_ - 1; k >= 0 && ratio > 0; --k) include(k, ratio *= pdf_from_eye(k) / vertex(k).pdf_from_light);
-    ratio = 1;
-    for (int k = s_ + 1; k < s_ + t_ && ratio > 0; ++k)
-        include(k, ratio *= pdf_from_light(k - 1) / vertex(k - 1).pdf_from_eye);
-    if (heuristic == MisHeuristic::maximum) return best ? 1 : 0;
-    return 1 / sum;
+    for (int i = k; i < s_; ++i) ratio *= pdf_from_eye(i) / vertex(i).pdf_from_light;
+    for (int i = s_; i < k; ++i) ratio *= pdf_from_light(i) / vertex(i).pdf_from_eye;
+    return ratio;
 }
 
-bool Joint::visible() const { return s_ == 0 || scene_->visible(vertex(s_ - 1).point, vertex(s_).point); }
+/// Those that make less from the light than this one, and more from the eye. What vertices change is a product (Veach
+/// 1997, section 10.2), and the joint changes the last two of either side only.
+ShorterTechniques Joint::shorter_light() const {
+    if (s_ == 0) return {};
+    const Vertex& y = vertex(s_ - 1);
+    const double last = from_eye_[0] / y.pdf_from_light;
+    if (s_ == 1) return ShorterTechniques().longer(last, true);
+    const Vertex& before = vertex(s_ - 2);
+    return light_->notes[static_cast<std::size_t>(s_) - 2]
+        .shorter.longer(from_eye_[1] / before.pdf_from_light, s_ == 2 || joinable(vertex(s_ - 3), before))
+        .longer(last, !before.specular());
+}
+
+/// Those that make less from the eye than this one. All of them make the eye.
+ShorterTechniques Joint::shorter_eye() const {
+    if (t_ == 1) return {};
+    const Vertex &z = vertex(s_), &before = vertex(s_ + 1);
+    return eye_->notes[static_cast<std::size_t>(t_) - 2]
+        .shorter.longer(from_light_[1] / before.pdf_from_eye, t_ > 2 && joinable(before, vertex(s_ + 2)))
+        .longer(from_light_[0] / z.pdf_from_eye, !before.specular());
+}
+
+double Joint::weight(MisHeuristic heuristic) const {
+    const ShorterTechniques light = shorter_light(), eye = shorter_eye();
+    if (heuristic == MisHeuristic::balance) return 1 / (1 + light.sum + eye.sum);
+    if (heuristic == MisHeuristic::power) return 1 / (1 + light.squares + eye.squares);
+    return light.largest < 1 && eye.largest <= 1 ? 1 : 0; // of equals, the first
+}
+
+bool Joint::visible() const { return s_ == 0 || scene_->visible(vertex(s_ - 1).point, vertex(s_).point, to_eye_); }
 
 Path Joint::path() const {
     Path path;

@@ -6,26 +6,45 @@
 #include "sampling/measure.h"
 #include "sampling/proposals/edit.h"
 
+#include <algorithm>
+
 namespace keyhole {
 
 /// How techniques that make the same path share it (Veach 1997, section 9.2).
 enum class MisHeuristic { balance, power, maximum };
 
+/// Ratios of densities: of the techniques that make fewer than i of the first vertices of a sub-path, to one that makes
+/// i. Their sum, the sum of their squares, and the largest.
+struct ShorterTechniques {
+    double sum = 0, squares = 0, largest = 0;
+
+    /// The same for one vertex more, whose density from the other end is `ratio` times that from this one. `cut`:
+    /// whether there is a technique that makes all but this vertex.
+    ShorterTechniques longer(double ratio, bool cut) const {
+        if (!(ratio > 0)) return {}; // also where a sum has grown beyond all bounds: 0 times that is 0 here
+        const double own = cut ? 1 : 0;
+        return {ratio * (own + sum), ratio * ratio * (own + squares), ratio * std::max(own, largest)};
+    }
+};
+
 /// A sub-path as a walk made it. Its vertices carry the density with which they were traced and, but for the last two,
 /// that of the other direction.
 struct TracedSubPath {
     SubPath vertices;
-    InlineVector<Rgb, kMaxScatterings + 2> throughput; ///< contribution over density of what lies before vertex i,
-                                                       ///< scattering there left out, roulette included
+
+    /// What else is known of a vertex.
+    struct Note {
+        Rgb throughput; ///< contribution over density of what lies before it, scattering there left out, roulette
+                        ///< included
+        Vec3 back;      ///< unit, towards the vertex before it
+        ShorterTechniques shorter; ///< than the one that makes all vertices before it; not of the last vertex
+    };
+    InlineVector<Note, kMaxScatterings + 2> notes; ///< of each vertex
 
     int size() const { return static_cast<int>(vertices.size()); }
     void clear() {
         vertices.clear();
-        throughput.clear();
-    }
-    void push_back(const Vertex& v, const Rgb& arriving) {
-        vertices.push_back(v);
-        throughput.push_back(arriving);
+        notes.clear();
     }
 };
 
@@ -50,6 +69,10 @@ class Joint {
     /// assumed.
     Rgb value(MisHeuristic heuristic);
 
+    /// Density of the technique that makes k vertices from the light, over that of this one. To be asked after value(),
+    /// of a path that carries light.
+    double density_ratio(int k) const;
+
     /// Whether the joining edge is free. True for s = 0.
     bool visible() const;
 
@@ -64,12 +87,15 @@ class Joint {
     double weight(MisHeuristic heuristic) const;
     double pdf_from_light(int i) const;
     double pdf_from_eye(int i) const;
+    ShorterTechniques shorter_light() const;
+    ShorterTechniques shorter_eye() const;
 
     const Scene* scene_;
     const TracedSubPath *light_, *eye_;
     int s_, t_;
     Vec2 image_;
     bool possible_ = false;
+    Vec3 to_eye_{0, 0, 0};                   // from x[s - 1] to x[s]; where s > 0
     double from_light_[2]{}, from_eye_[2]{}; // of x[s], x[s + 1] when traced from the light; of x[s - 1], x[s - 2]
 };
 

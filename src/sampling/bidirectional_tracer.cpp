@@ -1,6 +1,7 @@
 #include "sampling/bidirectional_tracer.h"
 
 #include <algorithm>
+#include <array>
 
 namespace keyhole {
 namespace {
@@ -13,46 +14,65 @@ double survival_probability(const Rgb& carried, std::size_t vertices) {
 
 /// A ray that leaves the end of a walk.
 struct Departure {
-    SurfacePoint from; ///< where to trace from; on its beam if the walk's end is infinite
+    const SurfacePoint* from; ///< where to trace from; on its beam if the walk's end is infinite
     Vec3 w;
     double pdf;     ///< per solid angle; of the beam where the end is infinite
     Rgb throughput; ///< of the walk, having left
 };
 
+/// Whether the other end of paths ever finds the first vertex of a walk.
+enum class Start { reachable, unreachable };
+
 double& density(Vertex& v, From from) { return from == From::eye ? v.pdf_from_eye : v.pdf_from_light; }
 
 /// Appends the next vertex. False, and nothing appended, where there is none.
 bool append_next(const Scene& scene, const Departure& ray, TracedSubPath& walk) {
-    walk.vertices.resize(walk.vertices.size() + 1);
-    if (!next_vertex(scene, ray.from, ray.w, walk.vertices.back())) {
+    if (!next_vertex(scene, *ray.from, ray.w, walk.vertices.emplace_back())) {
         walk.vertices.pop_back();
         return false;
     }
-    walk.throughput.push_back(ray.throughput);
+    TracedSubPath::Note& note = walk.notes.emplace_back();
+    note.throughput = ray.throughput;
+    note.back = -ray.w;
     return true;
 }
 
+/// Notes at the last vertex which techniques make less than what lies before it. To be asked once it is known how the
+/// walk goes on there.
+void note_shorter_techniques(TracedSubPath& walk, From from) {
+    const std::size_t last = walk.vertices.size() - 1;
+    const Vertex& before = walk.vertices[last - 1];
+    const bool cut = last == 1 ? from == From::light : joinable(walk.vertices[last - 2], before);
+    const double forward = from == From::eye ? before.pdf_from_eye : before.pdf_from_light,
+                 backward = from == From::eye ? before.pdf_from_light : before.pdf_from_eye;
+    walk.notes[last].shorter = walk.notes[last - 1].shorter.longer(backward / forward, cut);
+}
+
 /// Goes on from the last vertex until the walk is lost or full.
-void extend(const Scene& scene, TracedSubPath& walk, From from, Departure ray, std::size_t most, SampleSource& source,
-            SampleSource* roulette) {
+void extend(const Scene& scene, TracedSubPath& walk, From from, Start start, Departure ray, std::size_t most,
+            SampleSource& source, SampleSource* roulette) {
     const From other = from == From::eye ? From::light : From::eye;
     Rgb carried(1.0); // since the start
     while (walk.vertices.size() < most) {
         if (!append_next(scene, ray, walk)) return;
         Vertex &v = walk.vertices.back(), &before = walk.vertices[walk.vertices.size() - 2];
-        const Rgb clear = scene.transmittance(ray.from, v.point);
-        walk.throughput.back() *= clear;
-        density(v, from) = solid_angle_to_area(ray.pdf, before.point, v.point);
+        const Rgb clear = scene.transmittance(*ray.from, v.point);
+        TracedSubPath::Note& note = walk.notes.back();
+        note.throughput *= clear;
+        density(v, from) = solid_angle_to_area(ray.pdf, before.point, v.point, ray.w);
         if (v.point.site == Site::infinite || walk.vertices.size() == most) return;
         const auto next = continue_walk(v, -ray.w, from, source);
         if (!next) return;
         v.event = next->event;
-        density(before, other) = solid_angle_to_area(next->backward, v.point, before.point);
+        density(before, other) = walk.vertices.size() == 2 && start == Start::unreachable
+                                     ? 0.0
+                                     : solid_angle_to_area(next->backward, v.point, before.point, ray.w);
+        note_shorter_techniques(walk, from);
         carried *= clear * next->weight;
         const double q = roulette != nullptr ? survival_probability(carried, walk.vertices.size()) : 1.0;
         if (q < 1 && roulette->next() >= q) return;
         carried /= q;
-        ray = {v.point, next->w, next->forward, walk.throughput.back() * next->weight / q};
+        ray = {&v.point, next->w, next->forward, note.throughput * next->weight / q};
     }
 }
 
@@ -61,39 +81,41 @@ void extend(const Scene& scene, TracedSubPath& walk, From from, Departure ray, s
 void trace_eye_subpath(const Scene& scene, const Vec2& image, int most_vertices, SampleSource& source,
                        SampleSource* roulette, TracedSubPath& walk) {
     walk.clear();
-    Vertex eye = sample_eye(scene, source);
+    Vertex& eye = walk.vertices.emplace_back();
+    sample_eye(scene, source, eye);
     eye.pdf_from_eye = scene.camera().eye_pdf();
-    walk.push_back(eye, Rgb(1.0));
+    walk.notes.emplace_back().throughput = Rgb(1.0);
     if (most_vertices > 1) {
         const Vec3 w = scene.camera().ray_direction(eye.point, image);
-        extend(scene, walk, From::eye, {eye.point, w, scene.camera().direction_pdf(w), Rgb(1.0)},
+        // Light never hits the lens by chance.
+        extend(scene, walk, From::eye, Start::unreachable, {&eye.point, w, scene.camera().direction_pdf(w), Rgb(1.0)},
                static_cast<std::size_t>(most_vertices), source, roulette);
     }
-    walk.vertices[0].pdf_from_light = 0; // light never hits the lens by chance
 }
 
 void trace_light_subpath(const Scene& scene, int most_vertices, SampleSource& source, SampleSource* roulette,
                          TracedSubPath& walk) {
     walk.clear();
     if (most_vertices < 1) return;
-    auto x0 = sample_emitter(scene, source);
-    if (!x0 || !(x0->pdf > 0)) return;
-    x0->vertex.pdf_from_light = x0->pdf;
-    walk.push_back(x0->vertex, Rgb(1 / x0->pdf));
+    Vertex& x0 = walk.vertices.emplace_back();
+    x0.pdf_from_light = sample_emitter(scene, source, x0);
+    if (!(x0.pdf_from_light > 0)) {
+        walk.clear();
+        return;
+    }
+    walk.notes.emplace_back().throughput = Rgb(1 / x0.pdf_from_light);
     if (most_vertices == 1) return;
-    const SurfacePoint& point = x0->vertex.point;
-    const Emitter& emitter = scene.emitter(point.emitter);
-    const EmitterRay ray = emitter.sample_ray(point, source);
-    const Rgb leaving = emitter.radiance(point, ray.w) * (point.abs_cos(ray.w) / (x0->pdf * ray.pdf));
+    const Emitter& emitter = scene.emitter(x0.point.emitter);
+    const EmitterRay ray = emitter.sample_ray(x0.point, source);
+    const Rgb leaving = emitter.radiance(x0.point, ray.w) * (x0.point.abs_cos(ray.w) / (x0.pdf_from_light * ray.pdf));
     if (!(ray.pdf > 0) || is_black(leaving)) return;
-    extend(scene, walk, From::light, {ray.origin, ray.w, ray.pdf, leaving}, static_cast<std::size_t>(most_vertices),
-           source, roulette);
-    if (emitter.is_delta()) walk.vertices[0].pdf_from_eye = 0;
+    extend(scene, walk, From::light, emitter.is_delta() ? Start::unreachable : Start::reachable,
+           {&ray.origin, ray.w, ray.pdf, leaving}, static_cast<std::size_t>(most_vertices), source, roulette);
 }
 
-SubPathPair& SubPathPair::scratch() {
-    thread_local SubPathPair pair;
-    return pair;
+SubPathPair& SubPathPair::scratch(std::size_t room) {
+    thread_local std::array<SubPathPair, 2> rooms;
+    return rooms[room];
 }
 
 } // namespace keyhole

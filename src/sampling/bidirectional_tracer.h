@@ -19,10 +19,10 @@ void trace_eye_subpath(const Scene& scene, const Vec2& image, int most_vertices,
 void trace_light_subpath(const Scene& scene, int most_vertices, SampleSource& source, SampleSource* roulette,
                          TracedSubPath& walk);
 
-/// Room for two sub-paths, one for each thread: to make such a thing anew costs as much as to trace a ray.
+/// Room for two sub-paths: to make such a thing anew costs as much as to trace a ray. Each thread has two of them.
 struct SubPathPair {
     TracedSubPath eye, light;
-    static SubPathPair& scratch();
+    static SubPathPair& scratch(std::size_t room = 0);
 };
 
 /// Joins every pair of vertices of two sub-paths and tells sink.contribution(connection, value, light_class) about
@@ -38,10 +38,11 @@ void connect_subpaths(const Scene& scene, const TracedSubPath& light, const Trac
             if (s + t < 2) continue;
             Joint joint(scene, light, s, eye, t, image);
             if (!joint.possible()) continue;
-            const LightClass kind = joint.light_class();
-            if (!in_set(kind, set, joint.vertex(1).point, joint.vertex(0).point)) continue;
             const Rgb value = joint.value(heuristic);
-            if (luminance(value) > 0 && joint.visible()) sink.contribution(joint, value, kind);
+            if (!(luminance(value) > 0)) continue;
+            const LightClass kind = joint.light_class();
+            if (in_set(kind, set, joint.vertex(1).point, joint.vertex(0).point) && joint.visible())
+                sink.contribution(joint, value, kind);
         }
     }
 }

@@ -46,7 +46,7 @@ void trace_independent(Technique technique, const Scene& scene, const Vec2& imag
         for (std::size_t i = 1; i < eye.vertices.size(); ++i) {
             const Vertex& v = eye.vertices[i];
             if (v.point.site != Site::surface) break;
-            sink.arrival(v, direction(v.point, eye.vertices[i - 1].point), eye.throughput[i], finite);
+            sink.arrival(v, eye.notes[i].back, eye.notes[i].throughput, finite);
             finite += v.specular() ? 0 : 1;
         }
         struct {

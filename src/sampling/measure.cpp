@@ -1,7 +1,6 @@
 #include "sampling/measure.h"
 
 namespace keyhole {
-namespace {
 
 /// A delta lobe has a density only up to the factor that its delta function would have. The factors are chosen so that
 /// one `value` serves both directions: contribution over density is then T / (eta^2 p) from the eye and, with the
@@ -18,17 +17,6 @@ ScatterValue scatter_specular(const SurfacePoint& point, const Bsdf& bsdf, Event
     const double eta2 = from_eye->eta * from_eye->eta; // (light's side / eye's side)^2
     return {from_eye->coefficient * (ns_light / (ng_light * ns_eye)), from_eye->probability * eta2 * ns_light / ns_eye,
             from_light->probability};
-}
-
-} // namespace
-
-ScatterValue scatter(const SurfacePoint& point, const Bsdf& bsdf, Event event, const Vec3& to_light,
-                     const Vec3& to_eye) {
-    if (is_specular(event)) return scatter_specular(point, bsdf, event, to_light, to_eye);
-    const double ng_light = point.abs_cos(to_light);
-    if (ng_light == 0) return {};
-    const double shading = std::abs(static_cast<double>(bsdf.shading_normal().dot(to_light))) / ng_light;
-    return {bsdf.eval(to_light, to_eye) * shading, bsdf.pdf(to_eye, to_light), bsdf.pdf(to_light, to_eye)};
 }
 
 double emitter_point_pdf(const Scene& scene, const SurfacePoint& point) {

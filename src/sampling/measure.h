@@ -19,9 +19,20 @@ struct ScatterValue {
     double pdf_to_eye = 0;   ///< density per solid angle of continuing to the eye's side, tracing from the light
 };
 
+/// scatter() for specular events.
+ScatterValue scatter_specular(const SurfacePoint& point, const Bsdf& bsdf, Event event, const Vec3& to_light,
+                              const Vec3& to_eye);
+
 /// Scattering of kind `event` at `point` from the direction towards the light into that towards the eye.
-ScatterValue scatter(const SurfacePoint& point, const Bsdf& bsdf, Event event, const Vec3& to_light,
-                     const Vec3& to_eye);
+inline ScatterValue scatter(const SurfacePoint& point, const Bsdf& bsdf, Event event, const Vec3& to_light,
+                            const Vec3& to_eye) {
+    if (is_specular(event)) return scatter_specular(point, bsdf, event, to_light, to_eye);
+    const double ng_light = point.abs_cos(to_light);
+    if (ng_light == 0) return {};
+    const double shading = std::abs(static_cast<double>(bsdf.shading_normal().dot(to_light))) / ng_light;
+    const Bsdf::Finite f = bsdf.finite(to_light, to_eye);
+    return {f.value * shading, f.pdf_to_light, f.pdf_to_eye};
+}
 
 /// Fills in values and densities of all vertices, and the contribution f (radiance, over the window; visibility is
 /// assumed). x, the events and `image` are the input. Veach 1997, chapter 8.

@@ -8,41 +8,54 @@ namespace keyhole {
 
 namespace {
 
-void put_at(const SurfacePoint& point, Vertex& v) {
-    v.point = point;
-    if (point.material != nullptr) v.bsdf = point.material->bsdf(point);
+void look_up_bsdf(Vertex& v) {
+    if (v.point.material != nullptr) v.bsdf = v.point.material->bsdf(v.point);
 }
 
 } // namespace
 
 Vertex make_vertex(const SurfacePoint& point) {
     Vertex v;
-    put_at(point, v);
+    v.point = point;
+    look_up_bsdf(v);
     return v;
 }
 
-std::optional<EmitterVertex> sample_emitter(const Scene& scene, SampleSource& source) {
+double sample_emitter(const Scene& scene, SampleSource& source, Vertex& v) {
     const EmitterDistribution& distribution = scene.emitter_distribution();
-    if (distribution.empty()) return std::nullopt;
+    if (distribution.empty()) return 0;
     const std::uint32_t i = distribution.sample(source.next());
-    auto [point, pdf] = scene.emitter(i).sample_point(source);
-    point.emitter = i;
-    return EmitterVertex{make_vertex(point), distribution.probability(i) * pdf};
+    const auto [point, pdf] = scene.emitter(i).sample_point(source);
+    v.point = point;
+    v.point.emitter = i;
+    look_up_bsdf(v);
+    return distribution.probability(i) * pdf;
+}
+
+std::optional<EmitterVertex> sample_emitter(const Scene& scene, SampleSource& source) {
+    if (scene.emitter_distribution().empty()) return std::nullopt;
+    EmitterVertex x0;
+    x0.pdf = sample_emitter(scene, source, x0.vertex);
+    return x0;
+}
+
+void sample_eye(const Scene& scene, SampleSource& source, Vertex& v) {
+    const auto [u0, u1] = source.take<2>();
+    v.point = scene.camera().eye(u0, u1);
 }
 
 Vertex sample_eye(const Scene& scene, SampleSource& source) {
     Vertex v;
-    const double u0 = source.next(), u1 = source.next();
-    v.point = scene.camera().eye(u0, u1);
+    sample_eye(scene, source, v);
     return v;
 }
 
 bool next_vertex(const Scene& scene, const SurfacePoint& from, const Vec3& w, Vertex& v) {
     // Vertices closer than floats can tell apart leave no direction between them.
     if (!(w.length2() > 0.5f)) return false;
-    const auto point = scene.trace(from, w);
-    if (point) put_at(*point, v);
-    return point.has_value();
+    if (!scene.trace(from, w, v.point)) return false;
+    look_up_bsdf(v);
+    return true;
 }
 
 std::optional<Vertex> next_vertex(const Scene& scene, const SurfacePoint& from, const Vec3& w) {

@@ -18,9 +18,12 @@ struct EmitterVertex {
     double pdf;
 };
 std::optional<EmitterVertex> sample_emitter(const Scene& scene, SampleSource& source);
+/// Makes the new vertex `v` x0, and returns its density; 0 if nothing emits.
+double sample_emitter(const Scene& scene, SampleSource& source, Vertex& v);
 
 /// The eye vertex.
 Vertex sample_eye(const Scene& scene, SampleSource& source);
+void sample_eye(const Scene& scene, SampleSource& source, Vertex& v);
 
 /// Makes the new vertex `v` the next one along `w`, in its place: vertices are large. False where nothing is hit. It
 /// may be infinite where there is an environment: there a walk ends, for nothing is scattered.

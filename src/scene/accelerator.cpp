@@ -49,13 +49,14 @@ void pass_holes(const RTCFilterFunctionNArguments* arguments) {
 } // namespace
 
 SurfacePoint hit_point(const Shape& shape, const RayHit& hit, const Vec3& origin, const Vec3& direction) {
-    SurfacePoint s;
-    if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) {
-        s = triangle_point(*mesh, hit.primitive, hit.u, hit.v);
-    } else {
-        const auto& sphere = std::get<Sphere>(shape.geometry);
-        s = sphere_point(sphere, (origin + direction * hit.t - sphere.center).normalized());
-    }
+    const bool parametrised = reads_parametrisation(shape);
+    const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
+    const auto outward = [&](const Sphere& sphere) {
+        return (origin + direction * hit.t - sphere.center).normalized();
+    };
+    SurfacePoint s = mesh != nullptr ? triangle_point(*mesh, hit.primitive, hit.u, hit.v, parametrised)
+                                     : sphere_point(*std::get_if<Sphere>(&shape.geometry),
+                                                    outward(*std::get_if<Sphere>(&shape.geometry)), parametrised);
     s.shape = hit.shape;
     s.material = shape.material.get();
     return s;

@@ -16,7 +16,8 @@ struct RayHit {
     float t;                 ///< along the ray's direction, in its lengths
 };
 
-/// The point of `shape` that a ray from `origin` along `direction` met. Its emitter is left out.
+/// The point of `shape` that a ray from `origin` along `direction` met. Its emitter is left out, and the
+/// parametrisation where nothing reads it.
 SurfacePoint hit_point(const Shape& shape, const RayHit& hit, const Vec3& origin, const Vec3& direction);
 
 /// A bounding volume hierarchy over shapes. Where a shape has an alpha texture, rays pass its holes; others don't pay

@@ -19,9 +19,35 @@ void set_parametrisation(SurfacePoint& s, const Vec3& dpdu, const Vec3& dpdv) {
     s.dpdv = {dpdv.dot(s.tangent), dpdv.dot(s.ns.cross(s.tangent))};
 }
 
+void parametrise(SurfacePoint& s, const TriangleMesh& mesh, float u, float v) {
+    const auto& [ia, ib, ic] = mesh.triangles[s.primitive];
+    const Vec3 &a = mesh.positions[ia], &b = mesh.positions[ib], &c = mesh.positions[ic];
+    s.uv = Vec2(u, v);
+    Vec3 dpdu = b - a, dpdv = c - a;
+    if (!mesh.uvs.empty()) {
+        const Vec2 &ta = mesh.uvs[ia], &tb = mesh.uvs[ib], &tc = mesh.uvs[ic];
+        s.uv = ta * (1 - u - v) + tb * u + tc * v;
+        const float det = (tb.x - ta.x) * (tc.y - ta.y) - (tc.x - ta.x) * (tb.y - ta.y);
+        if (det != 0) {
+            dpdu = ((b - a) * (tc.y - ta.y) - (c - a) * (tb.y - ta.y)) / det;
+            dpdv = ((c - a) * (tb.x - ta.x) - (b - a) * (tc.x - ta.x)) / det;
+        }
+    }
+    set_parametrisation(s, dpdu, dpdv);
+}
+
+void parametrise(SurfacePoint& s, const Sphere& sphere, const Vec3& outward) {
+    const float phi = std::atan2(outward.y, outward.x);
+    s.uv = Vec2(static_cast<float>((phi < 0 ? phi + 2 * kPi : phi) / (2 * kPi)),
+                static_cast<float>(std::acos(std::clamp(outward.z, -1.0f, 1.0f)) / kPi));
+    const Vec3 pole = Vec3(outward.x, outward.y, 0).normalized();
+    const float sine = std::hypot(outward.x, outward.y), r = sphere.radius * static_cast<float>(kPi);
+    set_parametrisation(s, Vec3(-outward.y, outward.x, 0) * (2 * r), (pole * outward.z - Vec3(0, 0, sine)) * r);
+}
+
 } // namespace
 
-SurfacePoint triangle_point(const TriangleMesh& mesh, std::uint32_t triangle, float u, float v) {
+SurfacePoint triangle_point(const TriangleMesh& mesh, std::uint32_t triangle, float u, float v, bool parametrised) {
     const auto& [ia, ib, ic] = mesh.triangles[triangle];
     const Vec3 &a = mesh.positions[ia], &b = mesh.positions[ib], &c = mesh.positions[ic];
     const float w = 1 - u - v;
@@ -36,33 +62,17 @@ SurfacePoint triangle_point(const TriangleMesh& mesh, std::uint32_t triangle, fl
         if (s.ns.length2() == 0) s.ns = s.ng;
         if (s.ns.dot(s.ng) < 0) s.ns = -s.ns;
     }
-    s.uv = Vec2(u, v);
-    Vec3 dpdu = b - a, dpdv = c - a;
-    if (!mesh.uvs.empty()) {
-        const Vec2 &ta = mesh.uvs[ia], &tb = mesh.uvs[ib], &tc = mesh.uvs[ic];
-        s.uv = ta * w + tb * u + tc * v;
-        const float det = (tb.x - ta.x) * (tc.y - ta.y) - (tc.x - ta.x) * (tb.y - ta.y);
-        if (det != 0) {
-            dpdu = ((b - a) * (tc.y - ta.y) - (c - a) * (tb.y - ta.y)) / det;
-            dpdv = ((c - a) * (tb.x - ta.x) - (b - a) * (tc.x - ta.x)) / det;
-        }
-    }
-    set_parametrisation(s, dpdu, dpdv);
+    if (parametrised) parametrise(s, mesh, u, v);
     return s;
 }
 
-SurfacePoint sphere_point(const Sphere& sphere, const Vec3& outward) {
+SurfacePoint sphere_point(const Sphere& sphere, const Vec3& outward, bool parametrised) {
     SurfacePoint s;
     s.p = sphere.center + outward * sphere.radius;
     s.ng = s.ns = sphere.inward ? -outward : outward;
     s.offset = kRelativeError * (absolute(s.ng).dot(absolute(sphere.center)) + sphere.radius);
     s.primitive = 0;
-    const float phi = std::atan2(outward.y, outward.x);
-    s.uv = Vec2(static_cast<float>((phi < 0 ? phi + 2 * kPi : phi) / (2 * kPi)),
-                static_cast<float>(std::acos(std::clamp(outward.z, -1.0f, 1.0f)) / kPi));
-    const Vec3 pole = Vec3(outward.x, outward.y, 0).normalized();
-    const float sine = std::hypot(outward.x, outward.y), r = sphere.radius * static_cast<float>(kPi);
-    set_parametrisation(s, Vec3(-outward.y, outward.x, 0) * (2 * r), (pole * outward.z - Vec3(0, 0, sine)) * r);
+    if (parametrised) parametrise(s, sphere, outward);
     return s;
 }
 

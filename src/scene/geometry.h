@@ -6,11 +6,13 @@
 
 namespace keyhole {
 
-/// The point with barycentric coordinates (1-u-v, u, v) on a triangle. Fills in everything but shape and emitter.
-SurfacePoint triangle_point(const TriangleMesh& mesh, std::uint32_t triangle, float u, float v);
+/// The point with barycentric coordinates (1-u-v, u, v) on a triangle. Fills in everything but shape and emitter; the
+/// parametrisation (texture coordinates, tangent and derivatives) if it is asked for.
+SurfacePoint triangle_point(const TriangleMesh& mesh, std::uint32_t triangle, float u, float v,
+                            bool parametrised = true);
 
 /// The point of a sphere in direction `outward` (unit) from its centre.
-SurfacePoint sphere_point(const Sphere& sphere, const Vec3& outward);
+SurfacePoint sphere_point(const Sphere& sphere, const Vec3& outward, bool parametrised = true);
 
 /// Area of a triangle [m^2].
 double triangle_area(const TriangleMesh& mesh, std::uint32_t triangle);

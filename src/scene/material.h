@@ -12,12 +12,21 @@ namespace keyhole {
 class Material {
   public:
     virtual ~Material() = default;
+    /// Whether bsdf() asks where in its parametrisation a point lies, or which way that runs. Finding out takes longer
+    /// than finding the point: see hit_point().
+    bool reads_parametrisation() const { return reads_parametrisation_; }
     /// Evaluates all textures; the result stands for itself, but not beyond the material.
     virtual Bsdf bsdf(const SurfacePoint& point) const = 0;
     /// What any BSDF of this material may have; the renderer leaves out what no material needs.
     virtual BsdfTraits traits() const = 0;
     /// Word that names the kind, as in scene files.
     virtual const char* kind() const = 0;
+
+  protected:
+    explicit Material(bool reads_parametrisation = true) : reads_parametrisation_(reads_parametrisation) {}
+
+  private:
+    bool reads_parametrisation_;
 };
 
 using MaterialPtr = std::shared_ptr<const Material>;

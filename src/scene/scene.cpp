@@ -120,25 +120,32 @@ void Scene::prepare_emitters() {
     light_tree_ = LightTree(emitters_, emitter_distribution_, bounding_sphere());
 }
 
-std::optional<SurfacePoint> Scene::trace(const SurfacePoint& from, const Vec3& w) const {
+bool Scene::trace(const SurfacePoint& from, const Vec3& w, SurfacePoint& found) const {
     count_ray();
     const Vec3 o = from.ray_origin(w);
     const auto hit = accelerator_.intersect(o, w);
     if (!hit) {
-        if (environment_ == SurfacePoint::kNone) return std::nullopt;
-        SurfacePoint s = infinite_point(w);
-        s.emitter = environment_;
-        return s;
+        if (environment_ == SurfacePoint::kNone) return false;
+        found = infinite_point(w);
+        found.emitter = environment_;
+        return true;
     }
-    SurfacePoint s = hit_point(shapes_[hit->shape], *hit, o, w);
-    s.emitter = emitter_of_shape_[hit->shape];
-    return s;
+    found = hit_point(shapes_[hit->shape], *hit, o, w);
+    found.emitter = emitter_of_shape_[hit->shape];
+    return true;
 }
 
-bool Scene::visible(const SurfacePoint& a, const SurfacePoint& b) const {
+std::optional<SurfacePoint> Scene::trace(const SurfacePoint& from, const Vec3& w) const {
+    std::optional<SurfacePoint> found(std::in_place);
+    if (!trace(from, w, *found)) found.reset();
+    return found;
+}
+
+bool Scene::visible(const SurfacePoint& a, const SurfacePoint& b, const Vec3& a_to_b) const {
     count_ray();
-    const SurfacePoint &from = a.site == Site::infinite ? b : a, &to = a.site == Site::infinite ? a : b;
-    const Vec3 w = direction(from, to), o = from.ray_origin(w);
+    const bool turned = a.site == Site::infinite;
+    const SurfacePoint &from = turned ? b : a, &to = turned ? a : b;
+    const Vec3 w = turned ? -a_to_b : a_to_b, o = from.ray_origin(w);
     if (to.site == Site::infinite) return !accelerator_.occluded(o, w, std::numeric_limits<float>::infinity());
     return !accelerator_.occluded(o, to.ray_origin(-w) - o, kEdgeEnd);
 }

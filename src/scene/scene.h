@@ -36,9 +36,13 @@ class Scene {
 
     /// The first place seen from `from` along unit direction `w`. With an environment, a miss is a point at infinity.
     std::optional<SurfacePoint> trace(const SurfacePoint& from, const Vec3& w) const;
+    /// The same into `found`; false, and nothing there, where nothing is seen. `found` may be `from`.
+    bool trace(const SurfacePoint& from, const Vec3& w, SurfacePoint& found) const;
 
     /// Whether nothing stands between two points. At most one of them is infinite.
-    bool visible(const SurfacePoint& a, const SurfacePoint& b) const;
+    bool visible(const SurfacePoint& a, const SurfacePoint& b) const { return visible(a, b, direction(a, b)); }
+    /// The same; `a_to_b` is the direction from `a` to `b`, for callers that know it.
+    bool visible(const SurfacePoint& a, const SurfacePoint& b, const Vec3& a_to_b) const;
 
     /// Share of light that absorption leaves along the edge between two points, as far as media go: 1 without them.
     Rgb transmittance(const SurfacePoint& a, const SurfacePoint& b) const {

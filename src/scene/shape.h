@@ -46,6 +46,11 @@ struct Shape {
 /// Whether one medium ends at the surface of `shape` and another begins.
 inline bool bounds_media(const Shape& shape) { return shape.inside != shape.outside; }
 
+/// Whether what happens at the points of `shape` depends on its parametrisation.
+inline bool reads_parametrisation(const Shape& shape) {
+    return shape.alpha != nullptr || (shape.material != nullptr && shape.material->reads_parametrisation());
+}
+
 /// Whether rays and light pass `shape` as if it weren't there, but for the media that it parts.
 bool is_interface(const Shape& shape);
 

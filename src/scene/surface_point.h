@@ -23,7 +23,7 @@ struct SurfacePoint {
     Vec3 p{0, 0, 0};       ///< world position; the unit direction towards an infinite point
     Vec3 ng{0, 0, 0};      ///< unit geometric normal; its side is the shape's outside
     Vec3 ns{0, 0, 0};      ///< unit shading normal, in the hemisphere of ng
-    Vec3 tangent{1, 0, 0}; ///< unit, perpendicular to ns, along increasing u where there is a parametrisation
+    Vec3 tangent{0, 0, 0}; ///< unit, perpendicular to ns, along increasing u where there is a parametrisation; 0: none
     Vec2 uv{0, 0};         ///< texture coordinates
     float dpdu = 1;        ///< length of dp/du in the tangent plane, along `tangent` [m]
     Vec2 dpdv{0, 1};       ///< dp/dv in the tangent plane, along `tangent` and ns x tangent [m]
@@ -36,7 +36,7 @@ struct SurfacePoint {
 
     /// The frame of ns whose first axis is the tangent, or any where there is none.
     Frame shading_frame() const {
-        if (!(std::abs(tangent.dot(ns)) < 1e-3f)) return Frame(ns);
+        if (tangent == Vec3(0, 0, 0) || !(std::abs(tangent.dot(ns)) < 1e-3f)) return Frame(ns);
         Frame frame;
         frame.n = ns;
         frame.t = ns.cross(tangent).normalized();
@@ -74,13 +74,15 @@ inline Vec3 direction(const SurfacePoint& a, const SurfacePoint& b) {
 }
 
 /// Geometry term G(a,b) of an edge without its visibility: cos cos / r^2 [1/m^2], with the factors left out that a
-/// point or an infinite end doesn't have. 0 for coinciding points.
-inline double geometry_term(const SurfacePoint& a, const SurfacePoint& b) {
-    const Vec3 w = direction(a, b);
+/// point or an infinite end doesn't have. 0 for coinciding points. `w` is the direction between the two, either way.
+inline double geometry_term(const SurfacePoint& a, const SurfacePoint& b, const Vec3& w) {
     const double cosines = a.abs_cos(w) * b.abs_cos(w);
     if (a.site == Site::infinite || b.site == Site::infinite) return cosines;
     const double r2 = Imath::V3d(b.p - a.p).length2();
     return r2 > 0 ? cosines / r2 : 0.0;
+}
+inline double geometry_term(const SurfacePoint& a, const SurfacePoint& b) {
+    return geometry_term(a, b, direction(a, b));
 }
 
 /// Turns a density per solid angle at `from`, in the direction of `to`, into one in the coordinates of `to`: area on a

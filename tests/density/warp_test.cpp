@@ -133,5 +133,14 @@ TEST(AreaEmitter_Points, AreUniformByArea) {
     EXPECT_GT(h.p_value(), sidak_threshold(kTests));
 }
 
+TEST(CirclePoint, IsCosineAndSine) {
+    for (int i = 0; i <= 4000; ++i) {
+        const double turns = i / 4000.0;
+        const auto [x, y] = circle_point(turns);
+        EXPECT_NEAR(x, std::cos(2 * kPi * turns), 1e-11);
+        EXPECT_NEAR(y, std::sin(2 * kPi * turns), 1e-11);
+    }
+}
+
 } // namespace
 } // namespace keyhole::test

@@ -33,7 +33,7 @@ double expected_weight(const Path& path, int s, MisHeuristic heuristic) {
 /// Joints that were compared, and those that differ by more than single precision can explain: directions at joints
 /// follow from positions.
 struct Tally {
-    int joints = 0, wrong = 0, wrong_class = 0, undecided = 0;
+    int joints = 0, wrong = 0, wrong_class = 0, wrong_ratios = 0, undecided = 0;
 };
 
 void compare(const Joint& as_made, const TracedSubPath& eye, Tally& tally) {
@@ -45,6 +45,10 @@ void compare(const Joint& as_made, const TracedSubPath& eye, Tally& tally) {
         Joint joint = as_made;
         const double value = luminance(joint.value(heuristic)), free = luminance(path.contribution) / own;
         const double expected = free * expected_weight(path, joint.s(), heuristic);
+        for (int k = 0; k < path.vertices(); ++k) {
+            const double ratio = technique_density(path, k) / own, told = joint.density_ratio(k);
+            if (value > 0 && std::abs(told - ratio) > 1e-3 * std::max(told, ratio)) ++tally.wrong_ratios;
+        }
         const bool borderline = heuristic == MisHeuristic::maximum && (value > 0) != (expected > 0);
         ++tally.joints;
         if (borderline) ++tally.undecided;
@@ -75,6 +79,7 @@ TEST(Joint, CarriesWhatItsPathMeasures) {
         EXPECT_GT(tally.joints, 1000);
         EXPECT_EQ(tally.wrong_class, 0);
         EXPECT_LE(tally.wrong, tally.joints / 500);
+        EXPECT_LE(tally.wrong_ratios, tally.joints / 250);
         EXPECT_LE(tally.undecided, tally.joints / 500);
     }
 }

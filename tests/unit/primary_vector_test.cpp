@@ -30,6 +30,14 @@ TEST(SmallStep, HasTheLengthsOfKelemen) {
     EXPECT_NEAR(short_half, n / 2, 4 * std::sqrt(n / 4.0));
 }
 
+TEST(SmallStep, HasALogarithmThatIsUniform) {
+    for (int i = 0; i < 1000; ++i) {
+        const double exponent = i / 1000.0, expected = SmallStep::kLongest * std::exp2(-SmallStep::kOctaves * exponent);
+        EXPECT_NEAR(SmallStep(exponent / 2).distance(), expected, 1e-8 * expected);
+        EXPECT_NEAR(SmallStep(0.5 + exponent / 2).distance(), -expected, 1e-8 * expected);
+    }
+}
+
 TEST(SmallStep, ShiftIsUndoneByItsNegative) {
     for (const double u : {0.01, 0.24, 0.49, 0.51, 0.76, 0.99})
         for (const double shift : {-0.25, -0.1, 0.1, 0.25})
@@ -136,6 +144,25 @@ TEST(PrimaryStream, SamplesTheTargetLazily) {
             EXPECT_NEAR(many.mean(), expected.many, 4 * many.standard_error());
             EXPECT_LT(many.standard_error(), 0.02);
         }
+}
+
+TEST(PrimaryStream, GivesSeveralNumbersAsOneByOne) {
+    Rng rngs[] = {Rng(1, StreamPurpose::test, 0), Rng(1, StreamPurpose::test, 0)};
+    PrimaryClock clock;
+    PrimaryStream together(clock, rngs[0]), apart(clock, rngs[1]);
+    for (const Step step : {Step::large, Step::small, Step::second, Step::stay}) {
+        clock.step = step;
+        clock.attempt += step == Step::second ? 0 : 1;
+        together.rewind();
+        apart.rewind();
+        const auto numbers = together.take<5>();
+        for (const double u : numbers) EXPECT_EQ(u, apart.next());
+        EXPECT_EQ(together.used(), 5U);
+        if (step != Step::large) continue;
+        together.accept();
+        apart.accept();
+        clock.last_large = ++clock.now;
+    }
 }
 
 TEST(PrimaryStream, LargeStepsRenewCoordinatesThatTheyDidNotAskFor) {

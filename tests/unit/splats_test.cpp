@@ -43,6 +43,28 @@ TEST(Splats_OfUniformPoints, FillTheFilmEvenly) {
             }
 }
 
+// Splats read the filter from a table.
+TEST(Splat_Alone, IsSpreadByTheFilter) {
+    for (const char* kind : {"gaussian", "triangle", "box"})
+        for (const double radius : {0.0, 2.3}) {
+            Settings settings;
+            settings.filter = kind;
+            settings.filter_radius = radius;
+            const PixelFilter filter(settings);
+            constexpr int size = 8;
+            for (const Vec2& at : {Vec2(3.137f, 4.71f), Vec2(0.2f, 7.9f), Vec2(4, 4), Vec2(-0.3f, 2)}) {
+                SplatFilm splats(size, size, filter);
+                splats.add(at, SplatFilm::Layer::direct, Rgb(1, 2, 0.5));
+                for (std::size_t i = 0; i < splats.pixels(); ++i) {
+                    const Vec2 centre(static_cast<float>(i % size) + 0.5f, static_cast<float>(i / size) + 0.5f);
+                    const double expected = filter.density(at - centre);
+                    EXPECT_NEAR(splats.sums(i)[0], expected, 2e-6);
+                    EXPECT_NEAR(splats.sums(i)[1], 2 * expected, 4e-6);
+                }
+            }
+        }
+}
+
 TEST(Splats_FromManyThreads, AddUpTheSame) {
     std::vector<float> first;
     for (const int threads : {1, 4}) {

@@ -211,6 +211,43 @@ TEST(Bump_Normal, IsThatOfTheDisplacedTriangle) {
     EXPECT_GT(material->bsdf(triangle_point(mesh, 0, 0.3f, 0.3f)).shading_normal().dot(p.ng), 0.5f);
 }
 
+TEST(Point_WithoutParametrisation, IsTheSamePlace) {
+    TriangleMesh mesh;
+    mesh.positions = {{0, 0, 0}, {2, 0, 1}, {0.5f, 1.5f, 0}};
+    mesh.normals = {{0, 0, 1}, {0.6f, 0, 0.8f}, {0, 0.6f, 0.8f}};
+    mesh.triangles = {{0, 1, 2}};
+    const Sphere sphere{Vec3(1, 2, 3), 2.5f};
+    const Vec3 outward = Vec3(1, -2, 0.5f).normalized();
+    for (const auto& [with, without] :
+         {std::pair(triangle_point(mesh, 0, 0.3f, 0.2f), triangle_point(mesh, 0, 0.3f, 0.2f, false)),
+          std::pair(sphere_point(sphere, outward), sphere_point(sphere, outward, false))}) {
+        EXPECT_EQ(with.p, without.p);
+        EXPECT_EQ(with.ng, without.ng);
+        EXPECT_EQ(with.ns, without.ns);
+        EXPECT_EQ(with.offset, without.offset);
+        EXPECT_EQ(with.primitive, without.primitive);
+        EXPECT_LT((with.shading_frame().s - with.tangent).length(), 1e-5f);
+        const Frame frame = without.shading_frame();
+        EXPECT_EQ(frame.n, without.ns);
+        EXPECT_LT((frame.s.cross(frame.t) - frame.n).length(), 1e-5f);
+    }
+}
+
+TEST(Materials, TellWhetherTheyReadAParametrisation) {
+    const auto zero = constant_texture(0.0), rough = constant_texture(0.2);
+    const auto slope = std::make_shared<Slope>();
+    const auto grey = constant_texture(Rgb(0.5)),
+               tiles = checkerboard_texture(grey, constant_texture(Rgb(0.1)), UvMapping{});
+    EXPECT_FALSE(make_diffuse(grey)->reads_parametrisation());
+    EXPECT_TRUE(make_diffuse(tiles)->reads_parametrisation());
+    EXPECT_FALSE(make_glass(1.5)->reads_parametrisation());
+    EXPECT_FALSE(make_mirror(Rgb(0.9))->reads_parametrisation());
+    EXPECT_TRUE(make_conductor(grey, rough, constant_texture(0.05))->reads_parametrisation()); // has a direction
+    EXPECT_FALSE(make_conductor(grey, zero, zero)->reads_parametrisation());
+    EXPECT_TRUE(with_bump(make_diffuse(grey), slope)->reads_parametrisation());
+    EXPECT_TRUE(make_mix(make_diffuse(grey), make_glass(1.5), rough)->reads_parametrisation());
+}
+
 TEST(SpherePoint_Derivatives, AreThoseOfItsParametrisation) {
     const Sphere sphere{Vec3(1, 2, 3), 2.5f};
     const auto point = [&](double u, double v) {

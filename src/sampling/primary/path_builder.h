@@ -50,9 +50,9 @@ std::unique_ptr<PathBuilder> make_bidirectional_builder(const BuilderContext& co
 /// (Hachisuka, Kaplanyan and Dachsbacher 2014).
 std::unique_ptr<PathBuilder> make_multiplexed_builder(const BuilderContext& context, int scatterings);
 
-/// The joint of what the numbers of a multiplexed builder make. None if a sub-path ends too early or the eye's ends
-/// where nothing can be joined. Refers to the thread's SubPathPair::scratch().
-std::optional<Joint> multiplexed_joint(const Scene& scene, int scatterings, PrimarySources sources);
+/// The joint of what the numbers of a multiplexed builder make; the sub-paths are left in `room`. None if one ends too
+/// early or where nothing can be joined.
+std::optional<Joint> multiplexed_joint(const Scene& scene, int scatterings, PrimarySources sources, SubPathPair& room);
 
 /// Of a multiplexed builder: the number of techniques, and that which a number in [0,1) chooses, by its s.
 inline int technique_count(int scatterings) { return scatterings + 2; }
@@ -60,7 +60,7 @@ inline int chosen_technique(double u, int scatterings) { return static_cast<int>
 
 /// The window point of two numbers in [0,1).
 inline Vec2 window_point(SampleSource& source) {
-    const double x = source.next(), y = source.next();
+    const auto [x, y] = source.take<2>();
     const auto below_one = [](double u) { return std::min(static_cast<float>(u), 0x1.fffffep-1f); };
     return {below_one(x), below_one(y)};
 }

@@ -25,11 +25,24 @@ class PathTracingBuilder final : public PathBuilder {
     BuilderContext c_;
 };
 
-/// Whether the end of a whole eye sub-path can be joined to s vertices from the light at all. Asked before those are
+/// Whether a sub-path has n vertices, and ends where it can be joined to one from the other side. Asked before that is
 /// traced: many candidates fail here.
-bool can_be_joined(const TracedSubPath& eye, int s) {
-    const Vertex& end = eye.vertices.back();
-    return s == 0 ? end.point.is_emitter() : eye.size() == 1 || end.bsdf.traits().finite;
+bool is_whole(const TracedSubPath& walk, int n) {
+    return walk.size() == n && (n <= 1 || walk.vertices.back().bsdf.traits().finite);
+}
+
+/// Traces s vertices from the light and t from the eye. False, and at least one of the two not to be used, if they make
+/// no path. The shorter one comes first: where it fails, less was in vain.
+bool trace_subpaths(const Scene& scene, const Vec2& image, int s, int t, PrimarySources sources, SubPathPair& room) {
+    auto& [eye, light] = room;
+    const auto trace_light = [&] {
+        trace_light_subpath(scene, s, sources.light, nullptr, light);
+        return is_whole(light, s);
+    };
+    if (1 < s && s < t && !trace_light()) return false;
+    trace_eye_subpath(scene, image, t, sources.eye, nullptr, eye);
+    if (s == 0) return eye.size() == t && eye.vertices.back().point.is_emitter();
+    return is_whole(eye, t) && ((1 < s && s < t) || trace_light());
 }
 
 /// Adds what one joint carries, divided by the probability of having chosen it.
@@ -49,12 +62,9 @@ class EndpointBuilder final : public PathBuilder {
         const int t = 1 + geometric(sources.choice.next()), s = geometric(sources.choice.next());
         if (s + t < 2 || s + t - 2 > c_.max_scatterings) return;
         const Vec2 image = window_point(sources.eye);
-        auto& [eye, light] = SubPathPair::scratch();
-        trace_eye_subpath(*c_.scene, image, t, sources.eye, nullptr, eye);
-        if (eye.size() < t || !can_be_joined(eye, s)) return;
-        trace_light_subpath(*c_.scene, s, sources.light, nullptr, light);
-        if (light.size() < s) return;
-        Joint joint(*c_.scene, light, s, eye, t, image);
+        SubPathPair& room = SubPathPair::scratch();
+        if (!trace_subpaths(*c_.scene, image, s, t, sources, room)) return;
+        Joint joint(*c_.scene, room.light, s, room.eye, t, image);
         add_joint(joint, c_.heuristic, probability(t - 1) * probability(s), sample);
     }
 
@@ -95,7 +105,7 @@ class MultiplexedBuilder final : public PathBuilder {
     std::string_view name() const override { return "multiplexed"; }
 
     void build(PrimarySources sources, PathSample& sample) const override {
-        auto joint = multiplexed_joint(*c_.scene, scatterings_, sources);
+        auto joint = multiplexed_joint(*c_.scene, scatterings_, sources, SubPathPair::scratch(sample.room()));
         if (joint) add_joint(*joint, c_.heuristic, 1.0 / technique_count(scatterings_), sample);
     }
 
@@ -106,16 +116,12 @@ class MultiplexedBuilder final : public PathBuilder {
 
 } // namespace
 
-std::optional<Joint> multiplexed_joint(const Scene& scene, int scatterings, PrimarySources sources) {
+std::optional<Joint> multiplexed_joint(const Scene& scene, int scatterings, PrimarySources sources, SubPathPair& room) {
     const int s = chosen_technique(sources.choice.next(), scatterings);
     const int t = technique_count(scatterings) - s; // never 0: nothing meets the lens by chance
     const Vec2 image = window_point(sources.eye);
-    auto& [eye, light] = SubPathPair::scratch();
-    trace_eye_subpath(scene, image, t, sources.eye, nullptr, eye);
-    if (eye.size() < t || !can_be_joined(eye, s)) return std::nullopt;
-    trace_light_subpath(scene, s, sources.light, nullptr, light);
-    if (light.size() < s) return std::nullopt;
-    return Joint(scene, light, s, eye, t, image);
+    if (!trace_subpaths(scene, image, s, t, sources, room)) return std::nullopt;
+    return Joint(scene, room.light, s, room.eye, t, image);
 }
 
 std::unique_ptr<PathBuilder> make_path_builder(const BuilderContext& context) {

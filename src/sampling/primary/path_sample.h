@@ -20,6 +20,9 @@ class PathSample {
     double target() const { return target_; } ///< luminance of all splats; 0: a failed sample
     const auto& splats() const { return splats_; }
     bool broken() const { return broken_; } ///< a value was not a number and was left out
+    /// In which of its thread's SubPathPair::scratch() a builder may leave the sub-paths. Swapped with the rest.
+    std::size_t room() const { return room_; }
+    void set_room(std::size_t room) { room_ = room; }
 
     void clear() {
         splats_.clear();
@@ -49,6 +52,7 @@ class PathSample {
     InlineVector<Splat, kMaxScatterings + 8> splats_;
     double target_ = 0;
     bool broken_ = false;
+    std::size_t room_ = 0;
 };
 
 } // namespace keyhole

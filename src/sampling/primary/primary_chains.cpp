@@ -23,7 +23,8 @@ class Fixed final : public SampleSource {
 
 } // namespace
 
-/// A chain as the kernel's space. What it stays at a state is deposited at once when it leaves.
+/// A chain as the kernel's space. What it stays at a state is deposited at once when it leaves, together with what the
+/// state brought as a candidate: most of the work of a deposit doesn't depend on its weight.
 class PrimaryChains::Depositing {
   public:
     Depositing(PrimaryChains& chains, std::int64_t index, const Weights& weights, double brightness,
@@ -31,15 +32,25 @@ class PrimaryChains::Depositing {
         : chain_(chains.chains_[static_cast<std::size_t>(index)].get()), index_(index), monitor_(&chains.monitor_),
           weights_(weights), brightness_(brightness), deposit_(&deposit) {}
 
-    double propose(Step step) { return chain_->state.propose(step); }
+    double propose(Step step) {
+        drop_candidate();
+        return chain_->state.propose(step);
+    }
     double target() const { return chain_->state.target(); }
     void accept() {
-        leave();
+        leave(chain_->state.sample());
+        std::swap(stay_, candidate_);
         chain_->state.accept();
     }
-    void leave() {
-        if (stay_ > 0) splat(chain_->state.sample(), stay_);
-        stay_ = 0;
+    /// A change of technique before a step. It leaves the same path with another target, by which deposits divide.
+    void change(const TechniqueChange& technique) {
+        drop_candidate();
+        if (technique.move(chain_->state, chain_->rng, chain_->changes)) leave(chain_->state.candidate());
+    }
+    /// Nothing follows: deposits what is left.
+    void end() {
+        drop_candidate();
+        leave(chain_->state.sample());
     }
     /// For the kernel.
     void operator()(bool candidate, double weight, bool large) {
@@ -49,10 +60,20 @@ class PrimaryChains::Depositing {
         }
         const PathSample& sample = chain_->state.candidate();
         if (large) chain_->large.add(sample.target());
-        splat(sample, weight + (large && weights_.large > 0 ? 1 : 0));
+        candidate_ = weight + (large && weights_.large > 0 ? 1 : 0);
     }
 
   private:
+    /// The state, or what was it until now, is deposited.
+    void leave(const PathSample& state) {
+        if (stay_ > 0) splat(state, stay_);
+        stay_ = 0;
+    }
+    /// What wasn't accepted is deposited.
+    void drop_candidate() {
+        if (candidate_ > 0) splat(chain_->state.candidate(), candidate_);
+        candidate_ = 0;
+    }
     void splat(const PathSample& sample, double weight) const {
         if (!*deposit_) return;
         const double factor = weight * weights_.factor(sample.target());
@@ -68,7 +89,7 @@ class PrimaryChains::Depositing {
     Weights weights_;
     double brightness_; ///< of the picture
     const Deposit* deposit_;
-    double stay_ = 0;
+    double stay_ = 0, candidate_ = 0; ///< weights that state and candidate are to be deposited with
 };
 
 PrimaryChains::PrimaryChains(const std::vector<PrimaryStratum>& strata, std::uint64_t seed, bool mis_of_large_steps,
@@ -118,19 +139,17 @@ void PrimaryChains::advance(const PrimaryKernel& kernel, std::int64_t steps, con
         chain.changes = {};
         const auto& change = (*strata_)[chain.stratum].change;
         chain.large = {};
+        chain.state.set_path_kept(false);
         Depositing space(*this, c, by_stratum[chain.stratum], brightness, deposit);
         int left_out = 0;
         for (std::int64_t done = 0; done < steps;) {
-            if (change && chain.rng.next() < kChange) {
-                space.leave(); // the same path, but another target: deposits divide by it
-                change->move(chain.state, chain.rng, chain.changes);
-            }
+            if (change && chain.rng.next() < kChange) space.change(*change);
             const bool counts = kernel.step(space, chain.rng, chain.counts, space);
             left_out = counts ? 0 : left_out + 1;
             if (left_out == kMostLeftOut) space(false, 1, false), left_out = 0, ++done;
             done += counts ? 1 : 0;
         }
-        space.leave();
+        space.end();
         for (std::uint64_t i = 0; i < chain.counts.large.failed; ++i) chain.large.add(0);
         context.advance(static_cast<std::uint64_t>(steps));
     });

@@ -69,6 +69,7 @@ template <class Builder> class PrimaryStateOf {
 
   protected:
     PrimaryStream& stream(std::size_t i) { return streams_[i]; }
+    Sample& candidate_sample() { return candidate_; }
 
   private:
     static constexpr std::size_t kStreams = std::tuple_size_v<decltype(std::declval<Sources>().all())>;
@@ -112,14 +113,31 @@ template <class Builder> class PrimaryStateOf {
     std::uint64_t broken_ = 0;
 };
 
-/// Of whole paths.
+/// Of whole paths. Candidates and the state leave their sub-paths in different rooms of the thread.
 class PrimaryState final : public PrimaryStateOf<PathBuilder> {
   public:
-    using PrimaryStateOf::PrimaryStateOf;
+    PrimaryState(const PathBuilder& builder, Rng& rng) : PrimaryStateOf(builder, rng) {
+        candidate_sample().set_room(1);
+    }
+
+    void accept() {
+        PrimaryStateOf::accept();
+        path_is_kept_ = true;
+    }
+    void adopt() {
+        PrimaryStateOf::adopt();
+        path_is_kept_ = true;
+    }
+    /// Whether the state's sub-paths are where its builder left them. False once other states had their turn.
+    bool path_is_kept() const { return path_is_kept_; }
+    void set_path_kept(bool kept) { path_is_kept_ = kept; }
 
     PrimaryStream& eye() { return stream(0); }
     PrimaryStream& light() { return stream(1); }
     PrimaryStream& choice() { return stream(2); }
+
+  private:
+    bool path_is_kept_ = false;
 };
 
 } // namespace keyhole

@@ -8,8 +8,7 @@ constexpr double kMostShift = 1 / SmallStep::kOctaves;
 
 } // namespace
 
-void PrimaryStream::bring_up_to_date(Coordinate& c) {
-    if (c.moved == clock_->now) return;
+void PrimaryStream::make_up_for_steps(Coordinate& c) {
     if (c.moved < clock_->last_large)
         c.value = rng_->next(); // whatever small steps followed, it would be uniform, and nothing depends on it yet
     else
@@ -18,9 +17,9 @@ void PrimaryStream::bring_up_to_date(Coordinate& c) {
 }
 
 double PrimaryStream::small(Coordinate& c) {
-    c.first = SmallStep(rng_->next());
+    c.first = rng_->next();
     c.attempt = clock_->attempt;
-    return wrap(c.value + c.first.distance());
+    return wrap(c.value + SmallStep(c.first).distance());
 }
 
 /// x + d - d', where d is the step of the first try and d' as long within a factor of two. Seen from the result, x + d
@@ -29,26 +28,31 @@ double PrimaryStream::small(Coordinate& c) {
 double PrimaryStream::second(Coordinate& c) {
     if (clock_->after_large) return small(c);
     if (c.attempt != clock_->attempt) small(c);
-    const SmallStep back = c.first.shifted(kMostShift * (2 * rng_->next() - 1));
-    return wrap(c.value + c.first.distance() - back.distance());
+    const SmallStep first(c.first), back = first.shifted(kMostShift * (2 * rng_->next() - 1));
+    return wrap(c.value + first.distance() - back.distance());
 }
 
-double PrimaryStream::next() {
-    if (used_ == coordinates_.size()) push(rng_->next());
-    Coordinate& c = coordinates_[used_++];
-    if (clock_->step == Step::large) return c.candidate = rng_->next(); // whatever its value would be by now
+double PrimaryStream::candidate(Coordinate& c) {
+    if (clock_->step == Step::large) return rng_->next(); // whatever its value would be by now
     bring_up_to_date(c);
     switch (clock_->step) {
-    case Step::large:
-        break;
     case Step::small:
-        return c.candidate = small(c);
+        return small(c);
     case Step::second:
-        return c.candidate = second(c);
+        return second(c);
+    case Step::large:
     case Step::stay:
-        return c.candidate = c.value;
+        break;
     }
-    return c.candidate;
+    return c.value;
+}
+
+void PrimaryStream::fill(std::span<double> numbers) {
+    for (double& u : numbers) {
+        if (used_ == coordinates_.size()) push(rng_->next());
+        Coordinate& c = coordinates_[used_++];
+        u = c.candidate = candidate(c);
+    }
 }
 
 double PrimaryStream::value(std::size_t i) {

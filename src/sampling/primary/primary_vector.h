@@ -24,8 +24,8 @@ class SmallStep {
     explicit SmallStep(double u) : forward_(u < 0.5), exponent_(2 * u - (u < 0.5 ? 0 : 1)) {}
 
     double distance() const {
-        const double d = kLongest * std::exp2(kOctaves * -exponent_);
-        return forward_ ? d : -d;
+        const double root = inverse_exp2(exponent_), square = root * root; // kOctaves is 4
+        return (forward_ ? kLongest : -kLongest) * (square * square);
     }
     /// The step with the same sign whose logarithm is shifted by `shift` of its range, wrapping around in it. A shift
     /// and its negative undo each other, and a uniform exponent stays uniform.
@@ -40,6 +40,15 @@ class SmallStep {
     static constexpr double kOctaves = 4; ///< down to 1/1024
 
   private:
+    /// 2^-x on [0,1], within 2e-9 of itself and exact at both ends. Steps are symmetric whatever the function, so that
+    /// nothing rests on its last digits; std::exp2() costs several times as much.
+    static double inverse_exp2(double x) {
+        constexpr double c0 = -0.1931470559801298, c1 = 0.04707718642286481, c2 = -0.008412958562425854,
+                         c3 = 0.001164919420027142, c4 = -0.00010857510041638492;
+        const double x2 = x * x, correction = (c0 + c1 * x) + x2 * ((c2 + c3 * x) + x2 * c4);
+        return 1 - x / 2 + (x - x2) * correction;
+    }
+
     bool forward_;
     double exponent_;
 };
@@ -65,7 +74,12 @@ class PrimaryStream final : public SampleSource {
     PrimaryStream(PrimaryClock& clock, Rng& rng) : clock_(&clock), rng_(&rng) {}
 
     /// The candidate's next coordinate.
-    double next() override;
+    double next() override {
+        double u;
+        fill({&u, 1});
+        return u;
+    }
+    void fill(std::span<double> numbers) override;
     /// From here on next() makes a candidate by clock.step.
     void rewind() { used_ = 0; }
     /// The candidate's coordinates become the state's. The clock goes on afterwards, for all streams at once.
@@ -77,19 +91,23 @@ class PrimaryStream final : public SampleSource {
     /// Sets the state's coordinate i.
     void set(std::size_t i, double value);
     /// Appends a coordinate to the state.
-    void push(double value) { coordinates_.push_back({value, 0, 0, SmallStep(0), clock_->now}); }
+    void push(double value) { coordinates_.push_back({value, 0, 0, 0, clock_->now}); }
 
   private:
     struct Coordinate {
         double value;          ///< of the state
         double candidate;      ///< of the candidate
         std::uint64_t attempt; ///< for which `first` was drawn
-        SmallStep first;       ///< step of the first try
+        double first;          ///< the number of the first try's SmallStep
         std::uint64_t moved;   ///< when value was up to date
     };
-    void bring_up_to_date(Coordinate& c);
+    void bring_up_to_date(Coordinate& c) {
+        if (c.moved != clock_->now) make_up_for_steps(c);
+    }
+    void make_up_for_steps(Coordinate& c);
     double small(Coordinate& c);
     double second(Coordinate& c);
+    double candidate(Coordinate& c);
 
     PrimaryClock* clock_;
     Rng* rng_;

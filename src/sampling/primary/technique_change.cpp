@@ -7,22 +7,13 @@ namespace {
 
 const Vertex& at(const Path& path, int i) { return path.x[static_cast<std::size_t>(i)]; }
 
-/// Density of making the first k vertices from the light and the rest from the eye.
-double technique_density(const Path& path, int k) {
-    if (k > 0 && !joinable(at(path, k - 1), at(path, k))) return 0;
-    double density = 1;
-    for (int i = 0; i < path.vertices(); ++i) density *= i < k ? at(path, i).pdf_from_light : at(path, i).pdf_from_eye;
-    return density;
-}
-
-/// Ratio of the MIS weights of two techniques of the same path.
-double weight_ratio(double density, double other, MisHeuristic heuristic) {
-    const double r = other / density;
+/// Ratio of the MIS weights of two techniques of the same path, whose densities have the ratio `densities`.
+double weight_ratio(double densities, MisHeuristic heuristic) {
     switch (heuristic) {
     case MisHeuristic::balance:
-        return r;
+        return densities;
     case MisHeuristic::power:
-        return r * r;
+        return densities * densities;
     case MisHeuristic::maximum:
         break;
     }
@@ -112,24 +103,36 @@ bool TechniqueChange::edit(const Path& path, int from, int to, Rng& rng, Edits& 
     return true;
 }
 
+/// The state's joint. Its sub-paths are made again only where they aren't kept.
+std::optional<Joint> TechniqueChange::joint(PrimaryState& state) const {
+    SubPathPair& room = SubPathPair::scratch(state.sample().room());
+    if (!state.path_is_kept()) {
+        state.set_path_kept(true);
+        return multiplexed_joint(*c_.scene, scatterings_, state.replay(), room);
+    }
+    auto source = state.replay();
+    const Vec2 image = window_point(source.eye);
+    const int s = chosen_technique(source.choice.next(), scatterings_);
+    return Joint(*c_.scene, room.light, s, room.eye, technique_count(scatterings_) - s, image);
+}
+
 bool TechniqueChange::move(PrimaryState& state, Rng& rng, ChangeCounts& counts) const {
     ++counts.proposed;
-    const auto joint = multiplexed_joint(*c_.scene, scatterings_, state.replay());
-    if (!joint || !joint->possible()) return false;
-    const Path path = joint->path();
-    const int s = joint->s(),
+    const int s = chosen_technique(state.choice().value(0), scatterings_),
               other = static_cast<int>(rng.below(static_cast<std::uint32_t>(technique_count(scatterings_))));
     if (other == s) return false;
-    const double density = technique_density(path, s), new_density = technique_density(path, other);
-    const double ratio = weight_ratio(density, new_density, c_.heuristic);
+    auto joint = this->joint(state);
+    if (!joint || !joint->possible()) return false;
+    joint->value(c_.heuristic);
+    const double densities = joint->density_ratio(other), ratio = weight_ratio(densities, c_.heuristic);
     if (!(ratio > 0) || rng.next() >= ratio) return false;
     Edits edits(state);
-    if (!edit(path, s, other, rng, edits)) {
+    if (!edit(joint->path(), s, other, rng, edits)) {
         ++counts.no_inverse;
         return false;
     }
     edits.apply();
-    const double expected = state.target() * ratio * (density / new_density), made = state.rebuild();
+    const double expected = state.target() * ratio / densities, made = state.rebuild();
     const bool same = std::abs(made - expected) <= 0.01 * expected;
     if (same) {
         state.adopt();

@@ -37,6 +37,7 @@ class TechniqueChange {
   private:
     struct Edit;
     class Edits;
+    std::optional<Joint> joint(PrimaryState& state) const;
     bool edit(const Path& path, int from, int to, Rng& rng, Edits& edits) const;
     bool set_eye_number(const Path& path, int j, bool used, Rng& rng, Edits& edits) const;
     bool set_light_number(const Path& path, int j, bool used, Rng& rng, Edits& edits) const;

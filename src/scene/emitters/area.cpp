@@ -42,7 +42,8 @@ EmitterBounds bounds_of(const Sphere& sphere) {
 
 class AreaEmitter final : public Emitter {
   public:
-    AreaEmitter(const Shape& shape, std::uint32_t index) : shape_(shape), index_(index), area_(surface_area(shape)) {
+    AreaEmitter(const Shape& shape, std::uint32_t index)
+        : shape_(shape), index_(index), parametrised_(reads_parametrisation(shape)), area_(surface_area(shape)) {
         if (!(area_ > 0)) throw InputError("an emitting shape has no area");
         if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) {
             std::vector<double> areas(mesh->triangles.size());
@@ -61,13 +62,13 @@ class AreaEmitter final : public Emitter {
     }
 
     EmitterPoint sample_point(SampleSource& source) const override {
-        const double u0 = source.next(), u1 = source.next(), u2 = source.next();
+        const auto [u0, u1, u2] = source.take<3>();
         SurfacePoint s;
         if (const auto* sphere = std::get_if<Sphere>(&shape_.geometry)) {
-            s = sphere_point(*sphere, uniform_sphere(u1, u2));
+            s = sphere_point(*sphere, uniform_sphere(u1, u2), parametrised_);
         } else {
             const Vec2 b = uniform_triangle(u1, u2);
-            s = triangle_point(std::get<TriangleMesh>(shape_.geometry), triangles_.sample(u0), b.x, b.y);
+            s = triangle_point(std::get<TriangleMesh>(shape_.geometry), triangles_.sample(u0), b.x, b.y, parametrised_);
         }
         s.shape = index_;
         s.material = shape_.material.get();
@@ -76,8 +77,7 @@ class AreaEmitter final : public Emitter {
     double point_pdf(const SurfacePoint& /*point*/) const override { return 1 / area_; }
 
     EmitterRay sample_ray(const SurfacePoint& point, SampleSource& source) const override {
-        double u0 = source.next();
-        const double u1 = source.next();
+        auto [u0, u1] = source.take<2>();
         bool back = false;
         if (shape_.emission->two_sided) {
             u0 *= 2;
@@ -104,6 +104,7 @@ class AreaEmitter final : public Emitter {
   private:
     const Shape& shape_;
     std::uint32_t index_;
+    bool parametrised_;
     double area_;
     EmitterDistribution triangles_;
     EmitterBounds bounds_;

@@ -12,8 +12,8 @@ namespace keyhole {
 /// A material whose model is `model(point)`.
 template <class F> class FunctionMaterial final : public Material {
   public:
-    FunctionMaterial(const char* kind, const BsdfTraits& traits, F model)
-        : kind_(kind), traits_(traits), model_(std::move(model)) {}
+    FunctionMaterial(const char* kind, const BsdfTraits& traits, F model, bool reads_parametrisation)
+        : Material(reads_parametrisation), kind_(kind), traits_(traits), model_(std::move(model)) {}
     Bsdf bsdf(const SurfacePoint& point) const override { return {point, model_(point)}; }
     BsdfTraits traits() const override { return traits_; }
     const char* kind() const override { return kind_; }
@@ -24,17 +24,31 @@ template <class F> class FunctionMaterial final : public Material {
     F model_;
 };
 
+/// Whether a model looks the same whichever way its frame is turned. Rough ones may not.
+inline bool is_isotropic(const Bsdf::Model& model) {
+    return std::visit(
+        []<class M>(const M&) {
+            return std::is_same_v<M, BlackBsdf> || std::is_same_v<M, DiffuseBsdf> ||
+                   std::is_same_v<M, DiffuseTransmissionBsdf> || std::is_same_v<M, MirrorBsdf> ||
+                   std::is_same_v<M, ConductorBsdf> || std::is_same_v<M, GlassBsdf> ||
+                   std::is_same_v<M, ThinDielectricBsdf> || std::is_same_v<M, InterfaceBsdf>;
+        },
+        model);
+}
+
 /// A material whose model is `model(point)`. Where all `textures` are constant, the model is found once; else it may be
 /// anything that `traits` say.
 template <class F, class... Textures>
 MaterialPtr make_material(const char* kind, const BsdfTraits& traits, F model, const Textures&... textures) {
-    if (!(textures->is_constant() && ...)) return std::make_shared<FunctionMaterial<F>>(kind, traits, std::move(model));
+    if (!(textures->is_constant() && ...))
+        return std::make_shared<FunctionMaterial<F>>(kind, traits, std::move(model), true);
     const Bsdf::Model same = model(SurfacePoint());
     // The model may point into what the closure that made it holds.
     const auto uniform = [same, maker = std::move(model)](const SurfacePoint& /*point*/) -> const Bsdf::Model& {
         return same;
     };
-    return std::make_shared<FunctionMaterial<decltype(uniform)>>(kind, Bsdf(SurfacePoint(), same).traits(), uniform);
+    return std::make_shared<FunctionMaterial<decltype(uniform)>>(kind, Bsdf(SurfacePoint(), same).traits(), uniform,
+                                                                 !is_isotropic(same));
 }
 
 inline double clamp01(double x) { return std::clamp(x, 0.0, 1.0); }
