@@ -54,6 +54,7 @@ enum class StreamPurpose : std::uint64_t {
     reach,
     reach_trial,
     reach_light,
+    image_weight,
 };
 
 /// PCG32 (O'Neill 2014). One for each chain and each pixel, never for each thread, so that a picture does not

@@ -46,6 +46,7 @@ struct Settings {
     std::int64_t photon_memory = 32 << 20;
     std::string power = "marginal";
     std::string paths = "stored";
+    bool equalise = false;
     std::int64_t passes = 1;
     double target_error = 0;
     std::string save_map, load_map; ///< files of photons; empty: none. Not in the table: they belong to a run
@@ -104,6 +105,7 @@ template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
           "how mps takes the eye's side out of a photon's power");
     visit("paths", s.paths, std::vector<std::string_view>{"stored", "all"},
           "paths that mps samples: those that store a photon, or all");
+    visit("equalise", s.equalise, "photons for dark pixels as for bright ones: evens out relative errors");
     visit("passes", s.passes, I{0}, I{1} << 40, "passes of photons and gather; 0: until time or target_error is up");
     visit("target_error", s.target_error, 0.0, 1.0, "relative error at which passes end; 0: none");
     visit("nearest", s.nearest, I{1}, I{10'000}, "photons in a radiance estimate");

@@ -39,7 +39,8 @@ void PathDepositor::deposit(const Path& path, double weight) {
     }
     recent_.weight += weight;
     if (at.kind == PhotonKind::caustic) return;
-    const double literal = weight * literal_factor(path, at.vertex, recent_.flux);
+    // The path was drawn in proportion to its contribution times its pixel's weight.
+    const double literal = weight * literal_factor(path, at.vertex, recent_.flux) / options_.set.weight_at(path.image);
     recent_.literal += literal;
     recent_.density += literal * eye_side_density(*options_.scene, path, at.vertex);
 }
@@ -77,9 +78,7 @@ Rgb PathDepositor::power_of(const Pending& pending, bool global, double given, d
 PathDepositor::Marginal PathDepositor::marginal_power(const Pending& pending, const ImportanceMap& map) {
     const auto e = map.importance(pending.vertex.point, pending.vertex.bsdf, pending.to_light);
     const double visible = luminance(pending.flux * e.value);
-    // A glossy lobe sees few of the importons, however many there are.
-    const bool trusted = e.importons >= 16 && !e.obstructed && pending.vertex.bsdf.traits().near_lambertian;
-    return {visible > 0 ? pending.flux / visible : Rgb(0.0), trusted};
+    return {visible > 0 ? pending.flux / visible : Rgb(0.0), e.trusted(pending.vertex.bsdf)};
 }
 
 Rgb PathDepositor::global_power(const Pending& pending, double given, double weight) {

@@ -83,7 +83,7 @@ class PathDepositor {
     void store(Pending& pending);
     struct Marginal {
         Rgb power;
-        bool trusted; ///< enough importons say so, on a surface where they can tell, and none that a wall may hide
+        bool trusted;
     };
     // Power for weight 1; black where it is lost. `given` is the weight that the sums of `pending` are over.
     Rgb power_of(const Pending& pending, bool global, double given, double weight);

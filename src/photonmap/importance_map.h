@@ -26,6 +26,10 @@ class ImportanceMap {
         int importons = 0; ///< found; 0 means that nothing is known here, not that E is zero
         /// Whether something stands on the surface that they lie on: importance may have come from behind it.
         bool obstructed = false;
+
+        /// Whether a power may be divided by it: enough importons say so, none that a wall may hide, on a surface where
+        /// they can tell; a glossy lobe sees few of them, however many there are.
+        bool trusted(const Bsdf& bsdf) const { return importons >= 16 && !obstructed && bsdf.traits().near_lambertian; }
     };
 
     /// E(d2, to_light) = integral of fs(d2) G(d2, d1) fs(d1) ... over all ways on to the eye: the sum over importons

@@ -12,7 +12,8 @@ namespace {
 /// The importons of one eye path.
 void trace_importons(const Scene& scene, const Vec2& image, const ImportanceTracing& options, SampleSource& source,
                      Importons& out) {
-    const double share = 1.0 / static_cast<double>(options.samples);
+    const double weight = options.weight != nullptr ? (*options.weight)(image) : 1.0;
+    const double share = weight / static_cast<double>(options.samples);
     trace_eye_path_head(
         scene, image, options.max_scatterings, source,
         [&](const Vertex& v, const Vec3& to_eye, const Rgb& throughput, int finite) {

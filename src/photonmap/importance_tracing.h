@@ -3,6 +3,7 @@
 
 #include "core/progress.h"
 #include "photonmap/photon.h"
+#include "sampling/image_weight.h"
 #include "scene/scene.h"
 
 #include <cstdint>
@@ -16,10 +17,12 @@ struct ImportanceTracing {
     bool at_d1 = true;    ///< whether importons at the first non-specular vertex are wanted as well
     int max_scatterings = 24;
     std::uint64_t seed;
+    const ImageWeight* weight = nullptr; ///< of pixels; null: 1 everywhere
 };
 
 /// Importons, the adjoint of photons: `power` is RGB throughput from a window of density 1, over the number of eye
-/// paths, so that a sum over importons is an integral over eye sides; `direction` leads towards the eye's side.
+/// paths, so that a sum over importons is an integral over eye sides, times the weight of its pixel; `direction` leads
+/// towards the eye's side.
 struct Importons {
     std::vector<Photon> first;  ///< at d1
     std::vector<Photon> second; ///< at d2

@@ -1,8 +1,7 @@
 #include "photonmap/photon_map.h"
 
 #include "core/facet.h"
-
-#include <nanoflann.hpp>
+#include "photonmap/kd_tree.h"
 
 #include <algorithm>
 #include <array>
@@ -11,37 +10,7 @@
 namespace keyhole {
 namespace {
 
-/// The interface that nanoflann reads points through.
-struct PhotonPoints {
-    std::span<Photon> photons;
-
-    std::size_t kdtree_get_point_count() const { return photons.size(); }
-    float kdtree_get_pt(std::size_t i, std::size_t axis) const { return photons[i].position()[static_cast<int>(axis)]; }
-    template <class Box> bool kdtree_get_bbox(Box&) const { return false; }
-};
-
-using Tree =
-    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, PhotonPoints, float, std::uint32_t>,
-                                        PhotonPoints, 3, std::uint32_t>;
-constexpr std::size_t kLeafSize = 32;
-
-/// Brings photons into the order of the tree's leaves, in place: following the cycles of the permutation, since a
-/// second array would double the memory of a map.
-void permute(std::span<Photon> photons, std::vector<std::uint32_t>& order) {
-    for (std::uint32_t start = 0; start < order.size(); ++start) {
-        if (order[start] == start) continue;
-        const Photon first = photons[start];
-        std::uint32_t to = start;
-        while (order[to] != start) {
-            const std::uint32_t from = order[to];
-            photons[to] = photons[from];
-            order[to] = to;
-            to = from;
-        }
-        photons[to] = first;
-        order[to] = to;
-    }
-}
+constexpr std::uint32_t kLeaf = 32; // photons
 
 /// Whether normals of the facet can be accepted by a region of normal `n`. A facet's normals are up to 54.8 degrees
 /// from its axis, and accepted ones up to 25.9 degrees from n.
@@ -64,107 +33,82 @@ void replace_top(std::vector<Neighbour>& heap, const Neighbour& item) {
     heap[hole] = item;
 }
 
-/// What nanoflann's result sets have in common: trees count their photons from 0, the map all of them.
-class InFacet {
-  public:
-    explicit InFacet(const Photon* photons) : photons_(photons) {}
-    void begin(std::uint32_t first) { first_ = first; }
-
-  protected:
-    std::uint32_t index_in_map(std::uint32_t index) const { return first_ + index; }
-    const Photon& at(std::uint32_t index) const { return photons_[first_ + index]; }
-
-  private:
-    const Photon* photons_;
-    std::uint32_t first_ = 0;
-};
-
-/// nanoflann's result set: offers every photon that is near enough in Euclidean distance, which bounds the region's own
-/// from below.
-class NearestInRegion : public InFacet {
+/// The nearest of a region. Trees go by Euclidean distance, which bounds the region's own from below.
+class NearestInRegion {
   public:
     NearestInRegion(const PhotonQuery& query, const Photon* photons, std::vector<Neighbour>& heap)
-        : InFacet(photons), region_(query.region), heap_(heap), k_(static_cast<std::size_t>(query.k)) {
-        set_bound(query.max_radius * query.max_radius);
-    }
+        : region_(query.region), photons_(photons), heap_(heap), k_(static_cast<std::size_t>(query.k)),
+          bound_(query.max_radius * query.max_radius) {}
 
     bool full() const { return heap_.size() == k_; }
-    /// nanoflann asks for distances strictly below this; equal ones must come too, to be decided by their index.
-    float worstDist() const { return above_bound_; }
+    float bound() const { return bound_; }
 
-    bool addPoint(float /*euclidean2*/, std::uint32_t index) {
-        const Photon& photon = at(index);
-        const Neighbour candidate{region_.distance2(photon.position()), index_in_map(index)};
-        if (candidate.distance2 > bound_ || !region_.accepts(photon.normal().unnormalised())) return true;
+    void offer(std::uint32_t index) {
+        const Photon& photon = photons_[index];
+        const Neighbour candidate{region_.distance2(photon.position()), index};
+        if (candidate.distance2 > bound_ || !region_.accepts(photon.normal().unnormalised())) return;
         if (!full()) {
             heap_.push_back(candidate);
             if (full()) std::make_heap(heap_.begin(), heap_.end());
         } else if (candidate < heap_.front()) {
             replace_top(heap_, candidate);
         }
-        if (full()) set_bound(heap_.front().distance2);
-        return true;
+        if (full()) bound_ = heap_.front().distance2;
     }
 
   private:
-    void set_bound(float distance2) {
-        bound_ = distance2;
-        above_bound_ = std::nextafter(distance2, std::numeric_limits<float>::infinity());
-    }
-
     const SurfaceRegion& region_;
+    const Photon* photons_;
     std::vector<Neighbour>& heap_;
     std::size_t k_;
-    float bound_ = 0, above_bound_ = 0;
+    float bound_;
 };
 
-/// nanoflann's result set for one photon that is accepted; asks only about those that are nearer than the best so far.
-class NearestAccepted : public InFacet {
+/// One photon that is accepted; asks only about those that are nearer than the best so far.
+class NearestAccepted {
   public:
     NearestAccepted(const PhotonQuery& query, const Photon* photons, const std::function<bool(const Photon&)>& accept)
-        : InFacet(photons), region_(query.region),
+        : region_(query.region), photons_(photons),
           accept_(accept), best_{query.max_radius * query.max_radius, std::numeric_limits<std::uint32_t>::max()} {}
 
-    bool full() const { return true; }
-    float worstDist() const { return std::nextafter(best_.distance2, std::numeric_limits<float>::infinity()); }
+    float bound() const { return best_.distance2; }
 
-    bool addPoint(float /*euclidean2*/, std::uint32_t index) {
-        const Photon& photon = at(index);
-        const Neighbour candidate{region_.distance2(photon.position()), index_in_map(index)};
+    void offer(std::uint32_t index) {
+        const Photon& photon = photons_[index];
+        const Neighbour candidate{region_.distance2(photon.position()), index};
         if (candidate < best_ && region_.accepts(photon.normal().unnormalised()) && accept_(photon)) {
             best_ = candidate;
             found_ = &photon;
         }
-        return true;
     }
 
     const Photon* found() const { return found_; }
 
   private:
     const SurfaceRegion& region_;
+    const Photon* photons_;
     const std::function<bool(const Photon&)>& accept_;
     Neighbour best_;
     const Photon* found_ = nullptr;
 };
 
-/// nanoflann's result set: every photon of a region.
-class AllInRegion : public InFacet {
+/// Every photon of a region.
+class AllInRegion {
   public:
     AllInRegion(const SurfaceRegion& region, float radius, const Photon* photons, std::vector<std::uint32_t>& found)
-        : InFacet(photons), region_(region), found_(found), radius2_(radius * radius) {}
+        : region_(region), photons_(photons), found_(found), radius2_(radius * radius) {}
 
-    bool full() const { return true; }
-    float worstDist() const { return std::nextafter(radius2_, std::numeric_limits<float>::infinity()); }
+    float bound() const { return radius2_; }
 
-    bool addPoint(float /*euclidean2*/, std::uint32_t index) {
-        const Photon& photon = at(index);
+    void offer(std::uint32_t index) {
+        const Photon& photon = photons_[index];
         if (region_.distance2(photon.position()) <= radius2_ && region_.accepts(photon.normal().unnormalised()))
-            found_.push_back(index_in_map(index));
-        return true;
+            found_.push_back(index);
     }
 
   private:
     const SurfaceRegion& region_;
+    const Photon* photons_;
     std::vector<std::uint32_t>& found_;
     float radius2_;
 };
@@ -174,37 +118,27 @@ class AllInRegion : public InFacet {
 /// A tree for each facet, so that the photons of the other side of a sheet, or of the walls of a corner, aren't even
 /// looked at: beside the thin slats of a lampshade they are a hundred times as many as those asked for.
 struct PhotonMap::Index {
-    struct Facet {
-        explicit Facet(std::span<Photon> part)
-            : points{part}, tree(3, points, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafSize)) {
-            permute(points.photons, tree.vAcc);
-        }
-        PhotonPoints points;
-        Tree tree;
-    };
-
     explicit Index(std::vector<Photon> all) : photons(std::move(all)) {
         const auto key = [](const Photon& p) { return facet_of(p.normal().unnormalised()); };
         std::ranges::sort(photons, {}, key);
-        auto first = photons.begin();
+        const auto begin = photons.begin();
+        auto first = begin;
         for (std::size_t facet = 0; facet < facets.size(); ++facet) {
             const auto last = std::ranges::upper_bound(first, photons.end(), facet, {}, key);
-            if (first != last) facets[facet] = std::make_unique<Facet>(std::span(first, last));
+            facets[facet] = KdTree(photons, static_cast<std::uint32_t>(first - begin),
+                                   static_cast<std::uint32_t>(last - begin), kLeaf);
             first = last;
         }
     }
 
-    /// Offers the photons that the region may accept to a result set of nanoflann's kind.
+    /// Offers the photons that the region may accept.
     template <class Result> void search(const SurfaceRegion& region, Result& result) const {
-        for (std::size_t facet = 0; facet < facets.size(); ++facet) {
-            if (facets[facet] == nullptr || !facet_faces(facet, region.normal)) continue;
-            result.begin(static_cast<std::uint32_t>(facets[facet]->points.photons.data() - photons.data()));
-            facets[facet]->tree.findNeighbors(result, region.position.getValue(), {});
-        }
+        for (std::size_t facet = 0; facet < facets.size(); ++facet)
+            if (facet_faces(facet, region.normal)) facets[facet].search(region.position, result);
     }
 
     std::vector<Photon> photons;
-    std::array<std::unique_ptr<Facet>, 6> facets;
+    std::array<KdTree, 6> facets;
 };
 
 PhotonMap::PhotonMap(std::vector<Photon> photons) : index_(std::make_unique<Index>(std::move(photons))) {}
@@ -216,10 +150,11 @@ std::span<const Photon> PhotonMap::photons() const { return index_->photons; }
 
 std::size_t PhotonMap::bytes() const {
     std::size_t sum = index_->photons.capacity() * sizeof(Photon);
-    for (const auto& facet : index_->facets)
-        if (facet != nullptr) sum += facet->tree.usedMemory(facet->tree);
+    for (const KdTree& facet : index_->facets) sum += facet.bytes();
     return sum;
 }
+
+double PhotonMap::index_bytes_per_photon() { return KdTree::bytes_per_photon(kLeaf); }
 
 const Photon* PhotonMap::nearest_accepted(const PhotonQuery& query,
                                           const std::function<bool(const Photon&)>& accept) const {

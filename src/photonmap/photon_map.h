@@ -37,8 +37,8 @@ struct Neighbourhood {
     float radius2; ///< squared radius of the region [m^2]
 };
 
-/// A kd-tree over photons (nanoflann). Photons are kept in the order of its leaves. Immutable and thread-safe; the same
-/// photons in the same order give the same map.
+/// Photons in the order of the leaves of a kd-tree. Immutable and thread-safe; the same photons in the same order give
+/// the same map.
 class PhotonMap {
   public:
     explicit PhotonMap(std::vector<Photon> photons);
@@ -62,6 +62,8 @@ class PhotonMap {
     const Photon& operator[](std::uint32_t i) const { return photons()[i]; }
     /// Memory of photons and index [bytes].
     std::size_t bytes() const;
+    /// Of the index, at most, where there are many photons [bytes].
+    static double index_bytes_per_photon();
 
   private:
     /// Valid until the next call of the same thread.

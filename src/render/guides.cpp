@@ -22,7 +22,8 @@ Guides make_guides(const SamplerContext& c, std::uint64_t seed, std::int64_t imp
                                         {.samples = std::min(importons, kMostImportons),
                                          .at_d1 = delta,
                                          .max_scatterings = static_cast<int>(c.settings.max_depth),
-                                         .seed = seed},
+                                         .seed = seed,
+                                         .weight = c.weight},
                                         context);
     const float radius = Radii(c.scene).importance;
     stats.importons = 0;

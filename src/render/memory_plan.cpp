@@ -9,11 +9,11 @@
 namespace keyhole {
 namespace {
 
-// Bytes. An index takes 8 to 9 on top of a photon's 24, by how its places cluster.
-constexpr double kFixed = 64 * 1024; // first blocks of small indices
-constexpr double kIndexed = sizeof(Photon) + 10.0;
+// Bytes.
+constexpr double kFixed = 64 * 1024; // what small maps round up
+const double kIndexed = sizeof(Photon) + PhotonMap::index_bytes_per_photon();
 constexpr double kEstimate = IrradianceMap::bytes_per_place(); // what each scout of a map adds
-constexpr double kInStageThree = kIndexed + (kEstimate + Sites::bytes_per_place()) / kScoutEvery;
+const double kInStageThree = kIndexed + (kEstimate + Sites::bytes_per_place()) / kScoutEvery;
 constexpr double kInStageTwo = PhotonStore::bytes_per_photon() * 1.0625; // buffers on their way to the stores
 
 } // namespace
@@ -26,9 +26,9 @@ MemoryPlan plan_memory(const Settings& settings, ImportanceUse use, int maps) {
     double importons = 0;
     if (use == ImportanceUse::beside) importons = (memory - photons * kInStageTwo) / (kIndexed * maps);
     // All importons, and the index and the places of one map; later the places of all, beside the stores.
-    constexpr double places = (kIndexed + kEstimate) / kScoutEvery;
+    const double places = (kIndexed + kEstimate) / kScoutEvery;
     if (use == ImportanceUse::guide)
-        importons = std::min(memory / (sizeof(Photon) * maps + 10.0 + places),
+        importons = std::min(memory / (sizeof(Photon) * maps + PhotonMap::index_bytes_per_photon() + places),
                              (memory - photons * kInStageTwo) / (places * maps));
     return {static_cast<std::size_t>(photons),
             std::clamp<std::int64_t>(static_cast<std::int64_t>(importons), 1, settings.importons)};

@@ -66,10 +66,13 @@ class MetropolisSampler final : public PhotonSampler {
         const ChainSeeds seeds = choose_chain_seeds(c_.scene, first, one, s.chains);
         const bool delta = c_.caustics;
         const MemoryPlan plan = plan_memory(s, ImportanceUse::beside, delta ? 2 : 1);
-        Importons importons = trace_importance(
-            c_.scene,
-            {.samples = plan.importons, .at_d1 = delta, .max_scatterings = first.max_scatterings, .seed = first.seed},
-            context);
+        Importons importons = trace_importance(c_.scene,
+                                               {.samples = plan.importons,
+                                                .at_d1 = delta,
+                                                .max_scatterings = first.max_scatterings,
+                                                .seed = first.seed,
+                                                .weight = c_.weight},
+                                               context);
         const ImportanceOptions options{.k = 50, .max_radius = Radii(c_.scene).importance, .patches = &c_.patches};
         const ImportanceMap at_d1(std::move(importons.first), options);
         const ImportanceMap at_d2(std::move(importons.second), options);

@@ -57,6 +57,15 @@ std::unique_ptr<PhotonSampler> make_sampler(const SamplerContext& c, const Rende
     return make_emission_sampler(c, method == "ipm");
 }
 
+/// The weights of pixels, where the user asked for them and something can follow them.
+std::optional<ImageWeight> weigh_pixels(const SamplerContext& c, const RenderPlan& plan, RenderStats& stats,
+                                        const RunContext& context) {
+    const Settings& s = c.settings;
+    if (!s.equalise || !plan.photons || s.method == "pm" || !s.load_map.empty()) return std::nullopt;
+    const StageClock clock(stats, "brightness of pixels");
+    return measure_image_weight(c.scene, static_cast<int>(s.max_depth), static_cast<std::uint64_t>(s.seed), context);
+}
+
 /// Renders one pass after the other.
 class Passes {
   public:
@@ -137,6 +146,8 @@ RenderResult render_photons(const Scene& scene, const Settings& settings, const 
     const RenderPlan plan = make_plan(c, stats, context);
     c.reach = plan.reach ? &*plan.reach : nullptr;
     c.caustics = plan.caustics || c.reach != nullptr;
+    const std::optional<ImageWeight> weight = weigh_pixels(c, plan, stats, context);
+    c.weight = weight ? &*weight : nullptr;
     const auto sampler = make_sampler(c, plan, stats, context);
     Work work(settings, scene.camera().window(), Exposure::Parts::film, share, settings.spp, Work::PassStart::costly);
     Passes passes(c, plan, *sampler, work, stats);

@@ -31,12 +31,13 @@ struct SamplerContext {
     const Scene& scene;
     const Settings& settings;
     const SurfacePatches& patches;
-    const UserPaths& user_paths;  ///< for chains, and for emission by importance
-    bool caustics = true;         ///< whether there is to be a caustic map
-    const Reach* reach = nullptr; ///< of gather rays; null: they come everywhere
+    const UserPaths& user_paths;         ///< for chains, and for emission by importance
+    bool caustics = true;                ///< whether there is to be a caustic map
+    const Reach* reach = nullptr;        ///< of gather rays; null: they come everywhere
+    const ImageWeight* weight = nullptr; ///< of pixels; null: photons follow the light
 
     /// The paths that chains sample.
-    PathSet path_set() const { return {settings.paths == "all", reach}; }
+    PathSet path_set() const { return {settings.paths == "all", reach, weight}; }
     /// What goes to which map.
     StorageRule storage() const { return {static_cast<int>(settings.max_depth), caustics, reach}; }
 };

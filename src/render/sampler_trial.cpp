@@ -92,7 +92,8 @@ double try_emission(const SamplerContext& c, const Scene* walls, const RunContex
     const auto depth = static_cast<int>(c.settings.max_depth);
     const auto seed = static_cast<std::uint64_t>(c.settings.seed);
     Importons importons = trace_importance(
-        c.scene, {.samples = extent.importons, .at_d1 = delta, .max_scatterings = depth, .seed = seed}, run);
+        c.scene,
+        {.samples = extent.importons, .at_d1 = delta, .max_scatterings = depth, .seed = seed, .weight = c.weight}, run);
     const float radius = Radii(c.scene).importance;
     const ImportanceGuide global(PhotonMap(std::move(importons.second)), radius, c.patches, walls, run);
     const ImportanceGuide caustic(PhotonMap(std::move(importons.first)), radius, c.patches, walls, run);
@@ -112,7 +113,7 @@ double try_emission(const SamplerContext& c, const Scene* walls, const RunContex
 double try_metropolis(const SamplerContext& c, const RunContext& run) {
     const Settings& s = c.settings;
     const Extent extent(s);
-    const PathSet set{.reach = c.reach};
+    const PathSet set{.reach = c.reach, .weight = c.weight};
     const GuidedPaths guides(c.scene, c.user_paths, set, static_cast<int>(s.max_depth));
     const StageOneSettings first{.set = set,
                                  .max_scatterings = static_cast<int>(s.max_depth),

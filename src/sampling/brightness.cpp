@@ -46,29 +46,37 @@ void trace_sample(const Scene& scene, const StageOneSettings& settings, Techniqu
     });
 }
 
+/// What a contribution counts for. A connection to the lens may have led it to another pixel than its sample began at.
+double target(const PathSet& set, const Rgb& value, auto&& make_path) {
+    return set.weight == nullptr ? luminance(value) : set.target(value, make_path().image);
+}
+
 /// Adds up one sample.
 struct EstimateSink {
+    const PathSet& set;
     double sum = 0, caustic = 0;
 
     void arrival(const Vertex&, const Vec3&, const Rgb&, int) {}
-    void contribution(const Rgb& value, PhotonKind kind, auto&& /*make_path*/) {
-        sum += luminance(value);
-        if (kind == PhotonKind::caustic) caustic += luminance(value);
+    void contribution(const Rgb& value, PhotonKind kind, auto&& make_path) {
+        const double found = target(set, value, make_path);
+        sum += found;
+        if (kind == PhotonKind::caustic) caustic += found;
     }
 };
 
 /// Adds up contributions until the running sum passes a mark, and keeps the path that did it.
 struct SeedSink {
+    const PathSet& set;
     double left; // of the mark
     std::optional<Path> found{};
 
     void arrival(const Vertex&, const Vec3&, const Rgb&, int) {}
     void contribution(const Rgb& value, PhotonKind, auto&& make_path) {
         if (left < 0 && found) return;
-        left -= luminance(value);
+        left -= target(set, value, make_path);
         if (left >= 0 && found) return; // any path will do should rounding leave the mark unreached
         Path path = make_path();
-        path.target = luminance(path.contribution);
+        path.target = set.target(path.contribution, path.image);
         if (path.target > 0) found = path;
     }
 };
@@ -83,7 +91,7 @@ struct Block {
 Block run_block(const Scene& scene, const StageOneSettings& settings, Technique technique, Range samples) {
     Block block;
     for (std::int64_t i = samples.begin; i < samples.end; ++i) {
-        EstimateSink sink;
+        EstimateSink sink{settings.set};
         trace_sample(scene, settings, technique, i, sink);
         block.brightness.add(sink.sum);
         block.caustic.add(sink.caustic);
@@ -211,7 +219,7 @@ std::vector<Path> choose_seeds(const Scene& scene, const StageOneSettings& setti
     std::vector<std::optional<Path>> found(marks.size());
     parallel_for(static_cast<std::int64_t>(marks.size()), [&](std::int64_t k) {
         const Mark& mark = marks[static_cast<std::size_t>(k)];
-        SeedSink sink{mark.left};
+        SeedSink sink{settings.set, mark.left};
         const std::int64_t end = std::min(stage.samples, (mark.group + 1) * StageOne::kGroup);
         for (std::int64_t i = mark.group * StageOne::kGroup; i < end && sink.left >= 0; ++i)
             trace_sample(scene, settings, stage.technique, i, sink);

@@ -1,4 +1,5 @@
-// Stage one: the mean luminance B_eye of what stage two samples, and seeds for its chains.
+// Stage one: the mean luminance B_eye of what stage two samples, and seeds for its chains. Where the path set weighs
+// pixels, "luminance" is weighted luminance.
 #pragma once
 
 #include "core/parallel.h"

@@ -63,7 +63,7 @@ void evaluate(const Scene& scene, Path& path, PathSet set) {
     path.target = 0;
     if (!inside) return;
     measure(scene, path);
-    path.target = luminance(path.contribution);
+    path.target = set.target(path.contribution, path.image);
 }
 
 } // namespace keyhole

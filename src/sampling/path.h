@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/inline_vector.h"
+#include "sampling/image_weight.h"
 #include "sampling/reach.h"
 #include "scene/bsdf.h"
 #include "scene/surface_point.h"
@@ -36,7 +37,7 @@ struct Path {
     InlineVector<Vertex, kMaxScatterings + 2> x;
     Vec2 image{0, 0};      ///< window point of the eye edge
     Rgb contribution{0.0}; ///< f of measure.h
-    double target = 0;     ///< what a chain samples in proportion to; Y(contribution), or 0 outside the path set
+    double target = 0;     ///< what a chain samples in proportion to: PathSet::target(), or 0 outside the path set
 
     int vertices() const { return static_cast<int>(x.size()); }
     int edges() const { return vertices() - 1; }
@@ -63,11 +64,16 @@ struct StoragePoint {
 
 /// The paths that stage two samples, and where they store photons.
 struct PathSet {
-    bool everything = false;      ///< also paths that store none
-    const Reach* reach = nullptr; ///< of gather rays; null: they come everywhere. Must outlive the set
+    bool everything = false;             ///< also paths that store none
+    const Reach* reach = nullptr;        ///< of gather rays; null: they come everywhere. Must outlive the set
+    const ImageWeight* weight = nullptr; ///< of pixels; null: 1 everywhere. Must outlive the set
 
     static const PathSet stored; ///< those that store a photon; the rest stage three has exactly
     static const PathSet all;    ///< every path, for methods that draw them directly
+
+    double weight_at(const Vec2& image) const { return weight == nullptr ? 1.0 : (*weight)(image); }
+    /// What chains sample a path of RGB contribution `f` in proportion to.
+    double target(const Rgb& f, const Vec2& image) const { return luminance(f) * weight_at(image); }
 
     /// Whether gather rays come to `d2` on the side where light arrives from `before`, the vertex on its light's side.
     bool reaches(const SurfacePoint& d2, const SurfacePoint& before) const {

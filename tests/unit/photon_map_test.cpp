@@ -93,13 +93,13 @@ TEST(PhotonMap, DecidesTiesByIndex) {
     }
 }
 
-TEST(PhotonMap, StaysBelow32BytesAPhotonWithItsIndex) {
+TEST(PhotonMap, StaysBelow25BytesAPhotonWithItsIndex) {
     constexpr int n = 100'000;
     Rng rng = make_rng(3);
     std::vector<Photon> photons;
     photons.reserve(n);
     throw_photons(kUnitSquare, n, rng, photons);
-    EXPECT_LE(PhotonMap(std::move(photons)).bytes(), 32u * n);
+    EXPECT_LE(PhotonMap(std::move(photons)).bytes(), 25u * n);
 }
 
 TEST(PhotonMap, TakesManyPhotonsOnOneSpotAndNone) {

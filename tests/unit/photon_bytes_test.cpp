@@ -1,0 +1,61 @@
+// What a photon costs, by what the allocator gave away: itself, its index, and what is computed beforehand for it.
+#include "gather/sites.h"
+#include "photonmap/emission.h"
+#include "photonmap/irradiance_map.h"
+#include "support/test_scenes.h"
+
+#include <gtest/gtest.h>
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define KEYHOLE_FOREIGN_ALLOCATOR 1
+#endif
+#include <malloc.h>
+
+namespace keyhole {
+namespace {
+
+/// Memory that the program holds [bytes], of large blocks that are mapped one by one as well.
+double allocated() {
+    const struct mallinfo2 info = mallinfo2();
+    return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
+}
+
+class PhotonBytes : public testing::TestWithParam<std::size_t> {};
+
+TEST_P(PhotonBytes, AreAtMost32WithIndexIrradianceAndSites) {
+#ifdef KEYHOLE_FOREIGN_ALLOCATOR
+    GTEST_SKIP() << "the sanitizer's allocator keeps no such account";
+#endif
+    const std::size_t n = GetParam();
+    const auto scene = test::mirror_glass_box(); // photons of many normals, and both maps
+    const SurfacePatches patches(scene->shapes());
+    // What TBB and the threads keep for themselves is not a photon's.
+    IrradianceMap(PhotonMap({}), PhotonMap({}), {.max_radius = 0.1f, .patches = &patches}, {});
+    const double before = allocated();
+    // So many arrive that the stores are full.
+    EmittedPhotons photons =
+        emit_photons(*scene, {}, {.paths = static_cast<std::int64_t>(n), .photons = n, .seed = 1}, {});
+    const auto stored = static_cast<double>(photons.global.size() + photons.caustic.size());
+    EXPECT_GT(stored, 0.85 * static_cast<double>(n)) << "the test wants full stores";
+    const double bytes_of_stores = static_cast<double>(photons.bytes);
+    const ScoutedMap global(std::move(photons.global)), caustic(std::move(photons.caustic));
+    // Few photons in an estimate: what they cost is time.
+    const IrradianceMap irradiance(global.scouts(), global.carriers(),
+                                   {.k = 4, .max_radius = 0.02f, .patches = &patches}, {});
+    const Sites sites(*scene, irradiance.places(), {.direct_samples = 1}, {});
+    const double per_photon = (allocated() - before) / static_cast<double>(n);
+    RecordProperty("bytes_per_photon", std::to_string(per_photon));
+    RecordProperty("bytes_per_photon_stored", std::to_string(per_photon * static_cast<double>(n) / stored));
+    RecordProperty("bytes_per_photon_in_stores", std::to_string(bytes_of_stores / static_cast<double>(n)));
+    EXPECT_LE(per_photon, 32);
+    EXPECT_GT(per_photon, 24) << "the allocator was asked, and not some other";
+    EXPECT_LE(bytes_of_stores, 32 * static_cast<double>(n));
+    // And by what the maps say of themselves, which the ceiling on memory goes by.
+    const double said = static_cast<double>(global.bytes() + caustic.bytes() + irradiance.bytes() + sites.bytes());
+    EXPECT_NEAR(said / static_cast<double>(n), per_photon, 0.1 + 65536 / static_cast<double>(n));
+}
+
+INSTANTIATE_TEST_SUITE_P(Photons, PhotonBytes, testing::Values(50'000, 300'000, 1'000'000));
+
+} // namespace
+} // namespace keyhole
