@@ -14,7 +14,8 @@ constexpr float kMuchFiner = 0.6f;
 /// Records whose normals differ by more than this (1 - cos) have no say: about 20 degrees.
 constexpr float kNormalReach = 0.06f;
 /// How much more a distance along the normal counts than one across it, squared: steps and shelves keep to themselves.
-constexpr float kHeight2 = 15;
+/// Along the normal a record is used no farther than it keeps others away.
+constexpr float kHeight2 = 16;
 
 Vec3 to_vec(const Rgb& c) { return {static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z)}; }
 
@@ -57,15 +58,17 @@ IrradianceCache::Answer IrradianceCache::irradiance(const Vec3& position, const 
     visit_near(position, [&](std::uint32_t i) {
         const Stored& r = records_[i];
         const Vec3 d = position - r.position;
-        const float across = d.dot(r.normal), apart2 = d.length2() + kHeight2 * across * across;
-        if (!(apart2 < r.reach * r.reach)) return;
+        const float height = d.dot(r.normal), height2 = height * height, across2 = d.length2() - height2;
+        const float raised = kHeight2 * height2 / (r.radius * r.radius);
+        const float apart2 = across2 / (r.reach * r.reach) + raised;
+        if (!(apart2 < 1)) return;
         // What lies behind the record may be in the dark behind an edge.
         if (d.dot(normal + r.normal) < -0.1f * r.radius) return;
         const Vec3 turn = normal - r.normal;
         const float turned = turn.length2() / (2 * kNormalReach);
-        const float w = kernel(std::max(apart2 / (r.reach * r.reach), turned));
+        const float w = kernel(std::max(apart2, turned));
         if (!(w > 0)) return;
-        covered += kernel(std::max(apart2 / (r.radius * r.radius), turned));
+        covered += kernel(std::max(across2 / (r.radius * r.radius) + raised, turned));
         Vec3 e = r.irradiance;
         for (int c = 0; c < 3; ++c) {
             const auto k = static_cast<std::size_t>(c);

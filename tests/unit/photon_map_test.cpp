@@ -89,7 +89,9 @@ TEST(PhotonMap, FindsTheNearestOneByItself) {
                 std::find_if(all.begin(), all.end(), [&](const Neighbour& n) { return red(map[n.index]); });
             const auto accepted = map.nearest_accepted(q.region, q.max_radius, red);
             ASSERT_EQ(accepted.has_value(), first != all.end());
-            if (accepted) EXPECT_EQ(accepted->index, first->index);
+            if (accepted) {
+                EXPECT_EQ(accepted->index, first->index);
+            }
         }
         EXPECT_GT(found, 150);
         EXPECT_LT(found, 300);
