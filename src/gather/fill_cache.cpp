@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kCoarsest = 16;      // [pixels] between the points of the first level
 constexpr std::size_t kBatch = 64; // records computed at once
-constexpr double kCovered = 0.1;   // sum of weights below which a point needs a record of its own
+constexpr double kCovered = 0.1;   // share below which a point needs a record of its own
 
 /// Pixels of one level in an order that jumps about, so that those of one batch are far from each other.
 std::vector<int> level_pixels(const ImageWindow& window, int step) {
@@ -53,7 +53,7 @@ class LevelFill {
 
   private:
     bool is_covered(const VisiblePoint& c) const {
-        return cache_.irradiance(c.vertex.point.p, cache_normal(c.vertex, c.back)).weight >= kCovered;
+        return cache_.irradiance(c.vertex.point.p, cache_normal(c.vertex, c.back)).covered >= kCovered;
     }
     void flush(const RunContext& context) {
         std::vector<IrradianceRecord> records(batch_.size());

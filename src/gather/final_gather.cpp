@@ -82,7 +82,7 @@ std::optional<Rgb> FinalGather::ask_cache(const Vertex& v, const Vec3& back) con
     const Vec3 normal = cache_normal(v, back);
     const auto answer = cache_->irradiance(v.point.p, normal);
     asked_.fetch_add(1, std::memory_order_relaxed);
-    if (!(answer.weight > 0)) {
+    if (!answer.known) {
         unanswered_.fetch_add(1, std::memory_order_relaxed);
         return std::nullopt;
     }

@@ -29,21 +29,20 @@ GatherRays::Arrival GatherRays::trace(const Vertex& from, const Vec3& w, double 
 GatherRays::Arrival GatherRays::trace(const Vertex& from, const Vec3& w0, double pdf, int scatterings, bool secondary,
                                       SampleSource& source) const {
     Arrival arrival;
-    Vertex v = from;
+    Vertex v;
+    SurfacePoint last = from.point;
     Vec3 w = w0;
     Rgb throughput(1.0);
     for (int n = scatterings; n <= max_scatterings_; ++n) {
-        const auto hit = next_vertex(scene_, v, w);
-        if (!hit) break;
-        throughput *= scene_.transmittance(v.point, hit->point);
-        const float length = hit->point.site == Site::infinite ? std::numeric_limits<float>::infinity()
-                                                               : (hit->point.p - v.point.p).length();
+        if (!next_vertex(scene_, last, w, v)) break;
+        throughput *= scene_.transmittance(last, v.point);
+        const float length =
+            v.point.site == Site::infinite ? std::numeric_limits<float>::infinity() : (v.point.p - last.p).length();
         // An emitter seen straight is direct light; seen through specular vertices the caustic map has it.
         if (n == scatterings) {
-            arrival.emitted = throughput * emission_with_mis(scene_, v, *hit, w, pdf);
+            if (v.point.is_emitter()) arrival.emitted = throughput * emission_with_mis(scene_, from, v, w, pdf);
             arrival.distance = length;
         }
-        v = *hit;
         if (n == max_scatterings_) break;
         if (v.bsdf.traits().finite) arrival.indirect += throughput * reflected(v, -w, {length, n, secondary}, source);
         if (!v.bsdf.traits().delta) break;
@@ -51,6 +50,8 @@ GatherRays::Arrival GatherRays::trace(const Vertex& from, const Vec3& w0, double
         if (!next || !is_specular(next->event)) break;
         throughput *= next->weight;
         w = next->w;
+        last = v.point;
+        v = Vertex();
     }
     return arrival;
 }

@@ -16,16 +16,22 @@ void add(RgbGradient& sum, const Rgb& c, const Vec3& v) {
     sum[2] += v * static_cast<float>(c.z);
 }
 
-/// Unit vector of the tangent plane at azimuth `phi`.
-Vec3 tangent(const Frame& frame, double phi) {
-    return frame.s * static_cast<float>(std::cos(phi)) + frame.t * static_cast<float>(std::sin(phi));
+Vec2 direction_at(double azimuth) {
+    return {static_cast<float>(std::cos(azimuth)), static_cast<float>(std::sin(azimuth))};
 }
+
+/// Vector of the tangent plane.
+Vec3 tangent(const Frame& frame, const Vec2& v) { return frame.s * v.x + frame.t * v.y; }
 
 } // namespace
 
 HemisphereGrid::HemisphereGrid(int rays)
     : rows_(std::max(2, static_cast<int>(std::lround(std::sqrt(rays / kPi))))),
-      columns_(std::max(4, static_cast<int>(std::lround(static_cast<double>(rays) / rows_)))) {}
+      columns_(std::max(4, static_cast<int>(std::lround(static_cast<double>(rays) / rows_)))) {
+    for (int row = 0; row < rows_; ++row) mean_tangents_.push_back(mean_tangent(row));
+    const double width = 2 * kPi / columns_;
+    for (int k = 0; k < columns_; ++k) azimuths_.push_back({direction_at(width * (k + 0.5)), direction_at(width * k)});
+}
 
 Vec3 HemisphereGrid::direction(int cell, double u0, double u1) const {
     const int row = cell / columns_;
@@ -43,12 +49,15 @@ HemisphereEstimate HemisphereGrid::estimate(std::span<const HemisphereRay> rays,
     assert(rays.size() == static_cast<std::size_t>(size()));
     HemisphereEstimate e;
     double inverse_distance = 0;
-    for (int i = 0; i < size(); ++i) {
-        const HemisphereRay& ray = rays[static_cast<std::size_t>(i)];
-        e.irradiance += ray.radiance;
-        add(e.rotation, ray.radiance * mean_tangent(i / columns_),
-            tangent(frame, 2 * kPi * (i % columns_ + 0.5) / columns_));
-        if (ray.distance > 0) inverse_distance += 1 / static_cast<double>(ray.distance);
+    for (int k = 0; k < columns_; ++k) {
+        Rgb turned(0.0);
+        for (int j = 0; j < rows_; ++j) {
+            const HemisphereRay& ray = rays[static_cast<std::size_t>(j * columns_ + k)];
+            e.irradiance += ray.radiance;
+            turned += ray.radiance * mean_tangents_[static_cast<std::size_t>(j)];
+            if (ray.distance > 0) inverse_distance += 1 / static_cast<double>(ray.distance);
+        }
+        add(e.rotation, turned, tangent(frame, azimuths_[static_cast<std::size_t>(k)].middle));
     }
     const double share = kPi / size();
     e.irradiance *= share;
@@ -70,7 +79,8 @@ void HemisphereGrid::add_translation(std::span<const HemisphereRay> rays, const 
     const double width = 2 * kPi / columns_;
     for (int k = 0; k < columns_; ++k) {
         const int before = (k + columns_ - 1) % columns_;
-        const Vec3 u = tangent(frame, width * (k + 0.5)), v = tangent(frame, width * k + kPi / 2);
+        const Azimuths& azimuths = azimuths_[static_cast<std::size_t>(k)];
+        const Vec3 u = tangent(frame, azimuths.middle), v = tangent(frame, {-azimuths.border.y, azimuths.border.x});
         for (int j = 0; j < rows_; ++j) {
             const double inner2 = static_cast<double>(j) / rows_, outer2 = static_cast<double>(j + 1) / rows_;
             if (j > 0) cross(at(j - 1, k), at(j, k), width * std::sqrt(inner2) * (1 - inner2), u);

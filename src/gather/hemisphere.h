@@ -5,6 +5,7 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
 namespace keyhole {
 
@@ -49,7 +50,14 @@ class HemisphereGrid {
     double mean_tangent(int row) const;
     void add_translation(std::span<const HemisphereRay> rays, const Frame& frame, RgbGradient& sum) const;
 
+    /// Unit vectors in the plane.
+    struct Azimuths {
+        Vec2 middle, border; ///< of a column, and between it and the one before
+    };
+
     int rows_, columns_;
+    std::vector<double> mean_tangents_; // by row
+    std::vector<Azimuths> azimuths_;    // by column
 };
 
 } // namespace keyhole

@@ -6,14 +6,22 @@
 namespace keyhole {
 namespace {
 
+/// How many times its radius a record is used. Records stand about a radius apart, so that several have a say
+/// everywhere: their noise averages out, and what first order leaves out on one side it has too much of on the other.
+constexpr float kOverlap = 2;
+/// Share of a record's radius below which that of another one tells of something that the first doesn't see.
+constexpr float kMuchFiner = 0.6f;
 /// Records whose normals differ by more than this (1 - cos) have no say: about 20 degrees.
 constexpr float kNormalReach = 0.06f;
 /// How much more a distance along the normal counts than one across it, squared: steps and shelves keep to themselves.
-constexpr float kHeight2 = 15;
+/// Along the normal a record is used no farther than it keeps others away.
+constexpr float kHeight2 = 16;
 
 Vec3 to_vec(const Rgb& c) { return {static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z)}; }
 
-int level_of(float radius) { return static_cast<int>(std::ceil(std::log2(2 * radius))); }
+/// Of cells as wide as the reach of their records, so that these stand in 8 to 27 of them: larger cells would offer
+/// more records in vain.
+int level_of(float reach) { return static_cast<int>(std::ceil(std::log2(reach))); }
 
 struct CellIndex {
     std::int64_t x, y, z;
@@ -46,15 +54,21 @@ template <class Visit> void IrradianceCache::visit_near(const Vec3& position, Vi
 
 IrradianceCache::Answer IrradianceCache::irradiance(const Vec3& position, const Vec3& normal) const {
     Vec3 sum(0.0f);
-    float weights = 0;
+    float weights = 0, covered = 0;
     visit_near(position, [&](std::uint32_t i) {
         const Stored& r = records_[i];
-        const Vec3 d = position - r.position, turn = normal - r.normal;
-        const float across = d.dot(r.normal), apart2 = d.length2() + kHeight2 * across * across;
+        const Vec3 d = position - r.position;
+        const float height = d.dot(r.normal), height2 = height * height, across2 = d.length2() - height2;
+        const float raised = kHeight2 * height2 / (r.radius * r.radius);
+        const float apart2 = across2 / (r.reach * r.reach) + raised;
+        if (!(apart2 < 1)) return;
         // What lies behind the record may be in the dark behind an edge.
         if (d.dot(normal + r.normal) < -0.1f * r.radius) return;
-        const float w = kernel(std::max(apart2 / (r.radius * r.radius), turn.length2() / (2 * kNormalReach)));
+        const Vec3 turn = normal - r.normal;
+        const float turned = turn.length2() / (2 * kNormalReach);
+        const float w = kernel(std::max(apart2, turned));
         if (!(w > 0)) return;
+        covered += kernel(std::max(across2 / (r.radius * r.radius) + raised, turned));
         Vec3 e = r.irradiance;
         for (int c = 0; c < 3; ++c) {
             const auto k = static_cast<std::size_t>(c);
@@ -65,20 +79,19 @@ IrradianceCache::Answer IrradianceCache::irradiance(const Vec3& position, const 
     });
     if (!(weights > 0)) return {};
     sum /= weights;
-    return {Rgb(sum.x, sum.y, sum.z), weights};
+    return {Rgb(sum.x, sum.y, sum.z), true, covered};
 }
 
 void IrradianceCache::insert(const IrradianceRecord& record) {
     const HemisphereEstimate& e = record.light;
-    Stored r{record.position,
-             record.normal,
-             to_vec(e.irradiance),
-             e.rotation,
-             e.translation,
-             static_cast<float>(std::min(e.distance, 1e30)),
-             0,
-             record.min_radius,
-             record.max_radius};
+    Stored r{.position = record.position,
+             .normal = record.normal,
+             .irradiance = to_vec(e.irradiance),
+             .rotation = e.rotation,
+             .translation = e.translation,
+             .distance = static_cast<float>(std::min(e.distance, 1e30)),
+             .min_radius = record.min_radius,
+             .max_radius = record.max_radius};
     // Where irradiance changes by its own size within that distance, first order says nothing beyond (Ward, Heckbert).
     const float y = static_cast<float>(luminance(e.irradiance));
     const Vec3 slope = r.translation[0] * 0.2126f + r.translation[1] * 0.7152f + r.translation[2] * 0.0722f;
@@ -86,15 +99,19 @@ void IrradianceCache::insert(const IrradianceRecord& record) {
     update_radius(r);
     clamp_with_neighbours(r);
     // A radius held up by its lower bound would stretch the gradient beyond where it holds.
-    const float reach = error_ * r.distance / r.radius;
-    if (reach < 1)
-        for (Vec3& g : r.translation) g *= reach;
+    const float held = error_ * r.distance / r.radius;
+    if (held < 1)
+        for (Vec3& g : r.translation) g *= held;
     records_.push_back(r);
     index(static_cast<std::uint32_t>(records_.size() - 1));
 }
 
 void IrradianceCache::update_radius(Stored& r) const {
-    r.radius = std::clamp(error_ * r.distance, r.min_radius, r.max_radius);
+    const float radius = error_ * r.distance;
+    r.radius = std::clamp(radius, r.min_radius, r.max_radius);
+    // Not so where the lower bound decides: things are smaller there than the bound is.
+    r.reach = std::clamp(kOverlap * radius, r.min_radius, kOverlap * r.max_radius);
+    r.reach = std::min(r.reach, std::max(r.radius, r.border));
 }
 
 void IrradianceCache::clamp_with_neighbours(Stored& r) {
@@ -105,17 +122,23 @@ void IrradianceCache::clamp_with_neighbours(Stored& r) {
     update_radius(r);
     visit_near(r.position, [&](std::uint32_t i) {
         Stored& other = records_[i];
-        other.distance = std::min(other.distance, r.distance + (other.position - r.position).length());
+        const float apart = (other.position - r.position).length();
+        other.distance = std::min(other.distance, r.distance + apart);
+        update_radius(other);
+        // Where light changes over a shorter distance than a record knows of, it ends.
+        if (r.radius < kMuchFiner * other.radius) other.border = std::min(other.border, apart);
+        if (other.radius < kMuchFiner * r.radius) r.border = std::min(r.border, apart);
         update_radius(other);
     });
+    update_radius(r);
 }
 
 void IrradianceCache::index(std::uint32_t i) {
     const Stored& r = records_[i];
-    const int level = level_of(r.radius);
+    const int level = level_of(r.reach);
     lowest_level_ = records_.size() == 1 ? level : std::min(lowest_level_, level);
     highest_level_ = std::max(records_.size() == 1 ? level : highest_level_, level);
-    const CellIndex lo = cell_at(r.position - Vec3(r.radius), level), hi = cell_at(r.position + Vec3(r.radius), level);
+    const CellIndex lo = cell_at(r.position - Vec3(r.reach), level), hi = cell_at(r.position + Vec3(r.reach), level);
     for (auto x = lo.x; x <= hi.x; ++x)
         for (auto y = lo.y; y <= hi.y; ++y)
             for (auto z = lo.z; z <= hi.z; ++z) cells_[key({x, y, z}, level)].push_back(i);

@@ -5,6 +5,7 @@
 #include "gather/hemisphere.h"
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <unordered_map>
 #include <vector>
@@ -32,21 +33,28 @@ class IrradianceCache {
 
     struct Answer {
         Rgb irradiance{0.0}; ///< [W/m^2]
-        double weight = 0;   ///< sum over the records that had a say; 1 at a record, 0: nothing is known here
+        bool known = false;  ///< whether any record had a say
+        double covered = 0;  ///< by the records within whose radius this is; at a record 1 at least
     };
     Answer irradiance(const Vec3& position, const Vec3& normal) const;
 
     std::size_t size() const { return records_.size(); }
     std::size_t bytes() const;
-    /// How far record `i` is used [m].
+    /// How far around record `i` there is no need of another one [m].
     float radius(std::size_t i) const { return records_[i].radius; }
+    /// How far it is used [m].
+    float reach(std::size_t i) const { return records_[i].reach; }
 
   private:
+    /// What decides whether a record has a say comes first: most of those asked have none.
     struct Stored {
-        Vec3 position, normal, irradiance;
+        Vec3 position, normal;
+        float reach = 0;  ///< how far it is used [m]
+        float radius = 0; ///< how far there is no need of another record [m]
+        Vec3 irradiance;
         RgbGradient rotation, translation;
-        float distance; ///< to surrounding surfaces, clamped by neighbours' [m]
-        float radius;   ///< how far it is used [m]
+        float distance;                                        ///< to surrounding surfaces, clamped by neighbours' [m]
+        float border = std::numeric_limits<float>::infinity(); ///< to where it ends unless its radius is larger [m]
         float min_radius, max_radius;
     };
     using Cell = std::vector<std::uint32_t>;

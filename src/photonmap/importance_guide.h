@@ -14,7 +14,7 @@ class ImportanceGuide {
     /// one importance may leak past them.
     ImportanceGuide(const PhotonMap& importons, float max_radius, const SurfacePatches& patches, const Scene* scene,
                     const RunContext& context)
-        : places_(some(importons)),
+        : places_(some(importons), PhotonMap::Wanted::one),
           map_(places_, importons, {.k = 30, .max_radius = max_radius, .patches = &patches, .scene = scene}, context) {}
     ImportanceGuide(const ImportanceGuide&) = delete; // map_ refers to places_
     ImportanceGuide& operator=(const ImportanceGuide&) = delete;

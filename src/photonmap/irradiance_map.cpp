@@ -6,6 +6,21 @@
 #include <algorithm>
 
 namespace keyhole {
+namespace {
+
+/// How high above the surface two places are tested for sight of each other, as a share of their distance.
+constexpr float kLift = 0.25f;
+constexpr unsigned kLevels = 8;
+
+/// Bit i is set if something may stand on the region of radius r / 2^i. It looks from half to three halves of the
+/// height kLift r / 2^i, where lines of sight run between places that are more than half as far from each other.
+std::uint8_t obstructed_levels(const SurfacePatches& patches, const SurfaceRegion& region, float r) {
+    unsigned levels = 0;
+    for (unsigned i = 0; i < kLevels; ++i, r /= 2) levels |= patches.obstructed(region, r) ? 1u << i : 0u;
+    return static_cast<std::uint8_t>(levels);
+}
+
+} // namespace
 
 IrradianceMap::IrradianceMap(const PhotonMap& scouts, const PhotonMap& carriers, const IrradianceOptions& options,
                              const RunContext& context)
@@ -44,31 +59,40 @@ IrradianceMap::Count IrradianceMap::estimate(std::uint32_t i, const PhotonMap& c
                                                                              *options.patches, one)
                                                  : estimate_density(carriers, query.region, r, options.patches, one);
     e.value /= share_in_reach(options.reach, query.region, r);
-    estimates_[i] = {SharedExponentRgb(e.value), e.obstructed, r};
+    estimates_[i] = {SharedExponentRgb(e.value),
+                     e.obstructed ? obstructed_levels(*options.patches, query.region, r) : std::uint8_t{0}, r};
     return {static_cast<double>(e.photons), squares > 0 ? sum * sum / squares : 0.0};
 }
 
 IrradianceMap::Answer IrradianceMap::irradiance(const Vec3& position, const Vec3& normal) const {
     // Farther than the estimates themselves look: where photons are rare, most places have none that near, and to call
     // them dark would take light away.
-    const PhotonQuery query{{position, normal}, 4 * max_radius_, 1};
-    const Neighbourhood near = scouts_.nearest(query);
-    if (near.found.empty()) return {};
-    std::uint32_t place = near.found[0].index;
-    const Estimate& nearest = estimates_[place];
-    // Whether something stands between is known within the region of the estimate.
-    if (scene_ != nullptr && (nearest.obstructed || near.found[0].distance2 > nearest.radius * nearest.radius)) {
-        const auto visible = [&](const Photon& p) {
-            const float lift = 0.25f * (p.position() - position).length();
-            return in_sight(*scene_, query.region, lift, p.position());
-        };
-        if (!visible(scouts_[place])) {
-            const Photon* other = scouts_.nearest_accepted(query, visible);
-            if (other == nullptr) return {};
-            place = static_cast<std::uint32_t>(other - places().data());
-        }
+    const SurfaceRegion region{position, normal};
+    const auto near = scouts_.nearest_one(region, 4 * max_radius_);
+    if (!near) return {};
+    std::uint32_t place = near->index;
+    const auto visible = [&](const Photon& p) {
+        const float lift = kLift * (p.position() - position).length();
+        return in_sight(*scene_, region, lift, p.position());
+    };
+    if (may_be_hidden(place, position) && !visible(scouts_[place])) {
+        const auto other = scouts_.nearest_accepted(region, 4 * max_radius_, visible);
+        if (!other) return {};
+        place = other->index;
     }
     return {estimates_[place].irradiance.decode(), true, place};
+}
+
+bool IrradianceMap::may_be_hidden(std::uint32_t place, const Vec3& position) const {
+    if (scene_ == nullptr) return false;
+    const Estimate& e = estimates_[place];
+    const float distance2 = (scouts_[place].position() - position).length2();
+    float reach2 = e.radius * e.radius;
+    // Nothing is known of what stands beyond the region of the estimate.
+    if (distance2 > reach2) return true;
+    for (unsigned levels = e.obstructed; levels != 0; levels >>= 1, reach2 /= 4)
+        if (distance2 > reach2 / 4) return (levels & 1) != 0;
+    return false;
 }
 
 } // namespace keyhole

@@ -6,6 +6,9 @@
 #include "sampling/reach.h"
 #include "scene/scene.h"
 
+#include <cstdint>
+#include <vector>
+
 namespace keyhole {
 
 struct IrradianceOptions {
@@ -53,9 +56,11 @@ class IrradianceMap {
   private:
     struct Estimate {
         SharedExponentRgb irradiance;
-        bool obstructed; ///< whether something stands within the region
+        std::uint8_t obstructed; ///< bit i: something may stand on the region of radius / 2^i
         float radius;
     };
+    /// Whether something may stand between place and position.
+    bool may_be_hidden(std::uint32_t place, const Vec3& position) const;
     struct Count {
         double photons = 0, effective = 0;
         Count& operator+=(const Count& o) {

@@ -10,7 +10,8 @@
 namespace keyhole {
 namespace {
 
-constexpr std::uint32_t kLeaf = 32; // photons
+/// Photons in a leaf: many where many are wanted at a time, few where one is.
+constexpr std::uint32_t kLeaf = 32, kSmallLeaf = 8;
 
 /// Whether normals of the facet can be accepted by a region of normal `n`. A facet's normals are up to 54.8 degrees
 /// from its axis, and accepted ones up to 25.9 degrees from n.
@@ -64,32 +65,32 @@ class NearestInRegion {
     float bound_;
 };
 
-/// One photon that is accepted; asks only about those that are nearer than the best so far.
-class NearestAccepted {
+/// The nearest photon that is accepted; asks only about those that are nearer than the best so far. With one photon
+/// wanted there is no heap to be kept.
+template <class Accept> class NearestOne {
   public:
-    NearestAccepted(const PhotonQuery& query, const Photon* photons, const std::function<bool(const Photon&)>& accept)
-        : region_(query.region), photons_(photons),
-          accept_(accept), best_{query.max_radius * query.max_radius, std::numeric_limits<std::uint32_t>::max()} {}
+    NearestOne(const SurfaceRegion& region, float max_radius, const Photon* photons, const Accept& accept)
+        : region_(region), photons_(photons),
+          accept_(accept), best_{max_radius * max_radius, std::numeric_limits<std::uint32_t>::max()} {}
 
     float bound() const { return best_.distance2; }
 
     void offer(std::uint32_t index) {
         const Photon& photon = photons_[index];
         const Neighbour candidate{region_.distance2(photon.position()), index};
-        if (candidate < best_ && region_.accepts(photon.normal().unnormalised()) && accept_(photon)) {
-            best_ = candidate;
-            found_ = &photon;
-        }
+        if (!(candidate < best_) || !region_.accepts(photon.normal().unnormalised()) || !accept_(photon)) return;
+        best_ = candidate;
+        any_ = true;
     }
 
-    const Photon* found() const { return found_; }
+    std::optional<Neighbour> found() const { return any_ ? std::optional(best_) : std::nullopt; }
 
   private:
     const SurfaceRegion& region_;
     const Photon* photons_;
-    const std::function<bool(const Photon&)>& accept_;
+    const Accept& accept_;
     Neighbour best_;
-    const Photon* found_ = nullptr;
+    bool any_ = false;
 };
 
 /// Every photon of a region.
@@ -118,7 +119,7 @@ class AllInRegion {
 /// A tree for each facet, so that the photons of the other side of a sheet, or of the walls of a corner, aren't even
 /// looked at: beside the thin slats of a lampshade they are a hundred times as many as those asked for.
 struct PhotonMap::Index {
-    explicit Index(std::vector<Photon> all) : photons(std::move(all)) {
+    Index(std::vector<Photon> all, std::uint32_t leaf) : photons(std::move(all)) {
         const auto key = [](const Photon& p) { return facet_of(p.normal().unnormalised()); };
         std::ranges::sort(photons, {}, key);
         const auto begin = photons.begin();
@@ -126,7 +127,7 @@ struct PhotonMap::Index {
         for (std::size_t facet = 0; facet < facets.size(); ++facet) {
             const auto last = std::ranges::upper_bound(first, photons.end(), facet, {}, key);
             facets[facet] = KdTree(photons, static_cast<std::uint32_t>(first - begin),
-                                   static_cast<std::uint32_t>(last - begin), kLeaf);
+                                   static_cast<std::uint32_t>(last - begin), leaf);
             first = last;
         }
     }
@@ -137,11 +138,19 @@ struct PhotonMap::Index {
             if (facet_faces(facet, region.normal)) facets[facet].search(region.position, result);
     }
 
+    template <class Accept>
+    std::optional<Neighbour> nearest_one(const SurfaceRegion& region, float max_radius, const Accept& accept) const {
+        NearestOne<Accept> result(region, max_radius, photons.data(), accept);
+        search(region, result);
+        return result.found();
+    }
+
     std::vector<Photon> photons;
     std::array<KdTree, 6> facets;
 };
 
-PhotonMap::PhotonMap(std::vector<Photon> photons) : index_(std::make_unique<Index>(std::move(photons))) {}
+PhotonMap::PhotonMap(std::vector<Photon> photons, Wanted wanted)
+    : index_(std::make_unique<Index>(std::move(photons), wanted == Wanted::many ? kLeaf : kSmallLeaf)) {}
 PhotonMap::~PhotonMap() = default;
 PhotonMap::PhotonMap(PhotonMap&&) noexcept = default;
 PhotonMap& PhotonMap::operator=(PhotonMap&&) noexcept = default;
@@ -154,13 +163,15 @@ std::size_t PhotonMap::bytes() const {
     return sum;
 }
 
-double PhotonMap::index_bytes_per_photon() { return KdTree::bytes_per_photon(kLeaf); }
+double PhotonMap::index_bytes_per_photon() { return KdTree::bytes_per_photon(kSmallLeaf); }
 
-const Photon* PhotonMap::nearest_accepted(const PhotonQuery& query,
-                                          const std::function<bool(const Photon&)>& accept) const {
-    NearestAccepted result(query, photons().data(), accept);
-    index_->search(query.region, result);
-    return result.found();
+std::optional<Neighbour> PhotonMap::nearest_one(const SurfaceRegion& region, float max_radius) const {
+    return index_->nearest_one(region, max_radius, [](const Photon&) { return true; });
+}
+
+std::optional<Neighbour> PhotonMap::nearest_accepted(const SurfaceRegion& region, float max_radius,
+                                                     const std::function<bool(const Photon&)>& accept) const {
+    return index_->nearest_one(region, max_radius, accept);
 }
 
 std::span<const std::uint32_t> PhotonMap::within(const SurfaceRegion& region, float radius) const {

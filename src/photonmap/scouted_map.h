@@ -13,7 +13,7 @@ namespace keyhole {
 class ScoutedMap {
   public:
     explicit ScoutedMap(PhotonSet photons)
-        : scouts_(std::move(photons.scouts)), carriers_(std::move(photons.carriers)) {}
+        : scouts_(std::move(photons.scouts), PhotonMap::Wanted::one), carriers_(std::move(photons.carriers)) {}
 
     const PhotonMap& scouts() const { return scouts_; }
     const PhotonMap& carriers() const { return carriers_; }

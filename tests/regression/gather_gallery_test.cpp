@@ -182,7 +182,7 @@ TEST_P(CausticEdges, AreSharpAndNeitherDarkNorBright) {
     Settings settings = small_settings();
     settings.method = GetParam();
     settings.light_paths = 2'000'000;
-    settings.mutations = 1'500'000;
+    settings.mutations = 2'000'000;
     settings.photons = 200'000;
     const Grey grey = render_layer(*scene, settings, "caustic");
     // Lookups reach a fiftieth of the scene at most, two pixels here; seen at the mirror, that is less than this.

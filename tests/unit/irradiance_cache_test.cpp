@@ -1,5 +1,8 @@
 #include "gather/irradiance_cache.h"
 
+#include "core/rng.h"
+#include "core/statistics.h"
+
 #include <gtest/gtest.h>
 
 namespace keyhole {
@@ -18,13 +21,51 @@ IrradianceRecord record(const Vec3& p, double e, double distance, const Vec3& sl
 
 TEST(IrradianceCache, IsExactAtARecordAndSilentBeyondItsReach) {
     IrradianceCache cache(0.2f);
-    EXPECT_EQ(cache.irradiance({0, 0, 0}, {0, 0, 1}).weight, 0);
+    EXPECT_FALSE(cache.irradiance({0, 0, 0}, {0, 0, 1}).known);
     cache.insert(record({1, 2, 3}, 5, 1));
     const auto there = cache.irradiance({1, 2, 3}, {0, 0, 1});
     EXPECT_DOUBLE_EQ(there.irradiance.y, 5);
-    EXPECT_DOUBLE_EQ(there.weight, 1);
-    EXPECT_GT(cache.irradiance({1.19f, 2, 3}, {0, 0, 1}).weight, 0);
-    EXPECT_EQ(cache.irradiance({1.21f, 2, 3}, {0, 0, 1}).weight, 0);
+    EXPECT_DOUBLE_EQ(there.covered, 1);
+    EXPECT_GT(cache.irradiance({1.19f, 2, 3}, {0, 0, 1}).covered, 0);
+    EXPECT_EQ(cache.irradiance({1.21f, 2, 3}, {0, 0, 1}).covered, 0) << "another record is wanted";
+    EXPECT_TRUE(cache.irradiance({1.39f, 2, 3}, {0, 0, 1}).known) << "but this one may still be used";
+    EXPECT_FALSE(cache.irradiance({1.41f, 2, 3}, {0, 0, 1}).known);
+}
+
+TEST(IrradianceCache, AveragesTheNoiseOfItsRecords) {
+    // Records as far apart as filling leaves them, each off by its own noise of variance 1: a say that only the nearest
+    // have would leave most of it.
+    Rng rng(1, StreamPurpose::test, 0);
+    IrradianceCache cache(0.2f);
+    constexpr int kSide = 30;
+    for (int x = 0; x < kSide; ++x)
+        for (int y = 0; y < kSide; ++y) {
+            const Vec3 p(0.2f * static_cast<float>(x), 0.2f * static_cast<float>(y), 0);
+            cache.insert(record(p, 10 + std::sqrt(12.0) * (rng.next() - 0.5), 1));
+        }
+    RunningStats stats;
+    for (int i = 0; i < 2000; ++i) {
+        const auto at = [&] { return static_cast<float>(1 + 4 * rng.next()); };
+        const float x = at(), y = at();
+        stats.add(cache.irradiance({x, y, 0}, {0, 0, 1}).irradiance.x);
+    }
+    EXPECT_NEAR(stats.mean(), 10, 0.1);
+    EXPECT_LT(stats.variance(), 0.3);
+}
+
+TEST(IrradianceCache, EndsARecordWhereMuchFinerOnesStand) {
+    IrradianceCache cache(0.2f);
+    cache.insert(record({0, 0, 0}, 1, 1));
+    EXPECT_FLOAT_EQ(cache.reach(0), 0.4f);
+    cache.insert(record({0.3f, 0, 0}, 1, 0.75)); // radius 0.15: not so much finer
+    EXPECT_FLOAT_EQ(cache.reach(0), 0.4f);
+    cache.insert(record({0, 0.25f, 0}, 1, 0.8, {0, 2, 0})); // changes by its own size within 0.5 m: radius 0.1
+    EXPECT_FLOAT_EQ(cache.radius(2), 0.1f);
+    EXPECT_FLOAT_EQ(cache.radius(0), 0.15f) << "clamped by what its neighbour is near to";
+    EXPECT_FLOAT_EQ(cache.reach(0), 0.3f);
+    cache.insert(record({0, -0.2f, 0}, 1, 0.8, {0, 4, 0})); // radius 0.05
+    EXPECT_FLOAT_EQ(cache.radius(0), 0.09f);
+    EXPECT_FLOAT_EQ(cache.reach(0), 0.18f);
 }
 
 TEST(IrradianceCache, ReproducesALinearField) {
@@ -59,11 +100,11 @@ TEST(IrradianceCache, BlendsWithoutSteps) {
 TEST(IrradianceCache, KeepsToItsSurface) {
     IrradianceCache cache(0.5f);
     cache.insert(record({0, 0, 0}, 1, 1));
-    EXPECT_GT(cache.irradiance({0.2f, 0, 0}, {0, 0, 1}).weight, 0);
-    EXPECT_EQ(cache.irradiance({0.2f, 0, 0}, {0, 0, -1}).weight, 0) << "the other side of a sheet";
-    EXPECT_EQ(cache.irradiance({0.2f, 0, 0}, {1, 0, 0}).weight, 0) << "another wall";
-    EXPECT_EQ(cache.irradiance({0.2f, 0, 0.2f}, {0, 0, 1}).weight, 0) << "the next step of a stair";
-    EXPECT_EQ(cache.irradiance({0.2f, 0, -0.2f}, {0, 0, 1}).weight, 0) << "behind the record";
+    EXPECT_TRUE(cache.irradiance({0.2f, 0, 0}, {0, 0, 1}).known);
+    EXPECT_FALSE(cache.irradiance({0.2f, 0, 0}, {0, 0, -1}).known) << "the other side of a sheet";
+    EXPECT_FALSE(cache.irradiance({0.2f, 0, 0}, {1, 0, 0}).known) << "another wall";
+    EXPECT_FALSE(cache.irradiance({0.2f, 0, 0.2f}, {0, 0, 1}).known) << "the next step of a stair";
+    EXPECT_FALSE(cache.irradiance({0.2f, 0, -0.2f}, {0, 0, 1}).known) << "behind the record";
 }
 
 TEST(IrradianceCache, TurnsWithTheNormal) {

@@ -68,6 +68,36 @@ TEST(PhotonMap, FindsWhatTryingAllFinds) {
     EXPECT_LT(full, 250);
 }
 
+TEST(PhotonMap, FindsTheNearestOneByItself) {
+    for (const auto wanted : {PhotonMap::Wanted::many, PhotonMap::Wanted::one}) {
+        const PhotonMap map(cloud(5000), wanted);
+        Rng rng = make_rng(4);
+        const auto red = [](const Photon& p) { return std::lrint(p.power().x) % 3 == 0; };
+        int found = 0;
+        for (int i = 0; i < 300; ++i) {
+            const auto at = [&] { return static_cast<float>(1.4 * rng.next() - 0.2); };
+            const float x = at(), y = at(), z = at();
+            const PhotonQuery q{{{x, y, z}, uniform_sphere(rng.next(), rng.next())}, i % 2 == 0 ? 0.1f : 1.5f, 5000};
+            const auto all = nearest_by_trying_all(map, q);
+            const auto one = map.nearest_one(q.region, q.max_radius);
+            ASSERT_EQ(one.has_value(), !all.empty());
+            if (!one) continue;
+            ++found;
+            EXPECT_EQ(one->index, all[0].index);
+            EXPECT_EQ(one->distance2, all[0].distance2);
+            const auto first =
+                std::find_if(all.begin(), all.end(), [&](const Neighbour& n) { return red(map[n.index]); });
+            const auto accepted = map.nearest_accepted(q.region, q.max_radius, red);
+            ASSERT_EQ(accepted.has_value(), first != all.end());
+            if (accepted) {
+                EXPECT_EQ(accepted->index, first->index);
+            }
+        }
+        EXPECT_GT(found, 150);
+        EXPECT_LT(found, 300);
+    }
+}
+
 TEST(PhotonMap, KeepsEveryPhotonAndReordersThem) {
     std::vector<Photon> before = cloud(5000);
     const PhotonMap map(before);

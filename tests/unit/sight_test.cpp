@@ -84,5 +84,29 @@ TEST(Sight, TakesNoAnswerFromBeyondAWall) {
     }
 }
 
+TEST(Sight, TakesNoAnswerFromBeyondAWallCloseBy) {
+    // Dense places on both sides of a wall that stands in the regions of all of them. The nearest place is often one of
+    // the other side, at a small part of its region's radius.
+    const auto scene = floor_with_wall(0.5f);
+    const SurfacePatches patches(scene->shapes());
+    Rng rng = make_rng(8);
+    const Rectangle dim{{0.5f, 0, 0}, {0, 0, 1}, {0.5f, 0, 0}}, bright{{0, 0, 0}, {0, 0, 1}, {0.5f, 0, 0}};
+    std::vector<Photon> places = throw_photons(dim, 4000, rng), carriers = throw_photons(dim, 500, rng);
+    throw_photons(bright, 4000, rng, places);
+    throw_photons(bright, 50'000, rng, carriers);
+    const PhotonMap scouts(std::move(places)), map_of_carriers(std::move(carriers));
+    const IrradianceMap map(scouts, map_of_carriers,
+                            {.k = 1000, .max_radius = 0.2f, .patches = &patches, .scene = scene.get()}, {});
+    int asked = 0, foreign = 0;
+    for (float x = 0.5005f; x < 0.53f; x += 0.001f)
+        for (float z = 0.11f; z < 0.9f; z += 0.02f) {
+            const auto answer = map.irradiance({x, 0, z}, kUp);
+            ++asked;
+            foreign += answer.known && scouts[answer.place].position().x < 0.5f ? 1 : 0;
+        }
+    EXPECT_GT(asked, 1000);
+    EXPECT_EQ(foreign, 0);
+}
+
 } // namespace
 } // namespace keyhole
