@@ -1,54 +1,73 @@
 #include "photonmap/kd_tree.h"
 
-#include <algorithm>
-#include <cmath>
+#include <nanoflann.hpp>
 
 namespace keyhole {
 namespace {
 
-struct Extent {
-    Vec3 lower, upper;
+/// The interface that nanoflann reads points through.
+struct Points {
+    std::span<const Photon> photons;
 
-    explicit Extent(std::span<const Photon> photons)
-        : lower(photons.front().position()), upper(photons.front().position()) {
-        for (const Photon& photon : photons) {
-            const Vec3 p = photon.position();
-            for (int k = 0; k < 3; ++k) {
-                lower[k] = std::min(lower[k], p[k]);
-                upper[k] = std::max(upper[k], p[k]);
-            }
-        }
-    }
-    int widest() const {
-        const Vec3 d = upper - lower;
-        return d.x >= d.y && d.x >= d.z ? 0 : d.y >= d.z ? 1 : 2;
-    }
+    std::size_t kdtree_get_point_count() const { return photons.size(); }
+    float kdtree_get_pt(std::size_t i, std::size_t axis) const { return photons[i].position()[static_cast<int>(axis)]; }
+    template <class Box> bool kdtree_get_bbox(Box& /*box*/) const { return false; }
 };
+
+using Built = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Points, float, std::uint32_t>,
+                                                  Points, 3, std::uint32_t>;
+
+/// Brings photons into the order of the tree's leaves, in place: following the cycles of the permutation, since a
+/// second array would double the memory of a map.
+void permute(std::span<Photon> photons, std::vector<std::uint32_t>& order) {
+    for (std::uint32_t start = 0; start < order.size(); ++start) {
+        if (order[start] == start) continue;
+        const Photon first = photons[start];
+        std::uint32_t to = start;
+        while (order[to] != start) {
+            const std::uint32_t from = order[to];
+            photons[to] = photons[from];
+            order[to] = to;
+            to = from;
+        }
+        photons[to] = first;
+        order[to] = to;
+    }
+}
+
+std::size_t count_nodes(const Built::Node& node) {
+    return node.child1 == nullptr ? 1 : 1 + count_nodes(*node.child1) + count_nodes(*node.child2);
+}
 
 } // namespace
 
-KdTree::KdTree(std::span<Photon> photons, std::uint32_t begin, std::uint32_t end, std::uint32_t leaf)
-    : begin_(begin), end_(end) {
+KdTree::KdTree(std::span<Photon> photons, std::uint32_t begin, std::uint32_t end, std::uint32_t leaf) {
     if (begin == end) return;
-    std::uint32_t leaves = 1;
-    while ((end - begin + leaves - 1) / leaves > leaf) leaves *= 2;
-    nodes_.resize(leaves - 1);
-    const Extent all(photons.subspan(begin, end - begin));
-    lower_ = all.lower;
-    upper_ = all.upper;
-    build(photons, {0, begin, end});
+    const Points own{photons.subspan(begin, end - begin)};
+    Built built(3, own, nanoflann::KDTreeSingleIndexAdaptorParams(leaf));
+    permute(photons.subspan(begin, end - begin), built.vAcc);
+    nodes_.reserve(count_nodes(*built.root_node));
+    append(*built.root_node, begin);
+    for (int k = 0; k < 3; ++k) {
+        const auto& side = built.root_bbox[static_cast<std::size_t>(k)];
+        lower_[k] = side.low;
+        upper_[k] = side.high;
+    }
 }
 
-void KdTree::build(std::span<Photon> photons, const Place& at) {
-    if (at.node >= nodes_.size()) return;
-    const std::span<Photon> here = photons.subspan(at.begin, at.end - at.begin);
-    const int axis = Extent(here).widest();
-    const auto middle = here.begin() + static_cast<std::ptrdiff_t>(at.lower().end - at.begin);
-    std::nth_element(here.begin(), middle, here.end(),
-                     [axis](const Photon& a, const Photon& b) { return a.position()[axis] < b.position()[axis]; });
-    nodes_[at.node] = {middle->position()[axis], static_cast<std::uint8_t>(axis)};
-    build(photons, at.lower());
-    build(photons, at.upper());
+template <class BuiltNode> void KdTree::append(const BuiltNode& node, std::uint32_t begin) {
+    if (node.child1 == nullptr) {
+        const auto& range = node.node_type.lr;
+        nodes_.push_back(Node::leaf(begin + static_cast<std::uint32_t>(range.left),
+                                    begin + static_cast<std::uint32_t>(range.right)));
+        return;
+    }
+    const auto& split = node.node_type.sub;
+    const std::size_t here = nodes_.size();
+    nodes_.push_back(Node::inner(static_cast<std::uint32_t>(split.divfeat), split.divlow, split.divhigh));
+    append(*node.child1, begin);
+    nodes_[here].set_upper(static_cast<std::uint32_t>(nodes_.size()));
+    append(*node.child2, begin);
 }
 
 } // namespace keyhole

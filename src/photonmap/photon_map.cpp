@@ -11,7 +11,7 @@ namespace keyhole {
 namespace {
 
 /// Photons in a leaf: many where many are wanted at a time, few where one is.
-constexpr std::uint32_t kLeaf = 32, kSmallLeaf = 8;
+constexpr std::uint32_t leaf_size(PhotonMap::Wanted wanted) { return wanted == PhotonMap::Wanted::many ? 32 : 8; }
 
 /// Whether normals of the facet can be accepted by a region of normal `n`. A facet's normals are up to 54.8 degrees
 /// from its axis, and accepted ones up to 25.9 degrees from n.
@@ -150,7 +150,7 @@ struct PhotonMap::Index {
 };
 
 PhotonMap::PhotonMap(std::vector<Photon> photons, Wanted wanted)
-    : index_(std::make_unique<Index>(std::move(photons), wanted == Wanted::many ? kLeaf : kSmallLeaf)) {}
+    : index_(std::make_unique<Index>(std::move(photons), leaf_size(wanted))) {}
 PhotonMap::~PhotonMap() = default;
 PhotonMap::PhotonMap(PhotonMap&&) noexcept = default;
 PhotonMap& PhotonMap::operator=(PhotonMap&&) noexcept = default;
@@ -163,7 +163,7 @@ std::size_t PhotonMap::bytes() const {
     return sum;
 }
 
-double PhotonMap::index_bytes_per_photon() { return KdTree::bytes_per_photon(kSmallLeaf); }
+double PhotonMap::index_bytes_per_photon(Wanted wanted) { return KdTree::bytes_per_photon(leaf_size(wanted)); }
 
 std::optional<Neighbour> PhotonMap::nearest_one(const SurfaceRegion& region, float max_radius) const {
     return index_->nearest_one(region, max_radius, [](const Photon&) { return true; });

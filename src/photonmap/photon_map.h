@@ -70,8 +70,8 @@ class PhotonMap {
     const Photon& operator[](std::uint32_t i) const { return photons()[i]; }
     /// Memory of photons and index [bytes].
     std::size_t bytes() const;
-    /// Of the index, at most, where there are many photons [bytes].
-    static double index_bytes_per_photon();
+    /// Of the index, where there are many photons [bytes].
+    static double index_bytes_per_photon(Wanted wanted);
 
   private:
     /// Valid until the next call of the same thread.

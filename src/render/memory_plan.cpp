@@ -11,9 +11,12 @@ namespace {
 
 // Bytes.
 constexpr double kFixed = 64 * 1024; // what small maps round up
-const double kIndexed = sizeof(Photon) + PhotonMap::index_bytes_per_photon();
+const double kIndexed = sizeof(Photon) + PhotonMap::index_bytes_per_photon(PhotonMap::Wanted::many);
+const double kScout = sizeof(Photon) + PhotonMap::index_bytes_per_photon(PhotonMap::Wanted::one);
 constexpr double kEstimate = IrradianceMap::bytes_per_place(); // what each scout of a map adds
-const double kInStageThree = kIndexed + (kEstimate + Sites::bytes_per_place()) / kScoutEvery;
+const double kInStageThree =
+    ((kScoutEvery - 1) * kIndexed + kScout + kEstimate + Sites::bytes_per_place()) / kScoutEvery;
+constexpr double kList = sizeof(std::uint32_t); // while an index is built; later places are as large
 constexpr double kInStageTwo = PhotonStore::bytes_per_photon() * 1.0625; // buffers on their way to the stores
 
 } // namespace
@@ -26,9 +29,9 @@ MemoryPlan plan_memory(const Settings& settings, ImportanceUse use, int maps) {
     double importons = 0;
     if (use == ImportanceUse::beside) importons = (memory - photons * kInStageTwo) / (kIndexed * maps);
     // All importons, and the index and the places of one map; later the places of all, beside the stores.
-    const double places = (kIndexed + kEstimate) / kScoutEvery;
+    const double places = (kScout + kEstimate) / kScoutEvery;
     if (use == ImportanceUse::guide)
-        importons = std::min(memory / (sizeof(Photon) * maps + PhotonMap::index_bytes_per_photon() + places),
+        importons = std::min(memory / (sizeof(Photon) * (maps - 1) + kIndexed + kList + places),
                              (memory - photons * kInStageTwo) / (places * maps));
     return {static_cast<std::size_t>(photons),
             std::clamp<std::int64_t>(static_cast<std::int64_t>(importons), 1, settings.importons)};

@@ -30,7 +30,7 @@ TEST(StageOneError, DoesNotPullTheMean) {
     const StageOne truth = run_stage_one(*scene, {.samples = 400'000, .seed = 99}, {});
     RunningStats means;
     for (std::uint64_t seed = 1; seed <= 100; ++seed)
-        means.add(run_stage_one(*scene, {.samples = 1'000, .seed = seed, .error = 0.1}, {}).brightness.mean());
+        means.add(run_stage_one(*scene, {.samples = 1'000, .error = 0.1, .seed = seed}, {}).brightness.mean());
     EXPECT_NEAR(means.mean(), truth.brightness.mean(),
                 4 * std::hypot(means.standard_error(), truth.brightness.standard_error()));
 }

@@ -123,13 +123,13 @@ TEST(PhotonMap, DecidesTiesByIndex) {
     }
 }
 
-TEST(PhotonMap, StaysBelow25BytesAPhotonWithItsIndex) {
+TEST(PhotonMap, StaysBelow32BytesAPhotonWithItsIndex) {
     constexpr int n = 100'000;
     Rng rng = make_rng(3);
     std::vector<Photon> photons;
     photons.reserve(n);
     throw_photons(kUnitSquare, n, rng, photons);
-    EXPECT_LE(PhotonMap(std::move(photons)).bytes(), 25u * n);
+    EXPECT_LE(PhotonMap(std::move(photons)).bytes(), 32u * n);
 }
 
 TEST(PhotonMap, TakesManyPhotonsOnOneSpotAndNone) {
