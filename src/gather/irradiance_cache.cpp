@@ -6,9 +6,6 @@
 namespace keyhole {
 namespace {
 
-/// How many times its radius a record is used. Records stand about a radius apart, so that several have a say
-/// everywhere: their noise averages out, and what first order leaves out on one side it has too much of on the other.
-constexpr float kOverlap = 2;
 /// Share of a record's radius below which that of another one tells of something that the first doesn't see.
 constexpr float kMuchFiner = 0.6f;
 /// Records whose normals differ by more than this (1 - cos) have no say: about 20 degrees.
@@ -110,7 +107,7 @@ void IrradianceCache::update_radius(Stored& r) const {
     const float radius = error_ * r.distance;
     r.radius = std::clamp(radius, r.min_radius, r.max_radius);
     // Not so where the lower bound decides: things are smaller there than the bound is.
-    r.reach = std::clamp(kOverlap * radius, r.min_radius, kOverlap * r.max_radius);
+    r.reach = std::clamp(overlap_ * radius, r.min_radius, overlap_ * r.max_radius);
     r.reach = std::min(r.reach, std::max(r.radius, r.border));
 }
 

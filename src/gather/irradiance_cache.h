@@ -24,8 +24,10 @@ struct IrradianceRecord {
 /// the same answers.
 class IrradianceCache {
   public:
-    /// `error` is the share of the distance to surrounding surfaces over which a record is used (Ward's a).
-    explicit IrradianceCache(float error) : error_(error) {}
+    /// Around a record there is no need of another one within `error` times its distance to surrounding surfaces
+    /// (Ward's a). It is used `overlap` times as far, at least 1: records stand about a radius apart, so that several
+    /// have a say everywhere and their noise averages out.
+    explicit IrradianceCache(float error, float overlap = 2) : error_(error), overlap_(overlap) {}
 
     /// Clamps the record's radius by its neighbours' and theirs by its: what one of them sees close by is close to the
     /// others, too, even where their rays missed it.
@@ -65,7 +67,7 @@ class IrradianceCache {
     /// Calls visit(record) for all whose reach may include `position`.
     template <class Visit> void visit_near(const Vec3& position, Visit&& visit) const;
 
-    float error_;
+    float error_, overlap_;
     std::vector<Stored> records_;
     // A hashed grid for each power of two of the radius: a record stands in all cells that its reach overlaps.
     std::unordered_map<std::uint64_t, Cell> cells_;

@@ -34,7 +34,13 @@ void PathDepositor::deposit(const Path& path, double weight) {
             const auto i = static_cast<std::size_t>(at.vertex);
             Rgb flux(1.0);
             for (std::size_t k = 0; k < i; ++k) flux *= path.x[k].value / luminance(path.x[k].value);
-            recent_ = {at.kind, path.x[i], direction(path.x[i].point, path.x[i - 1].point), flux, at.vertex};
+            recent_ = {.kind = at.kind,
+                       .vertex = path.x[i],
+                       .to_light = direction(path.x[i].point, path.x[i - 1].point),
+                       .flux = flux,
+                       .scatterings = at.vertex};
+            if (at.kind == PhotonKind::caustic && one_way())
+                recent_.seen = path.x[i].value * (path.x[i].pdf_from_eye * options_.set.weight_at(path.image));
         }
     }
     recent_.weight += weight;
@@ -65,7 +71,7 @@ void PathDepositor::store(Pending& pending) {
 }
 
 Rgb PathDepositor::power_of(const Pending& pending, bool global, double given, double weight) {
-    const Rgb power = global ? global_power(pending, given, weight) : marginal_power(pending, *options_.caustic).power;
+    const Rgb power = global ? global_power(pending, given, weight) : caustic_power(pending);
     if (is_black(power)) {
         tally_.lost += weight;
     } else if (global) {
@@ -79,6 +85,11 @@ PathDepositor::Marginal PathDepositor::marginal_power(const Pending& pending, co
     const auto e = map.importance(pending.vertex.point, pending.vertex.bsdf, pending.to_light);
     const double visible = luminance(pending.flux * e.value);
     return {visible > 0 ? pending.flux / visible : Rgb(0.0), e.trusted(pending.vertex.bsdf)};
+}
+
+Rgb PathDepositor::caustic_power(const Pending& pending) const {
+    const double visible = luminance(pending.flux * pending.seen);
+    return visible > 0 ? pending.flux / visible : marginal_power(pending, *options_.caustic).power;
 }
 
 Rgb PathDepositor::global_power(const Pending& pending, double given, double weight) {

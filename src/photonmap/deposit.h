@@ -19,7 +19,8 @@ enum class PowerRule {
 };
 
 /// What the power of photons is computed from. The caustic map's photons are `marginal` under every rule: from d1 there
-/// is one edge to the eye and nothing to draw.
+/// is one edge to the eye and nothing to draw. Where no mirror or lens gives the eye a second way to d1, that edge's
+/// density is E, and no map is asked.
 struct DepositOptions {
     const ImportanceMap* global = nullptr;  ///< at d2; null under `reciprocal`
     const ImportanceMap* caustic = nullptr; ///< at d1
@@ -66,12 +67,16 @@ class PathDepositor {
     const Tally& tally() const { return tally_; }
 
   private:
+    /// Whether the eye has but one way to each place that it sees.
+    bool one_way() const { return !options_.scene->traits().delta && !options_.scene->camera().has_lens(); }
+
     /// A stored sub-path that may still gain weight.
     struct Pending {
         PhotonKind kind = PhotonKind::none;
         Vertex vertex;
         Vec3 to_light;
         Rgb flux;            ///< f_map up to its scale, which cancels
+        Rgb seen{0.0};       ///< E where the eye has but this way here; else 0
         int scatterings = 0; ///< of the stored sub-path, its end included
         double weight = 0;
         double literal = 0; ///< sum of weight times literal_factor()
@@ -88,6 +93,7 @@ class PathDepositor {
     // Power for weight 1; black where it is lost. `given` is the weight that the sums of `pending` are over.
     Rgb power_of(const Pending& pending, bool global, double given, double weight);
     Rgb global_power(const Pending& pending, double given, double weight);
+    Rgb caustic_power(const Pending& pending) const;
     static Marginal marginal_power(const Pending& pending, const ImportanceMap& map);
     Rgb reciprocal_power(const Pending& pending, double given);
     Rgb literal_power(const Pending& pending, double given, double weight);
