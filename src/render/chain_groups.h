@@ -19,11 +19,6 @@ inline std::int64_t chain_groups(const Settings& settings) {
                                     std::max<std::int64_t>(1, settings.chains / kChains));
 }
 
-/// Steps of each chain of a pass.
-inline std::int64_t steps_of_chains(const Settings& settings, std::int64_t chains) {
-    return std::max<std::int64_t>(1, settings.mutations / std::max<std::int64_t>(1, chains));
-}
-
 /// Chains of group `group` of so many: one at least, where there are any.
 inline Range chains_of_group(std::size_t chains, std::int64_t groups, std::int64_t group) {
     const auto n = static_cast<std::int64_t>(chains);

@@ -81,7 +81,8 @@ bool draw_chains(const Scene& scene, const Settings& settings, const UserPaths& 
 
     // In rounds, so that a stop finds all chains equally long.
     constexpr std::int64_t kRound = 64;
-    const std::int64_t per_chain = steps_of_chains(settings, static_cast<std::int64_t>(start.seeds.size()));
+    const std::int64_t per_chain =
+        std::max<std::int64_t>(1, settings.mutations / static_cast<std::int64_t>(start.seeds.size()));
     context.begin("chains", static_cast<std::uint64_t>(per_chain * chains.size()), "mutations");
     while (chains.steps() < per_chain && !(context.stopped() && chains.steps() > 0))
         chains.advance(std::min(std::clamp<std::int64_t>(per_chain / 32, 1, kRound), per_chain - chains.steps()),

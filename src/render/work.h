@@ -21,11 +21,11 @@ namespace keyhole {
 ///     result.picture = work.finish(stats);
 class Work {
   public:
-    /// @param units_per_pass units that settings.passes counts as one.
-    /// @param start what a process does before its first unit of a pass. Where that costs more than a unit, processes
-    /// take whole passes, as long as there are enough for all of them.
-    /// @throws InputError for a `share.done` that isn't of this render.
+    /// What a process does before its first unit of a pass. Where that costs more than a unit, processes take whole
+    /// passes, as long as there are enough for all of them.
     enum class PassStart { free, costly };
+    /// @param units_per_pass units that settings.passes counts as one.
+    /// @throws InputError for a `share.done` that isn't of this render.
     Work(const Settings& settings, const ImageWindow& window, Exposure::Parts parts, const Share& share,
          std::int64_t units_per_pass, PassStart start);
 

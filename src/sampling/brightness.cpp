@@ -169,11 +169,16 @@ double StageOne::brightness_of(Range some) const {
 }
 
 StageOne run_stage_one(const Scene& scene, const StageOneSettings& settings, const RunContext& context) {
-    const Trial bidirectional = try_technique(scene, settings, Technique::bidirectional);
     StageOne stage;
     stage.technique = Technique::bidirectional;
-    stage.wanted = enough_samples(settings, bidirectional.brightness);
-    if (!needs_light_paths(scene, settings)) {
+    stage.wanted = settings.samples;
+    const bool choice = !needs_light_paths(scene, settings);
+    Trial bidirectional{};
+    if (choice || settings.error > 0) { // else there is nothing to find out
+        bidirectional = try_technique(scene, settings, Technique::bidirectional);
+        stage.wanted = enough_samples(settings, bidirectional.brightness);
+    }
+    if (choice) {
         const Trial path = try_technique(scene, settings, Technique::path);
         stage.technique = choose_technique(path, bidirectional);
         if (stage.technique == Technique::path) stage.wanted = enough_samples(settings, path.brightness);
