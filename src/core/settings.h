@@ -68,6 +68,7 @@ struct Settings {
     double p_caustic_perturbation = 0.2;
     double p_photon_map = 0.2;
     double p_user_path = 0.05;
+    double p_guided_path = 0.3;
 };
 
 /// One line of the table. `Visitor` is called as visitor(key, member, minimum, maximum, help) for numbers,
@@ -132,6 +133,8 @@ template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
     visit("p_photon_map", s.p_photon_map, 0.0, 1.0, "relative frequency of photon map perturbations");
     visit("p_user_path", s.p_user_path, 0.0, 1.0,
           "relative frequency of proposals along user paths, where there are any");
+    visit("p_guided_path", s.p_guided_path, 0.0, 1.0,
+          "relative frequency of whole new paths along user paths, where there are any");
 }
 
 } // namespace keyhole

@@ -16,15 +16,27 @@ class GuidedPaths {
     /// `set`: the paths to be found, of at most `max_scatterings`. The scene and the set's reach must outlive it.
     GuidedPaths(const Scene& scene, const UserPaths& paths, PathSet set, int max_scatterings);
 
-    /// Density with which sample() makes the measured path y, by all user paths together, in the convention of
+    /// Number density of the measured path y among those of sample(), by all user paths together, in the convention of
     /// measure.h.
     double density(const Path& y) const;
 
-    /// One sample: a sub-path along one of the user paths, and one from the eye through window point `image`; every
-    /// join of the two that carries light is told to `found`, measured. Each such path has density().
+    /// One sample: some pairs of a sub-path along one of the user paths and one from the eye through window point
+    /// `image`; every join of the two that carries light is told to `found`, measured. Such paths have density()
+    /// together.
     void sample(const Vec2& image, Rng& rng, const std::function<void(const Path&)>& found) const;
 
+    /// A single path: sub-paths of lengths that are drawn beforehand, joined at their ends. None where they carry no
+    /// light, for the reason in `why`.
+    std::optional<Path> draw(Rng& rng, Failure& why) const;
+    /// Density with which draw() makes y, in the convention of measure.h.
+    double draw_density(const Path& y) const;
+
   private:
+    void sample_pair(const Vec2& image, Rng& rng, const std::function<void(const Path&)>& found) const;
+    /// Number density of y among the joints of a pair.
+    double expected_joints(const Path& y) const;
+    std::optional<Path> join_ends(const SubPath& light, const SubPath& eye, Vec2 image, Failure& why) const;
+
     const Scene* scene_;
     PathSet set_;
     int max_scatterings_;

@@ -5,6 +5,9 @@
 namespace keyhole {
 namespace {
 
+/// How often a portal is crossed by a line drawn there.
+constexpr double kByLine = 0.5;
+
 /// Unit direction from a vertex towards a user's point.
 Vec3 axis(const Vertex& from, const UserVertex& to) { return (to.p - from.point.p).normalized(); }
 
@@ -16,6 +19,8 @@ GuidedSubPath::GuidedSubPath(const Scene& scene, const UserPath& path) : scene_(
         events_.x.push_back({});
         events_.x.back().event = v.event;
     }
+    for (int i = 2; i < vertices() && crossed_ == 0; ++i)
+        if (user_vertex(i).portal && user_vertex(i - 1).bounce && !is_specular(user_vertex(i).event)) crossed_ = i;
 }
 
 /// Towards user vertex i.
@@ -37,10 +42,49 @@ bool GuidedSubPath::bounce(SubPath& light, Rng& rng, Failure& why) const {
     return light.back().bsdf.traits().finite || (why = Failure::signature, false);
 }
 
+bool GuidedSubPath::cross(SubPath& light, Rng& rng, Failure& why) const {
+    const Portal& portal = *user_vertex(crossed_).portal;
+    const SurfacePoint &lamp = light[0].point, &before = light.back().point;
+    const Portal::Line line = portal.sample_line(lamp.p, rng);
+    SurfacePoint middle;
+    middle.p = line.p;
+    middle.site = Site::point;
+    const auto scatters = [&](const std::optional<Vertex>& v) {
+        if (!v) return why = Failure::no_hit, false;
+        return (v->point.site == Site::surface && v->bsdf.traits().finite) || (why = Failure::signature, false);
+    };
+    const auto near = next_vertex(*scene_, middle, -line.w);
+    if (!scatters(near)) return false;
+    // From the surface and not from the middle: there may be a pane.
+    const auto far = next_vertex(*scene_, *near, direction(near->point, middle));
+    if (!scatters(far)) return false;
+    if (!(portal.line_density(lamp.p, near->point.p, far->point.p) > 0)) return why = Failure::signature, false;
+    if (!scene_->visible(before, near->point)) return why = Failure::blocked, false;
+    for (const auto& v : {near, far}) {
+        light.push_back(*v);
+        light.back().event = Event::finite;
+    }
+    return true;
+}
+
+/// Of the line's two vertices, per area each.
+double GuidedSubPath::cross_density(const Path& y) const {
+    const auto far = static_cast<std::size_t>(crossed_);
+    const SurfacePoint &b = y.x[far - 1].point, &c = y.x[far].point;
+    const double line = user_vertex(crossed_).portal->line_density(y.x[0].point.p, b.p, c.p);
+    return line > 0 ? line * geometry_term(b, c) : 0.0;
+}
+
 bool GuidedSubPath::trace(SubPath& light, Rng& rng, Failure& why) const {
     light.push_back(make_vertex(path_.patch.sample(rng)));
     const int last = vertices() - 1;
+    const bool by_line = crossed_ > 0 && rng.next() < kByLine;
     for (int i = 0; i < last;) {
+        if (by_line && i + 2 == crossed_) {
+            if (!cross(light, rng, why)) return false;
+            i = crossed_;
+            continue;
+        }
         const int next = next_finite(events_, i, +1);
         if (user_vertex(i + 1).bounce) {
             if (!bounce(light, rng, why)) return false;
@@ -61,8 +105,9 @@ double GuidedSubPath::density(const Path& y) const {
         const auto k = static_cast<std::size_t>(i);
         if (y.x[k].event != events_.x[k].event) return 0;
     }
-    double density = path_.patch.pdf(y.x[0].point);
-    for (int i = 0; i < last && density > 0;) {
+    double density = path_.patch.pdf(y.x[0].point), by_line = 0;
+    for (int i = 0; i < last && density + by_line > 0;) {
+        if (crossed_ > 0 && i + 2 == crossed_) by_line = density * cross_density(y);
         const int next = next_finite(events_, i, +1);
         const Vertex &from = y.x[static_cast<std::size_t>(i)], &to = y.x[static_cast<std::size_t>(i) + 1];
         if (user_vertex(i + 1).bounce) {
@@ -72,6 +117,10 @@ double GuidedSubPath::density(const Path& y) const {
             density *= w > 0 ? retrace_density(y, solid_angle_to_area(w, from.point, to.point), i + 1, next) : 0.0;
         }
         i = next;
+        if (crossed_ > 0 && i == crossed_) {
+            density = std::lerp(density, by_line, kByLine);
+            by_line = 0;
+        }
     }
     return density;
 }

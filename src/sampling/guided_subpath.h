@@ -10,6 +10,10 @@ namespace keyhole {
 /// Sub-paths from the light along a user path. Each direction lies in a cone about the one from the new vertex to the
 /// user's next point, or leads through a portal, or is that of light which is emitted or scattered; specular vertices
 /// follow the user path's events. x0 lies in a patch of the emitter around the user's. The scene must outlive it.
+///
+/// Light that was scattered anywhere seldom was so where a portal is seen large, and what comes from there carries much
+/// more than the rest. So half of the sub-paths whose portal is behind a bounce cross it along lines that are drawn
+/// there, and join the bounce to the vertex before.
 class GuidedSubPath {
   public:
     GuidedSubPath(const Scene& scene, const UserPath& path);
@@ -24,13 +28,17 @@ class GuidedSubPath {
 
   private:
     const UserVertex& user_vertex(int i) const { return path_.vertices[static_cast<std::size_t>(i) - 1]; }
+    /// Adds the two vertices of a line through the portal.
+    bool cross(SubPath& light, Rng& rng, Failure& why) const;
+    double cross_density(const Path& y) const;
     bool bounce(SubPath& light, Rng& rng, Failure& why) const;
     Vec3 sample_direction(const Vertex& from, int i, Rng& rng) const;
     double direction_density(const Vertex& from, const Vec3& w, int i) const;
 
     const Scene* scene_;
     UserPath path_;
-    Path events_; ///< only the events of its vertices count; x0 and those of path_
+    int crossed_ = 0; ///< the vertex behind a portal that is behind a bounce, where there is one
+    Path events_;     ///< only the events of its vertices count; x0 and those of path_
 };
 
 } // namespace keyhole

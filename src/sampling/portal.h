@@ -3,6 +3,7 @@
 
 #include "core/rng.h"
 #include "core/vec.h"
+#include "scene/warp.h"
 
 #include <algorithm>
 #include <cmath>
@@ -41,7 +42,7 @@ class Portal {
         const View view(*this, from);
         const Imath::V3d d(w);
         const double t = d.dot(axis_), side = d.dot(across_), up = d.dot(normal_);
-        if (!(std::abs(view.up) > 1e-5 * length_ && up * view.up > 0)) return 0;
+        if (in_plane(view.up) || !(up * view.up > 0)) return 0;
         const double phi = std::atan2(side, std::abs(up));
         if (!(phi >= view.least && phi <= view.most)) return 0;
         const auto [low, high] = view.latitudes(side / std::abs(up));
@@ -49,7 +50,34 @@ class Portal {
         return 1 / ((view.most - view.least) * (high - low));
     }
 
+    /// A line through the opening.
+    struct Line {
+        Vec3 p; ///< where it crosses
+        Vec3 w; ///< unit
+    };
+    /// Uniform by area and projected solid angle: lines as light that comes evenly from everywhere has them.
+    /// `side`: of the opening, where they begin.
+    Line sample_line(const Vec3& side, SampleSource& source) const {
+        const double across = source.next(), along = source.next();
+        const Imath::V3d p = corner_ + across_ * (across * width_) + axis_ * (across * along_edge_ + along * length_);
+        const double u0 = source.next(), u1 = source.next();
+        const Frame frame(Vec3(normal_ * std::copysign(1.0, height(side))));
+        return {Vec3(p), frame.to_world(cosine_hemisphere(u0, u1))};
+    }
+    /// Density of sample_line() for the one from b to c, per area and projected solid angle [1/(m^2 sr)]: times the
+    /// geometry term of b and c it is one of the two of them, per area each. 0 where the opening is not between them,
+    /// or b not on the side of `side`.
+    double line_density(const Vec3& side, const Vec3& b, const Vec3& c) const {
+        if (!(height(side) * height(b) > 0 && height(b) * height(c) < 0 && !in_plane(height(c)))) return 0;
+        return density(b, (c - b).normalized()) > 0 ? 1 / (kPi * length_ * width_) : 0.0;
+    }
+
   private:
+    /// From a place to the opening's plane, along its normal [m].
+    double height(const Vec3& from) const { return (corner_ - Imath::V3d(from)).dot(normal_); }
+    /// So near that rounding would decide.
+    bool in_plane(double height) const { return !(std::abs(height) > 1e-5 * length_); }
+
     /// The opening from where it is seen, in the frame of its axis.
     struct View {
         const Portal& portal;

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
+
 namespace keyhole::test {
 namespace {
 
@@ -60,6 +62,62 @@ TEST(Portal, DirectionsFollowTheirDensity) {
         EXPECT_NEAR(total, 100'000, 200) << "stream " << stream - 1;
         EXPECT_GT(h.p_value(), sidak_threshold(6)) << "stream " << stream - 1;
     }
+}
+
+/// Where lines through a slit meet walls on both sides of it: counts over cells of either, against the density of the
+/// pair integrated over the other.
+TEST(Portal, LinesFollowTheirDensity) {
+    const Portal slit({0, 0, 0}, {0, 2, 0}, {0, 0.4, 0.3}); // a parallelogram in the plane x = 0
+    constexpr int n = 6, kSamples = 200'000, kInner = 24;
+    constexpr double kHalf = 4; // of the walls x = -1 and x = 1, which most lines meet
+    const Vec3 side(-0.5f, 3, 1);
+    Histogram h{std::vector<double>(n * n), {}};
+    const auto cell = [](double y, double z) -> std::optional<std::size_t> {
+        const double a = (y + kHalf) / (2 * kHalf), b = (z + kHalf) / (2 * kHalf);
+        if (!(a >= 0 && a < 1 && b >= 0 && b < 1)) return std::nullopt;
+        return static_cast<std::size_t>(a * n) * n + static_cast<std::size_t>(b * n);
+    };
+    Rng rng(1, StreamPurpose::test, 90);
+    for (int i = 0; i < kSamples; ++i) {
+        const Portal::Line line = slit.sample_line(side, rng);
+        EXPECT_GT(line.w.x, 0);
+        const auto at = [&](float x) { return line.p + line.w * (x / line.w.x); };
+        const auto near = cell(at(-1).y, at(-1).z), far = cell(at(1).y, at(1).z);
+        EXPECT_GT(slit.line_density(side, at(-1), at(1)), 0) << i;
+        if (near && far) h.observed[*near] += 1;
+    }
+    // Of the near end, the far one anywhere: integrated over the opening, through which the far wall is seen.
+    const auto density = [&](double y, double z) {
+        const Imath::V3d b(-1, y, z);
+        double sum = 0;
+        for (int i = 0; i < kInner; ++i)
+            for (int k = 0; k < kInner; ++k) {
+                const double u = (i + 0.5) / kInner, v = (k + 0.5) / kInner;
+                const Imath::V3d p(0, 2 * u + 0.4 * v, 0.3 * v),
+                    c = p * 2 - b; // the far wall is as far as the near one
+                if (!cell(c.y, c.z)) continue;
+                const double d = (c - b).length(), g = std::pow(2 / d, 2) / (d * d);
+                // An area of the opening is four times as large on the far wall, seen from b.
+                sum += slit.line_density(side, Vec3(b), Vec3(c)) * g * 4 * 2 * 0.3 / (kInner * kInner);
+            }
+        return sum;
+    };
+    const double width = 2 * kHalf / n;
+    for (int i = 0; i < n; ++i)
+        for (int k = 0; k < n; ++k)
+            h.expected.push_back(kSamples * integrate(density, -kHalf + i * width, -kHalf + (i + 1) * width,
+                                                      -kHalf + k * width, -kHalf + (k + 1) * width));
+    EXPECT_GT(h.p_value(), 1e-3);
+}
+
+TEST(Portal, NoLineEndsInItsPlaneOrOnOneSide) {
+    const Portal window({-0.5, -0.5, 0}, {1, 0, 0}, {0, 1, 0});
+    const Vec3 side(3, 0, 1);
+    EXPECT_DOUBLE_EQ(window.line_density(side, {0, 0, 1}, {0, 0, -1}), 1 / kPi);
+    EXPECT_EQ(window.line_density(side, {0, 0, -1}, {0, 0, 1}), 0); // the other way
+    EXPECT_EQ(window.line_density(side, {0, 0, 1}, {0, 0, 0.5f}), 0);
+    EXPECT_EQ(window.line_density(side, {0, 0, 1}, {0, 0, 0}), 0);
+    EXPECT_EQ(window.line_density(side, {0, 0, 1}, {3, 0, -1}), 0);
 }
 
 TEST(Portal, NothingPassesBesideItOrAwayFromIt) {

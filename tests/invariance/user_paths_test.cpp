@@ -1,5 +1,6 @@
 // User paths, with bidirectional proposals beside them and without: one step leaves the target alone, and mistakes in
 // their densities are noticed.
+#include "sampling/guided_paths.h"
 #include "sampling/proposals/edit.h"
 #include "support/invariance.h"
 #include "support/test_scenes.h"
@@ -7,17 +8,19 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 
 namespace keyhole {
 namespace {
 
-/// User paths with probability `share`, BD otherwise.
-Mixture<Path> guided(const ProposalContext& context, const UserPaths& paths, double share) {
+/// Proposals along user paths, UP or UI, with probability `share`, BD otherwise.
+Mixture<Path> guided(const ProposalContext& context, const UserPaths& paths, double Settings::*proposal, double share) {
     Settings settings;
     for (const ProposalKind& kind : proposal_kinds()) settings.*kind.weight = 0;
+    settings.p_user_path = settings.p_guided_path = 0;
     settings.p_bidirectional = 1 - share;
-    settings.p_user_path = share;
+    settings.*proposal = share;
     return make_mixture(context, settings, paths);
 }
 
@@ -28,24 +31,34 @@ std::uint64_t accepted(const Ledger& ledger, std::size_t first) {
     return n;
 }
 
-class UserPaths_LeaveTheTargetAlone : public testing::TestWithParam<std::tuple<std::size_t, double>> {};
+/// A way to follow user paths.
+struct Follow {
+    const char* name;
+    double Settings::*proposal;
+    Technique technique; ///< what the paths that it moves are drawn by
+};
+constexpr Follow kFollow[] = {{"", &Settings::p_user_path, Technique::path},
+                              {"Independent", &Settings::p_guided_path, Technique::bidirectional}};
+
+class UserPaths_LeaveTheTargetAlone : public testing::TestWithParam<std::tuple<std::size_t, double, Follow>> {};
 
 TEST_P(UserPaths_LeaveTheTargetAlone, AtShare) {
-    const auto [index, share] = GetParam();
+    const auto [index, share, follow] = GetParam();
     const auto scene = test::guided_scenes()[index].make();
     const UserPaths paths = bind_user_paths(*scene, test::guided_scenes()[index].paths(*scene));
-    const auto mixture = guided({scene.get(), PathSet::stored, 8}, paths, share);
-    const test::Invariance result = test::measure_invariance(*scene, mixture, PathSet::stored, 120'000, 23);
+    const auto mixture = guided({scene.get(), PathSet::stored, 8}, paths, follow.proposal, share);
+    const test::Invariance result =
+        test::measure_invariance(*scene, mixture, PathSet::stored, 120'000, 23, 8, follow.technique);
     EXPECT_GT(accepted(result.ledger, share < 1 ? 1 : 0), 10u) << result.report();
     EXPECT_LT(result.worst(), 4) << result.report();
 }
 
 INSTANTIATE_TEST_SUITE_P(Shares, UserPaths_LeaveTheTargetAlone,
                          testing::Combine(testing::Range<std::size_t>(0, test::guided_scenes().size()),
-                                          testing::Values(0.5, 1.0)),
+                                          testing::Values(0.5, 1.0), testing::ValuesIn(kFollow)),
                          [](const auto& info) {
                              return std::string(test::guided_scenes()[std::get<0>(info.param)].name) +
-                                    (std::get<1>(info.param) < 1 ? "_Half" : "_Alone");
+                                    (std::get<1>(info.param) < 1 ? "_Half" : "_Alone") + std::get<2>(info.param).name;
                          });
 
 /// User paths with a mistake in their densities: proposes by `right`, judges by what `density` says.
@@ -153,6 +166,17 @@ TEST_F(UserPaths_NoticeAMistake, PatchLeftOut) {
             return density > 0 ? density / paths[i].patch.pdf(y.x[0].point) : 0.0;
         },
         3);
+    EXPECT_GT(result.worst(), 4) << result.report();
+}
+
+TEST_F(UserPaths_NoticeAMistake, IndependentPathsThatAreDrawnLonger) {
+    const GuidedPaths guides(*scene, paths, context.set, context.max_scatterings);
+    Mixture<Path> mixture;
+    const auto density = [&](const Path&, const Path& y, bool) {
+        return guides.draw_density(y) * std::pow(0.9, y.vertices());
+    };
+    mixture.add(std::make_unique<Mistaken>(make_guided_path(context, paths), density), 1);
+    const auto result = test::measure_invariance(*scene, mixture, PathSet::stored, 120'000, 29);
     EXPECT_GT(result.worst(), 4) << result.report();
 }
 

@@ -1,7 +1,6 @@
 #include "support/invariance.h"
 
 #include "core/parallel.h"
-#include "sampling/path_tracer.h"
 
 #include <fmt/format.h>
 
@@ -43,23 +42,21 @@ std::array<double, kStatistics> statistics(const PathSet& set, const Path& path)
 }
 
 struct Sink {
-    const Scene& scene;
     const Mixture<Path>& mixture;
     PathSet set;
     Rng rng;
-    Vec2 image{};
     std::array<double, kStatistics> change{};
     Ledger ledger{};
     std::uint64_t paths = 0;
 
-    bool arrival(const EyeWalk&, const Rgb&, int) { return true; }
+    void arrival(const Vertex&, const Vec3&, const Rgb&, int) {}
 
-    void contribution(const EyeWalk& walk, const Vertex& x0, const Rgb& value, LightClass light) {
-        if (!in_set(light, set, walk.back().point, x0.point)) return;
-        Path x = complete_path(scene, walk, x0, image);
-        x.target = luminance(x.contribution);
+    void contribution(const Rgb& value, PhotonKind, auto&& make_path) {
         const double weight = luminance(value);
-        if (!(x.target > 0) || !(weight > 0)) return;
+        if (!(weight > 0)) return;
+        Path x = make_path();
+        x.target = luminance(x.contribution);
+        if (!(x.target > 0)) return;
         ++paths;
         const auto before = statistics(set, x);
         std::array<double, kStatistics> step{}; // expected values after it, less those before
@@ -79,7 +76,7 @@ struct Sink {
 } // namespace
 
 Invariance measure_invariance(const Scene& scene, const Mixture<Path>& mixture, PathSet set, std::int64_t samples,
-                              std::uint64_t seed, int max_scatterings) {
+                              std::uint64_t seed, int max_scatterings, Technique technique) {
     constexpr std::int64_t blocks = 64;
     std::vector<Invariance> parts(blocks);
     parallel_for(blocks, [&](std::int64_t b) {
@@ -88,9 +85,9 @@ Invariance measure_invariance(const Scene& scene, const Mixture<Path>& mixture, 
         const Range range = split(samples, blocks, b);
         for (std::int64_t i = range.begin; i < range.end; ++i) {
             Rng rng(seed, StreamPurpose::test, static_cast<std::uint64_t>(i));
-            Sink sink{scene, mixture, set, Rng(seed + 1, StreamPurpose::test, static_cast<std::uint64_t>(i))};
-            sink.image = Vec2(static_cast<float>(rng.next()), static_cast<float>(rng.next()));
-            trace_path(scene, sink.image, max_scatterings, rng, sink);
+            Sink sink{mixture, set, Rng(seed + 1, StreamPurpose::test, static_cast<std::uint64_t>(i))};
+            const Vec2 image(static_cast<float>(rng.next()), static_cast<float>(rng.next()));
+            trace_independent(technique, scene, image, max_scatterings, set, rng, sink);
             for (std::size_t k = 0; k < kStatistics; ++k) part.lines[k].change.add(sink.change[k]);
             merge(part.ledger, sink.ledger);
             part.paths += sink.paths;

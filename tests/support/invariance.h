@@ -3,6 +3,7 @@
 
 #include "core/statistics.h"
 #include "sampling/chain.h"
+#include "sampling/independent_paths.h"
 #include "sampling/proposals/registry.h"
 #include "scene/scene.h"
 
@@ -26,10 +27,10 @@ struct Invariance {
     std::string report() const;
 };
 
-/// Draws `samples` path-traced samples of `scene`; each of their paths, weighted with its contribution, is an exact
-/// draw from the target. Applies one step of `mixture` to each and compares statistics before and after (expected
-/// values).
+/// Draws `samples` independent samples of `scene`; each of their paths, weighted with its contribution, is an exact
+/// draw from the target. Path tracing alone has too heavy a tail for proposals that find caustics more readily. Applies
+/// one step of `mixture` to each and compares statistics before and after (expected values).
 Invariance measure_invariance(const Scene& scene, const Mixture<Path>& mixture, PathSet set, std::int64_t samples,
-                              std::uint64_t seed, int max_scatterings = 8);
+                              std::uint64_t seed, int max_scatterings = 8, Technique technique = Technique::path);
 
 } // namespace keyhole::test

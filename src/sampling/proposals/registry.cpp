@@ -17,7 +17,7 @@ constexpr ProposalKind kKinds[] = {
 std::span<const ProposalKind> proposal_kinds() { return kKinds; }
 
 Mixture<Path> make_mixture(const ProposalContext& context, const Settings& settings, const UserPaths& paths) {
-    constexpr int kFamily = 0; // of BD and UP, which replace the same vertices
+    constexpr int kFamily = 0; // of BD, UP and UI, which replace the same vertices
     Mixture<Path> mixture;
     for (const ProposalKind& kind : kKinds)
         if (kind.wanted(*context.scene, settings))
@@ -27,6 +27,7 @@ Mixture<Path> make_mixture(const ProposalContext& context, const Settings& setti
     for (const UserPath& path : paths) total += path.weight;
     for (const UserPath& path : paths)
         mixture.add(make_user_path(context, path), settings.p_user_path * path.weight / total, kFamily);
+    if (!paths.empty()) mixture.add(make_guided_path(context, paths), settings.p_guided_path, kFamily);
     return mixture;
 }
 

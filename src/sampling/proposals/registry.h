@@ -27,6 +27,7 @@ PathProposal make_multi_chain_perturbation(const ProposalContext& context);
 PathProposal make_caustic_perturbation(const ProposalContext& context);
 PathProposal make_photon_map_perturbation(const ProposalContext& context);
 PathProposal make_user_path(const ProposalContext& context, const UserPath& path);
+PathProposal make_guided_path(const ProposalContext& context, const UserPaths& paths);
 
 /// One line of the table.
 struct ProposalKind {
@@ -44,7 +45,7 @@ struct ProposalKind {
 std::span<const ProposalKind> proposal_kinds();
 
 /// The mixture that `settings` ask for. Each of `paths` is a kind of its own, and they share p_user_path by their
-/// weights; together with BD they are one family.
+/// weights; together with BD and UI, which draws from all of them, they are one family.
 Mixture<Path> make_mixture(const ProposalContext& context, const Settings& settings, const UserPaths& paths = {});
 
 /// Mixtures for a set of chains.

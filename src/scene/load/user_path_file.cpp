@@ -125,7 +125,7 @@ std::vector<UserPathSpec> read_paths(const YamlNode& node, std::size_t number, c
     path.tolerance = read_length(map, "tolerance", defaults.tolerance);
     if (!list.bounces) return {path};
     // As the light grows weaker from one to the next.
-    constexpr double kNext = 0.7;
+    constexpr double kNext = 0.85;
     const Bounces range = *list.bounces;
     const double total = (1 - std::pow(kNext, range.most - range.least + 1)) / (1 - kNext);
     std::vector<UserPathSpec> paths;
