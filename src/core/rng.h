@@ -55,6 +55,7 @@ enum class StreamPurpose : std::uint64_t {
     reach_trial,
     reach_light,
     image_weight,
+    proposal_tuning,
 };
 
 /// PCG32 (O'Neill 2014). One for each chain and each pixel, never for each thread, so that a picture does not

@@ -63,10 +63,12 @@ double affordable(const std::vector<Experience>& past, double seconds) {
         const double times = seconds / last.seconds;
         return last.effort * (times > 10 ? 3 : 2 * times - 1);
     }
+    // Time grows as a power of effort, less than in proportion: parts come once, others grow more slowly. A prediction
+    // that is too bold costs little, for chains and light paths end where what follows them needs the time.
     const Experience& before = past[past.size() - 2];
-    const double slope =
-        std::max(0.3 * last.seconds / last.effort, (last.seconds - before.seconds) / (last.effort - before.effort));
-    return std::min(30 * last.effort, last.effort + (seconds - last.seconds) / slope);
+    const double power =
+        std::clamp(std::log(last.seconds / before.seconds) / std::log(last.effort / before.effort), 0.65, 1.0);
+    return last.effort * std::min(30.0, std::pow(seconds / last.seconds, 1 / power));
 }
 
 /// What all stages but the choice of a method, which is made once, took [s].
@@ -106,6 +108,32 @@ void add_stages(StageStats& sum, const RenderStats& stats) {
     }
 }
 
+/// CPU time of some stages [s].
+double seconds_of(const RenderStats& stats, std::initializer_list<std::string_view> names) {
+    double seconds = 0;
+    for (const StageStats& stage : stats.stages)
+        if (std::find(names.begin(), names.end(), stage.name) != names.end()) seconds += stage.cpu_seconds;
+    return seconds;
+}
+
+/// The split with the least error for the time of a render with `balance`: squared errors fall as the reciprocal of
+/// time, so the best times are as errors times the roots of times. Nothing changes where an error isn't known.
+StageBalance rebalance(const StageBalance& balance, const RenderStats& stats) {
+    const auto chains = stats.values.find("chains, error of block brightness");
+    const double one = seconds_of(stats, {"brightness"}), two = seconds_of(stats, {"photons", "chains"});
+    if (chains == stats.values.end() || !(chains->second > 0 && stats.brightness > 0 && one > 0 && two > 0))
+        return balance;
+    const double to_one = stats.brightness_error / stats.brightness * std::sqrt(one);
+    const double to_two = chains->second * std::sqrt(two);
+    const double share = to_one / (to_one + to_two);
+    // Not too much at a time: what short renders say of their errors is vague.
+    const auto scaled = [&](double factor, double times) {
+        return std::clamp(factor * std::clamp(times, 0.25, 4.0), 0.1, 8.0);
+    };
+    return {scaled(balance.brightness, share * (one + two) / one),
+            scaled(balance.chains, (1 - share) * (one + two) / two)};
+}
+
 bool has_empty_pixels(const RenderStats& stats) {
     const auto empty = stats.values.find("empty pixels");
     return empty != stats.values.end() && empty->second > 0;
@@ -113,7 +141,8 @@ bool has_empty_pixels(const RenderStats& stats) {
 
 } // namespace
 
-Settings with_effort(const Settings& settings, double effort, std::int64_t pixels, const std::set<std::string>& given) {
+Settings with_effort(const Settings& settings, double effort, std::int64_t pixels, const std::set<std::string>& given,
+                     const StageBalance& balance) {
     Settings s = settings;
     const auto set = [&](const char* key, std::int64_t Settings::*member, double value, double least, double most) {
         if (!given.contains(key)) s.*member = static_cast<std::int64_t>(std::clamp(value, least, most));
@@ -131,9 +160,10 @@ Settings with_effort(const Settings& settings, double effort, std::int64_t pixel
     set("light_paths", &Settings::light_paths, 500e3 * effort / passes, 1000, 0x1p50);
     // Samples of all techniques, which stage one of these takes, cost as much as many of their steps.
     const bool multiplexed = s.method == "mmlt" || s.method == "rjmlt";
-    set("mutations", &Settings::mutations, (multiplexed ? 1500e3 : 500e3) * effort / passes, 1000, 0x1p50);
-    set("brightness_samples", &Settings::brightness_samples, (multiplexed ? 50e3 : 100e3) * effort / passes, 5000,
-        0x1p40);
+    set("mutations", &Settings::mutations, (multiplexed ? 1500e3 : 500e3) * effort * balance.chains / passes, 1000,
+        0x1p50);
+    set("brightness_samples", &Settings::brightness_samples,
+        (multiplexed ? 50e3 : 100e3) * effort * balance.brightness / passes, 5000, 0x1p40);
     // However short the render: without them photons would be weighed, or looked for, by chance, which costs more.
     set("importons", &Settings::importons, 100e3 * effort / passes, 50e3, 1 << 30);
     set("cache_rays", &Settings::cache_rays, 1600 * std::pow(effort, 0.7) / std::sqrt(passes), 64, 1 << 20);
@@ -155,13 +185,15 @@ RenderResult render_in_time(Scene& scene, const Settings& settings, const std::s
     }
     const ImageWindow& window = scene.camera().window();
     const std::int64_t pixels = std::int64_t{window.width} * window.height;
+    if (!given.contains("brightness_error")) s.brightness_error = 0; // stage one gets its part of the time, no more
     std::vector<Experience> past;
+    StageBalance balance;
     std::optional<RenderResult> best;
     StageStats others{.name = "trials of settings"};
     double effort = kFirst * context.stop->seconds_left() / kSecondsOfEffort;
     while (true) {
         const double start = context.stop->seconds_left();
-        const Settings chosen = with_effort(s, effort, pixels, given);
+        const Settings chosen = with_effort(s, effort, pixels, given, balance);
         RunContext limited = context;
         if (!past.empty() && keeps_photons(s.method)) {
             limited.reserve = reserve_for_gather(past.back(), effort, start, chosen.passes);
@@ -179,6 +211,7 @@ RenderResult render_in_time(Scene& scene, const Settings& settings, const std::s
         result.stats.remarks.push_back("set by the time:" + differences(settings, chosen));
         if (best) add_stages(others, best->stats);
         past.push_back({effort, without_choice(result.stats, start - left), gather_share(result.stats)});
+        balance = rebalance(balance, result.stats);
         best = std::move(result);
         const double next = affordable(past, kUse * left);
         if (context.stopped() || next < kWorthwhile * effort) break;

@@ -9,13 +9,19 @@
 
 namespace keyhole {
 
+/// How time is split between stage one and chains: factors on what a unit of effort gives each.
+struct StageBalance {
+    double brightness = 1, chains = 1;
+};
+
 /// `settings` with everything that makes a render longer and better set by `effort`: 1 takes about 5 s of CPU time on
 /// the scenes of scenes/ at 320x240. More effort is more samples, more photons, a finer cache, in proportions that
 /// served well there; photons grow more slowly than the paths that bring them, so that bias and noise of
 /// lookups shrink together. Settings named in `given` stay as they are. Photons that the memory can't hold at once are
 /// spread over passes.
 /// @param pixels of the picture.
-Settings with_effort(const Settings& settings, double effort, std::int64_t pixels, const std::set<std::string>& given);
+Settings with_effort(const Settings& settings, double effort, std::int64_t pixels, const std::set<std::string>& given,
+                     const StageBalance& balance = {});
 
 /// What `--quality` names: the effort that makes a draft, a good picture, or a final one, at any size of the picture.
 /// @throws InputError for other words.
@@ -23,8 +29,9 @@ Settings with_quality(const Settings& settings, const std::string& quality, cons
 
 /// Renders with as much effort as fits in context.stop->seconds_left(): again and again, each time with what the
 /// renders before say that the rest of the time is enough for, until there is none for a picture that would be better.
-/// Short ones come first, so that there is a picture whatever happens; the best is the result. Where even the first
-/// doesn't fit, the result is what there was when time was up.
+/// Where chains are run, stage one and they share time so that their errors, as the render before had them, shrink
+/// together. Short ones come first, so that there is a picture whatever happens; the best is the result. Where even the
+/// first doesn't fit, the result is what there was when time was up.
 /// @param given settings that stay as they are.
 /// @param share for its look(); all passes are done here.
 /// @throws as render().

@@ -6,7 +6,7 @@
 #include "render/photon_sampler.h"
 #include "render/radii.h"
 #include "render/stage_clock.h"
-#include "sampling/proposals/registry.h"
+#include "sampling/proposals/tuning.h"
 
 #include <algorithm>
 #include <cmath>
@@ -79,7 +79,10 @@ class MetropolisSampler final : public PhotonSampler {
         stats.importons = at_d1.map().photons().size() + at_d2.map().photons().size();
         stats.importon_bytes = at_d1.bytes() + at_d2.bytes();
 
-        const ChainMixtures mixtures({&c_.scene, set_, static_cast<int>(s.max_depth)}, s, c_.user_paths);
+        const ProposalContext proposals{&c_.scene, set_, static_cast<int>(s.max_depth)};
+        // Told by the seeds of chains that carry no light: those of the others are independent of it.
+        const Settings tuned = tuned_proposals(proposals, s, c_.user_paths, seeds.scouts, first.seed);
+        const ChainMixtures mixtures(proposals, tuned, c_.user_paths);
         const std::size_t caustic = c_.caustics ? caustic_share(one, plan.photons) : 0;
         SampledPhotons photons = sample_photons(seeds, mixtures.mixture,
                                                 {.global = &at_d2,

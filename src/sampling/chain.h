@@ -63,8 +63,7 @@ template <class State, class Stream = Rng> class Chain {
             ++entry.zero;
             return 0;
         }
-        const double forward = mixture_->density(state_, y, k), backward = mixture_->density(y, state_, k);
-        const double ratio = (y.target / forward) / (state_.target / backward);
+        const double ratio = mixture_->acceptance_ratio(state_, y, k);
         if (ratio >= 1) return 1;
         if (ratio > 0) return ratio;
         ++(ratio == 0 ? entry.rejected : entry.nan);

@@ -35,7 +35,8 @@ double GuidedPaths::expected_joints(const Path& y) const {
     guides_.for_each([&](const GuidedSubPath& guide, double chosen) {
         const int first = guide.vertices();
         if (n <= first) return;
-        double light = guide.density(y) * chosen * std::pow(kGoOn, n - first - 1); // of both walks together
+        double light = guide.density(y) * chosen;
+        if (light > 0) light *= std::pow(kGoOn, n - first - 1); // of both walks together
         for (int s = first; s < n && light > 0; ++s) {
             const auto k = static_cast<std::size_t>(s);
             if (joinable(y.x[k - 1], y.x[k])) {

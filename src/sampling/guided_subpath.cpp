@@ -67,6 +67,11 @@ bool GuidedSubPath::cross(SubPath& light, Rng& rng, Failure& why) const {
     return true;
 }
 
+bool GuidedSubPath::through_portal(const Vertex& from, const Vertex& to, int i) const {
+    const auto& portal = user_vertex(i).portal;
+    return !portal || portal->separates(from.point.p, to.point.p);
+}
+
 /// Of the line's two vertices, per area each.
 double GuidedSubPath::cross_density(const Path& y) const {
     const auto far = static_cast<std::size_t>(crossed_);
@@ -93,6 +98,8 @@ bool GuidedSubPath::trace(SubPath& light, Rng& rng, Failure& why) const {
         }
         const Vec3 w = sample_direction(light.back(), i + 1, rng);
         if (!retrace(*scene_, light, light.back().point, w, events_, i + 1, next, why)) return false;
+        if (!through_portal(light[static_cast<std::size_t>(i)], light[static_cast<std::size_t>(i) + 1], i + 1))
+            return why = Failure::blocked, false;
         i = next;
     }
     return true;
@@ -103,7 +110,7 @@ double GuidedSubPath::density(const Path& y) const {
     if (last >= y.vertices()) return 0;
     for (int i = 1; i <= last; ++i) {
         const auto k = static_cast<std::size_t>(i);
-        if (y.x[k].event != events_.x[k].event) return 0;
+        if (y.x[k].event != events_.x[k].event || !through_portal(y.x[k - 1], y.x[k], i)) return 0;
     }
     double density = path_.patch.pdf(y.x[0].point), by_line = 0;
     for (int i = 0; i < last && density + by_line > 0;) {

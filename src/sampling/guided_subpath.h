@@ -31,6 +31,8 @@ class GuidedSubPath {
     /// Adds the two vertices of a line through the portal.
     bool cross(SubPath& light, Rng& rng, Failure& why) const;
     double cross_density(const Path& y) const;
+    /// False where vertex i ought to lie beyond a portal and does not.
+    bool through_portal(const Vertex& from, const Vertex& to, int i) const;
     bool bounce(SubPath& light, Rng& rng, Failure& why) const;
     Vec3 sample_direction(const Vertex& from, int i, Rng& rng) const;
     double direction_density(const Vertex& from, const Vec3& w, int i) const;

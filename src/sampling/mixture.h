@@ -50,6 +50,12 @@ template <class State> class Mixture {
         return sum > 0 ? sum / total(x) : sum;
     }
 
+    /// [f(y) / T(x->y)] / [f(x) / T(y->x)] of a candidate y of kind k: accepted with that probability, if below 1. Not
+    /// a number, or infinite, where densities fail.
+    double acceptance_ratio(const State& x, const State& y, std::size_t k) const {
+        return (y.target / density(x, y, k)) / (x.target / density(y, x, k));
+    }
+
   private:
     struct Kind {
         std::unique_ptr<const Proposal<State>> proposal;

@@ -68,8 +68,13 @@ class Portal {
     /// geometry term of b and c it is one of the two of them, per area each. 0 where the opening is not between them,
     /// or b not on the side of `side`.
     double line_density(const Vec3& side, const Vec3& b, const Vec3& c) const {
-        if (!(height(side) * height(b) > 0 && height(b) * height(c) < 0 && !in_plane(height(c)))) return 0;
+        if (!(height(side) * height(b) > 0 && separates(b, c))) return 0;
         return density(b, (c - b).normalized()) > 0 ? 1 / (kPi * length_ * width_) : 0.0;
+    }
+
+    /// Whether two places lie on different sides of its plane.
+    bool separates(const Vec3& b, const Vec3& c) const {
+        return height(b) * height(c) < 0 && !in_plane(height(b)) && !in_plane(height(c));
     }
 
   private:

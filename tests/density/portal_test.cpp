@@ -68,7 +68,7 @@ TEST(Portal, DirectionsFollowTheirDensity) {
 /// pair integrated over the other.
 TEST(Portal, LinesFollowTheirDensity) {
     const Portal slit({0, 0, 0}, {0, 2, 0}, {0, 0.4, 0.3}); // a parallelogram in the plane x = 0
-    constexpr int n = 6, kSamples = 200'000, kInner = 24;
+    constexpr int n = 6, kSamples = 200'000, kInner = 10;
     constexpr double kHalf = 4; // of the walls x = -1 and x = 1, which most lines meet
     const Vec3 side(-0.5f, 3, 1);
     Histogram h{std::vector<double>(n * n), {}};

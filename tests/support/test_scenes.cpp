@@ -147,17 +147,29 @@ std::unique_ptr<Scene> furnace(double rho) {
     return m.build();
 }
 
-std::unique_ptr<Scene> two_rooms(float slit) {
+namespace {
+
+/// One side of the partition of two rooms at `z`, with the slit from a to b.
+void add_leaf(SceneMaker& m, float a, float b, float z, const std::shared_ptr<const Material>& white) {
+    m.rectangle({-2, 0, z}, {a + 2, 0, 0}, {0, 2.5f, 0}, white);
+    m.rectangle({b, 0, z}, {2 - b, 0, 0}, {0, 2.5f, 0}, white);
+}
+
+} // namespace
+
+std::unique_ptr<Scene> two_rooms(float slit, bool thin) {
     const auto white = make_diffuse(Rgb(0.75));
     SceneMaker m;
     m.room({-2, 0, -4}, {2, 2.5f, 4}, white);
     const float a = 1.2f, b = 1.2f + slit;
-    for (const float z : {0.0f, -0.1f}) { // two leaves of the partition, each two-sided
-        m.rectangle({-2, 0, z}, {a + 2, 0, 0}, {0, 2.5f, 0}, white);
-        m.rectangle({b, 0, z}, {2 - b, 0, 0}, {0, 2.5f, 0}, white);
+    if (thin) {
+        add_leaf(m, a, b, -0.0625f, white);
+    } else {
+        add_leaf(m, a, b, 0, white);
+        add_leaf(m, a, b, -0.1f, white);
+        m.rectangle({a, 0, -0.1f}, {0, 0, 0.1f}, {0, 2.5f, 0}, white)
+            .rectangle({b, 0, -0.1f}, {0, 2.5f, 0}, {0, 0, 0.1f}, white);
     }
-    m.rectangle({a, 0, -0.1f}, {0, 0, 0.1f}, {0, 2.5f, 0}, white)
-        .rectangle({b, 0, -0.1f}, {0, 2.5f, 0}, {0, 0, 0.1f}, white);
     m.rectangle({-1.6f, 2.45f, -2.6f}, {0.8f, 0, 0}, {0, 0, 0.8f}, make_diffuse(Rgb(0.0)), Rgb(200.0));
     m.camera({-1.5f, 1.4f, 3.7f}, {0.7f, 1, 0}, 58).window(64, 48);
     return m.build();

@@ -45,8 +45,9 @@ std::unique_ptr<Scene> glass_wall_box();
 /// Closed box of albedo `rho` whose walls all emit 1 W/(m^2 sr): radiance is 1 / (1 - rho) everywhere.
 std::unique_ptr<Scene> furnace(double rho);
 
-/// Two diffuse rooms joined by a slit of the given width [m]; the light is in the far one.
-std::unique_ptr<Scene> two_rooms(float slit);
+/// Two diffuse rooms joined by a slit of the given width [m]; the light is in the far one. `thin`: what parts them is a
+/// plane, in which an opening lies as well.
+std::unique_ptr<Scene> two_rooms(float slit, bool thin = false);
 
 /// mirror_glass_box() with a ball of green glass, and a block of haze that has no surface.
 std::unique_ptr<Scene> hazy_box();

@@ -63,8 +63,9 @@ UserPathFile two_rooms_paths(const Scene& /*scene*/, float slit) {
 }
 
 UserPathFile opening_paths(const Scene& /*scene*/, float slit, int most_bounces) {
+    constexpr float kPlane = -0.0625f; // where a thin wall stands, to the last bit: points on it are on no side
     const Vec3 light(-1.2f, 2.45f, -2.2f), beyond(1.2f + slit / 2, 1.2f, 4);
-    const Opening all{{1.2, 0, -0.05}, {slit, 0, 0}, {0, 2.5, 0}};
+    const Opening all{{1.2, 2.5, kPlane}, {slit, 0, 0}, {0, -2.5, 0}};
     std::vector<UserPathSpec> specs;
     for (int bounces = 1; bounces <= most_bounces; ++bounces) {
         specs.push_back(user_path(std::to_string(bounces) + " bounces", {light, beyond}, 0.9));
@@ -75,15 +76,15 @@ UserPathFile opening_paths(const Scene& /*scene*/, float slit, int most_bounces)
             spec.beta.push_back(0);
         }
     }
-    const Vec3 floor(0.5f, 0, -2), middle(1.2f + slit / 2, 1, -0.05f);
+    const Vec3 floor(0.5f, 0, -2), middle(1.2f + slit / 2, 1, kPlane);
     specs.push_back(
         user_path("floor", {light, floor, floor + (middle - floor) * ((2 - floor.x) / (middle.x - floor.x))}, 0.9));
-    specs.back().points[2].through = Opening{{1.2 + 0.1 * slit, 0.1, -0.05}, {0.8 * slit, 0.4, 0}, {0, 1.5, 0}};
+    specs.back().points[2].through = Opening{{1.2 + 0.1 * slit, 0.1, kPlane}, {0.8 * slit, 0.4, 0}, {0, 1.5, 0}};
     return {specs};
 }
 
 std::span<const GuidedScene> guided_scenes() {
-    static constexpr float kSlit = 1;
+    static constexpr float kSlit = 1, kNarrow = 0.15f;
     static const GuidedScene scenes[] = {
         {"DiffuseBox", diffuse_box, diffuse_box_paths},
         {"MirrorGlassBox", [] { return mirror_glass_box(); }, mirror_glass_box_paths},
@@ -91,6 +92,8 @@ std::span<const GuidedScene> guided_scenes() {
         {"PointLight", point_light_box, point_light_box_paths},
         {"TwoRooms", [] { return two_rooms(kSlit); }, [](const Scene& scene) { return two_rooms_paths(scene, kSlit); }},
         {"Opening", [] { return two_rooms(kSlit); }, [](const Scene& scene) { return opening_paths(scene, kSlit); }},
+        {"OpeningInAPlane", [] { return two_rooms(kNarrow, true); },
+         [](const Scene& scene) { return opening_paths(scene, kNarrow, 6); }},
     };
     return scenes;
 }

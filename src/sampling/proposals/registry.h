@@ -46,7 +46,9 @@ std::span<const ProposalKind> proposal_kinds();
 
 /// The mixture that `settings` ask for. Each of `paths` is a kind of its own, and they share p_user_path by their
 /// weights; together with BD and UI, which draws from all of them, they are one family.
-Mixture<Path> make_mixture(const ProposalContext& context, const Settings& settings, const UserPaths& paths = {});
+/// @param weights gets, where it is not null, the setting of each kind of the mixture.
+Mixture<Path> make_mixture(const ProposalContext& context, const Settings& settings, const UserPaths& paths = {},
+                           std::vector<double Settings::*>* weights = nullptr);
 
 /// Mixtures for a set of chains.
 struct ChainMixtures {
@@ -55,7 +57,8 @@ struct ChainMixtures {
 
     ChainMixtures(const ProposalContext& context, const Settings& settings, const UserPaths& paths)
         : mixture(make_mixture(context, settings, paths)) {
-        if (!paths.empty() && settings.p_user_path > 0) control = make_mixture(context, settings);
+        if (!paths.empty() && settings.p_user_path + settings.p_guided_path > 0)
+            control = make_mixture(context, settings);
     }
     const Mixture<Path>* control_or_null() const { return control ? &*control : nullptr; }
 };
