@@ -52,7 +52,7 @@ constexpr double kFirst = 0.02; // effort of the first render, as a share of wha
 /// Of the time that is left, so that a render that costs a little more than was foreseen is done in time.
 constexpr double kUse = 0.93;
 /// A render is worth its time if it has so much more effort than the one before it.
-constexpr double kWorthwhile = 1.5;
+constexpr double kWorthwhile = 1.1;
 
 /// The most effort that `seconds` are enough for, by the last two renders. After a first one that was short, a somewhat
 /// longer one shows what effort costs; one that took a good part of the time did so by what comes once, for the most
@@ -126,12 +126,10 @@ StageBalance rebalance(const StageBalance& balance, const RenderStats& stats) {
     const double to_one = stats.brightness_error / stats.brightness * std::sqrt(one);
     const double to_two = chains->second * std::sqrt(two);
     const double share = to_one / (to_one + to_two);
-    // Not too much at a time: what short renders say of their errors is vague.
-    const auto scaled = [&](double factor, double times) {
-        return std::clamp(factor * std::clamp(times, 0.25, 4.0), 0.1, 8.0);
-    };
-    return {scaled(balance.brightness, share * (one + two) / one),
-            scaled(balance.chains, (1 - share) * (one + two) / two)};
+    // Bounds, for what short renders say of their errors is vague; and groups of chains that agree too well, as those
+    // do that have not mixed, think their error smaller than it is.
+    return {std::clamp(balance.brightness * share * (one + two) / one, 0.25, 1.2),
+            std::clamp(balance.chains * (1 - share) * (one + two) / two, 0.9, 4.0)};
 }
 
 bool has_empty_pixels(const RenderStats& stats) {
