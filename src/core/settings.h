@@ -125,7 +125,8 @@ template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
     visit("irradiance_cache", s.irradiance_cache, "cache irradiance on diffuse surfaces");
     visit("cache_error", s.cache_error, 0.01, 1.0, "reach of a cached irradiance over the distance to surroundings");
     visit("cache_rays", s.cache_rays, I{8}, I{1} << 20, "gather rays for a cached irradiance");
-    visit("tune_proposals", s.tune_proposals, "weigh the kinds of proposal of mps, p_..., by how far each moves chains, too");
+    visit("tune_proposals", s.tune_proposals,
+          "weigh the kinds of proposal of mps, p_..., by how far each moves chains, too");
     visit("p_bidirectional", s.p_bidirectional, 0.0, 1.0, "relative frequency of bidirectional proposals");
     visit("p_lens_subpath", s.p_lens_subpath, 0.0, 1.0, "relative frequency of lens sub-path proposals");
     visit("p_lens_perturbation", s.p_lens_perturbation, 0.0, 1.0, "relative frequency of lens perturbations");
