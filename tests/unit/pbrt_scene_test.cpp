@@ -200,9 +200,9 @@ TEST(PbrtShapes, LoopSubdivIsItsControlMesh) {
 TEST(PbrtShapes, TexturedOnesWithoutCoordinatesGetPbrts) {
     const std::string textured =
         "Texture \"t\" \"float\" \"checkerboard\" Material \"conductor\" \"texture roughness\" \"t\" ";
-    const auto& uvs = PbrtScene(textured + kTriangle).mesh().uvs;
-    ASSERT_EQ(uvs.size(), 3u);
-    EXPECT_EQ(uvs[2], Vec2(1, 1));
+    const PbrtScene triangle(textured + kTriangle);
+    ASSERT_EQ(triangle.mesh().uvs.size(), 3u);
+    EXPECT_EQ(triangle.mesh().uvs[2], Vec2(1, 1));
     EXPECT_TRUE(PbrtScene(kTriangle).mesh().uvs.empty());
     const PbrtScene sphere(textured + "Shape \"sphere\""); // a mesh, as a Sphere forgets how it was turned
     EXPECT_NEAR(sphere.mesh().uvs[0].y, 0, 1e-6);
