@@ -114,7 +114,7 @@ double GuidedSubPath::density(const Path& y) const {
     }
     double density = path_.patch.pdf(y.x[0].point), by_line = 0;
     for (int i = 0; i < last && density + by_line > 0;) {
-        if (crossed_ > 0 && i + 2 == crossed_) by_line = density * cross_density(y);
+        if (i + 2 == crossed_) by_line = density * cross_density(y);
         const int next = next_finite(events_, i, +1);
         const Vertex &from = y.x[static_cast<std::size_t>(i)], &to = y.x[static_cast<std::size_t>(i) + 1];
         if (user_vertex(i + 1).bounce) {
@@ -124,7 +124,7 @@ double GuidedSubPath::density(const Path& y) const {
             density *= w > 0 ? retrace_density(y, solid_angle_to_area(w, from.point, to.point), i + 1, next) : 0.0;
         }
         i = next;
-        if (crossed_ > 0 && i == crossed_) {
+        if (i == crossed_) {
             density = std::lerp(density, by_line, kByLine);
             by_line = 0;
         }

@@ -83,6 +83,12 @@ UserPathFile opening_paths(const Scene& /*scene*/, float slit, int most_bounces)
     return {specs};
 }
 
+UserPaths bounces_through(const Scene& scene, float slit, int most_bounces) {
+    UserPathFile file = opening_paths(scene, slit, most_bounces);
+    file.paths.pop_back();
+    return bind_user_paths(scene, file);
+}
+
 std::span<const GuidedScene> guided_scenes() {
     static constexpr float kSlit = 1, kNarrow = 0.15f;
     static const GuidedScene scenes[] = {

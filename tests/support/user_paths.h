@@ -28,6 +28,8 @@ UserPathFile point_light_box_paths(const Scene& scene);
 UserPathFile two_rooms_paths(const Scene& scene, float slit);
 /// The same by openings: behind one bounce or more, and behind a point through part of the slit, askew.
 UserPathFile opening_paths(const Scene& scene, float slit, int most_bounces = 2);
+/// Those of them that have bounces, bound: the other's cone would have to hit a narrow slit.
+UserPaths bounces_through(const Scene& scene, float slit, int most_bounces);
 
 /// A scene with user paths.
 struct GuidedScene {

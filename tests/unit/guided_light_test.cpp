@@ -92,9 +92,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, AlongUserPaths, testing::Range<std::size_t>(0, 
 TEST(ThroughASlit, UserPathsFindLightThatIsHardToFind) {
     constexpr float kSlit = 0.03f;
     const auto scene = test::two_rooms(kSlit);
-    UserPathFile file = test::opening_paths(*scene, kSlit, kDepth - 1);
-    file.paths.pop_back(); // its cone would have to hit the slit
-    const UserPaths paths = bind_user_paths(*scene, file);
+    const UserPaths paths = test::bounces_through(*scene, kSlit, kDepth - 1);
     const GuidedPaths guides(*scene, paths, PathSet::stored, kDepth);
     StageOneSettings settings{.max_scatterings = kDepth, .samples = 100'000, .seed = 3};
     const StageOne without = run_stage_one(*scene, settings, {});

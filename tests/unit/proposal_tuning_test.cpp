@@ -61,9 +61,7 @@ TEST_F(Tuning, GivesNothingToKindsThatAreLeftOutAndLessToUselessOnes) {
 TEST_F(Tuning, FollowsUserPathsThatHelp) {
     constexpr float kSlit = 0.03f;
     const auto rooms = test::two_rooms(kSlit);
-    UserPathFile file = test::opening_paths(*rooms, kSlit, kDepth - 1);
-    file.paths.pop_back(); // its cone would have to hit the slit
-    const UserPaths along = bind_user_paths(*rooms, file);
+    const UserPaths along = test::bounces_through(*rooms, kSlit, kDepth - 1);
     const GuidedPaths guides(*rooms, along, PathSet::stored, kDepth);
     const Settings tuned =
         tuned_proposals({rooms.get(), PathSet::stored, kDepth}, settings, along, drawn(*rooms, &guides), 7);

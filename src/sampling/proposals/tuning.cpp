@@ -71,6 +71,7 @@ Jump efficiency(const Mixture<Path>& mixture, std::size_t k, std::span<const Pat
 
 Settings tuned_proposals(const ProposalContext& context, const Settings& settings, const UserPaths& user_paths,
                          std::span<const Path> paths, std::uint64_t seed) {
+    if (!settings.tune_proposals || paths.empty()) return settings;
     std::vector<double Settings::*> of_kind;
     const Mixture<Path> mixture = make_mixture(context, settings, user_paths, &of_kind);
     // Kinds of one setting, user paths, share it, and what it may take.
@@ -85,9 +86,7 @@ Settings tuned_proposals(const ProposalContext& context, const Settings& setting
         tallies.back().kinds += 1;
     }
     const std::int64_t candidates = std::min<std::int64_t>(settings.mutations / 16, kMostCandidates);
-    if (!settings.tune_proposals || paths.empty() ||
-        candidates < kLeastCandidates * static_cast<std::int64_t>(tallies.size()))
-        return settings;
+    if (candidates < kLeastCandidates * static_cast<std::int64_t>(tallies.size())) return settings;
 
     std::size_t k = 0;
     for (Tally& tally : tallies) {
@@ -99,10 +98,10 @@ Settings tuned_proposals(const ProposalContext& context, const Settings& setting
     }
     Jump total;
     for (const Tally& tally : tallies) total += tally.efficiency;
-    Settings tuned = settings;
     if (!(total.both > 0)) return settings;
     double given = 0;
     for (const Tally& t : tallies) given += settings.*t.weight;
+    Settings tuned = settings;
     for (const Tally& t : tallies) {
         const Jump& own = t.efficiency;
         const double shares = own.image / total.image + own.light / total.light + own.both / total.both;
