@@ -63,7 +63,8 @@ same() { # A B
 cd "$dir"
 
 small="-q --no-png -t 1 --resolution 24x16 --method mps --spp 1 --passes 5 --mutations 3k -D chains=50
-    -D brightness_samples=2000 -D importons=2000 -D photon_memory=512KiB"
+    -D brightness_samples=2000 -D importons=2000 -D photon_memory=512KiB -D cache_rays=64
+    -D brightness_error=0"
 for scene in box rooms lantern; do
     # shellcheck disable=SC2086 # words
     "$keyhole" render "$scenes/$scene.yaml" $small -o "$scene.exr"

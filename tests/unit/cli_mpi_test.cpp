@@ -39,7 +39,7 @@ TEST_P(RanksOfAScene, MakeThePictureThatOneMakes) {
     const std::string render = "render " KEYHOLE_SOURCE_DIR "/scenes/" + std::string(GetParam()) +
                                ".yaml --resolution 24x16 --no-png -q -t 1 --method mps --spp 1 --passes 6 "
                                "--mutations 3k -D chains=50 -D brightness_samples=2000 -D importons=2000 "
-                               "-D photon_memory=512KiB ";
+                               "-D photon_memory=512KiB -D cache_rays=64 -D brightness_error=0 ";
     ASSERT_EQ(run(render + "-o whole.exr"), 0);
     for (const int ranks : {1, 2, 3, 5}) {
         ASSERT_EQ(run_ranks(ranks, render + "-o a.exr"), 0) << read("err");

@@ -233,7 +233,7 @@ void expect_chain_energy(const Scene& scene, const Rule& rule, const Energy& tra
 void expect_emission_energy(const Scene& scene, const Rule& rule, const Energy& traced) {
     for (const bool guided : {false, true}) {
         SCOPED_TRACE(guided ? "stored by importance" : "stored everywhere");
-        const Energy emitted = by_emission(scene, rule, guided, 12);
+        const Energy emitted = by_emission(scene, rule, guided, 8);
         expect_equal(emitted.global, traced.global, "global", 0, {0, 1, 2, 3, 4, 5, 6});
         expect_equal(emitted.caustic, traced.caustic, "caustic", 0, {0, 1, 2, 3, 4, 6});
         // The wall behind the eye gets few photons where they are stored by importance.
