@@ -14,6 +14,7 @@
 #include "core/parallel.h"
 #include "film/atomic_file.h"
 #include "render/effort.h"
+#include "render/render_in_time.h"
 #include "sampling/scene_hash.h"
 #include "scene/load/load.h"
 

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/unit_set.h"
+#include "film/blend.h"
 #include "film/exposure.h"
 
 #include <fmt/format.h>
@@ -78,21 +79,14 @@ Picture average(const std::vector<NamedPicture>& pictures) {
     std::string seeds, warnings;
     for (const NamedPicture& p : pictures) {
         total += samples(p);
+        try {
+            blend(result, p.picture, samples(p) / total);
+        } catch (const InputError& e) {
+            refuse(p, e.what());
+        }
         seeds += (seeds.empty() ? "" : ",") + attribute(p, "seed");
         if (const auto w = p.picture.metadata.find("warnings"); w != p.picture.metadata.end())
             warnings = joined_lines(warnings, w->second);
-    }
-    for (auto& [name, image] : result.layers) {
-        std::vector<double> sums(image.data.size());
-        for (const NamedPicture& p : pictures) {
-            const auto layer = p.picture.layers.find(name);
-            if (layer == p.picture.layers.end() || layer->second.data.size() != sums.size())
-                refuse(p, fmt::format("found no layer '{}'", name));
-            const double weight = samples(p) / total;
-            for (std::size_t i = 0; i < sums.size(); ++i)
-                sums[i] += weight * static_cast<double>(layer->second.data[i]);
-        }
-        std::ranges::transform(sums, image.data.begin(), [](double x) { return static_cast<float>(x); });
     }
     result.metadata["seed"] = seeds;
     result.metadata["samples"] = fmt::format("{}", total);

@@ -1,8 +1,7 @@
-// How much effort a render makes, as one number; and the number that fits a time.
+// How much effort a render makes, as one number.
 #pragma once
 
 #include "core/settings.h"
-#include "render/render.h"
 
 #include <set>
 #include <string>
@@ -26,16 +25,5 @@ Settings with_effort(const Settings& settings, double effort, std::int64_t pixel
 /// What `--quality` names: the effort that makes a draft, a good picture, or a final one, at any size of the picture.
 /// @throws InputError for other words.
 Settings with_quality(const Settings& settings, const std::string& quality, const std::set<std::string>& given);
-
-/// Renders with as much effort as fits in context.stop->seconds_left(): again and again, each time with what the
-/// renders before say that the rest of the time is enough for, until there is none for a picture that would be better.
-/// Where chains are run, stage one and they share time so that their errors, as the render before had them, shrink
-/// together. Short ones come first, so that there is a picture whatever happens; the best is the result. Where even the
-/// first doesn't fit, the result is what there was when time was up.
-/// @param given settings that stay as they are.
-/// @param share for its look(); all passes are done here.
-/// @throws as render().
-RenderResult render_in_time(Scene& scene, const Settings& settings, const std::set<std::string>& given,
-                            const RunContext& context, const UserPathFile& user_paths = {}, const Share& share = {});
 
 } // namespace keyhole

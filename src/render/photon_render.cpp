@@ -101,12 +101,16 @@ class Passes {
         // The photons of a pass that was cut short are good for a first picture, not for one that is there.
         if (context.stopped() && (context.crew != nullptr || !work_.is_first())) return false;
         report_photons(photons, stats_);
-        const StageClock clock(stats_, "gather");
         const RunContext all_time = context.with_reserve(0);
-        const PassGather gather(c_, plan_, pass, seed, std::move(photons), stats_, all_time);
+        std::optional<PassGather> gather;
+        {
+            const StageClock clock(stats_, "cache");
+            gather.emplace(c_, plan_, pass, seed, std::move(photons), stats_, all_time);
+        }
         if (context.crew != nullptr && context.stopped()) return false;
-        const bool whole = sample_rounds(gather, pass, all_time.alone());
-        gather.report(stats_);
+        const StageClock clock(stats_, "gather");
+        const bool whole = sample_rounds(*gather, pass, all_time.alone());
+        gather->report(stats_);
         return whole || context.crew != nullptr; // a crew ends where all can agree on it: in the next pass
     }
 

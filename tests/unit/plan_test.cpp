@@ -1,6 +1,7 @@
 // "Model no more than a scene needs": what is left out is left out, by the statistics, and nothing else is.
 #include "render/effort.h"
 #include "render/plan.h"
+#include "render/render.h"
 #include "support/test_scenes.h"
 
 #include <gmock/gmock.h>

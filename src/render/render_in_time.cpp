@@ -1,0 +1,280 @@
+#include "render/render_in_time.h"
+
+#include "film/blend.h"
+#include "render/effort.h"
+#include "render/methods.h"
+#include "render/pass_seed.h"
+#include "render/stage_work.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+namespace keyhole {
+namespace {
+
+constexpr double kSecondsOfEffort = 5;               // CPU time of a unit, on scenes/ at 320x240
+constexpr const char* kChoice = "trial of samplers"; // the stage that chooses a method: once
+
+/// " key=value" for each setting of `b` that `a` has otherwise.
+std::string differences(const Settings& a, const Settings& b) {
+    const auto list = [](const Settings& s) {
+        std::vector<std::string> texts;
+        visit_settings(s, [&](const char* key, const auto& value, const auto&...) {
+            texts.push_back(fmt::format(" {}={}", key, printable(value)));
+        });
+        return texts;
+    };
+    const std::vector<std::string> from = list(a), to = list(b);
+    std::string text;
+    for (std::size_t i = 0; i < to.size(); ++i)
+        if (to[i] != from[i]) text += to[i];
+    return text;
+}
+
+/// What a render cost.
+struct Experience {
+    Settings settings; ///< with the method that was run
+    double effort, pixels;
+    std::vector<std::pair<std::string, double>> stages; ///< name, seconds
+
+    double seconds() const {
+        return std::accumulate(stages.begin(), stages.end(), 0.0,
+                               [](double sum, const auto& stage) { return sum + stage.second; });
+    }
+    /// What some stages, all if none is named, of a render with other settings would take [s].
+    double foresee(const Settings& other, double its_pixels, std::initializer_list<std::string_view> names = {}) const {
+        double sum = 0;
+        for (const auto& [name, time] : stages)
+            if (names.size() == 0 || std::ranges::find(names, name) != names.end())
+                sum += time * stage_work(name, other, its_pixels) / stage_work(name, settings, pixels);
+        return sum;
+    }
+};
+
+/// @param seconds that all took, of the kind that is limited.
+Experience experience(const Settings& settings, double effort, double pixels, const RenderStats& stats,
+                      double seconds) {
+    double all = 0;
+    for (const StageStats& stage : stats.stages) all += stage.wall_seconds;
+    Experience e{settings, effort, pixels, {}};
+    for (const StageStats& stage : stats.stages)
+        if (stage.name != kChoice) e.stages.emplace_back(stage.name, seconds * stage.wall_seconds / all);
+    return e;
+}
+
+/// Effort of the trial, as a share of what should fill the time, and at most.
+constexpr double kTrial = 0.02, kTrialAtMost = 0.1;
+/// A trial's picture is smaller by so much in width and height: it is to show what effort costs, nothing else.
+constexpr int kTrialScale = 4;
+/// Of the time that is left, so that a render that costs a little more than was foreseen is done in time.
+constexpr double kUse = 0.95;
+/// The same after the trial, which shows costs less well than the render that then follows, where what each of these
+/// costs at least is less than such a share of the time.
+constexpr double kUseOfTrial = 0.55, kCheap = 0.15;
+/// A render is worth its time if it has so much of the effort of the one before it.
+constexpr double kWorthwhile = 0.25;
+/// What one render shows of costs isn't stretched further than to so many times its effort.
+constexpr double kMostGrowth = 200;
+/// Renders with less effort than this share of a later one's tell nothing that it doesn't.
+constexpr double kNegligible = 0.1;
+
+/// The seed of the render of that number: errors have to be independent.
+std::int64_t seed_of_render(const Settings& settings, std::int64_t number) {
+    constexpr std::int64_t kBeyondPasses = std::int64_t{1} << 40; // no pass has such a number
+    return static_cast<std::int64_t>(seed_of_pass(settings, kBeyondPasses + number));
+}
+
+/// One line of all stages of a render that a better one takes the place of.
+void add_stages(StageStats& sum, const RenderStats& stats) {
+    for (const StageStats& stage : stats.stages) {
+        sum.wall_seconds += stage.wall_seconds;
+        sum.cpu_seconds += stage.cpu_seconds;
+        sum.rays += stage.rays;
+    }
+}
+
+/// CPU time of some stages [s].
+double seconds_of(const RenderStats& stats, std::initializer_list<std::string_view> names) {
+    double seconds = 0;
+    for (const StageStats& stage : stats.stages)
+        if (std::find(names.begin(), names.end(), stage.name) != names.end()) seconds += stage.cpu_seconds;
+    return seconds;
+}
+
+/// The split with the least error for the time of a render with `balance`: squared errors fall as the reciprocal of
+/// time, so the best times are as errors times the roots of times. Nothing changes where an error isn't known.
+StageBalance rebalance(const StageBalance& balance, const RenderStats& stats) {
+    const auto chains = stats.values.find("chains, error of block brightness");
+    const double one = seconds_of(stats, {"brightness"}), two = seconds_of(stats, {"photons", "chains"});
+    if (chains == stats.values.end() || !(chains->second > 0 && stats.brightness > 0 && one > 0 && two > 0))
+        return balance;
+    const double to_one = stats.brightness_error / stats.brightness * std::sqrt(one);
+    const double to_two = chains->second * std::sqrt(two);
+    const double share = to_one / (to_one + to_two);
+    // Bounds, for what short renders say of their errors is vague; and groups of chains that agree too well, as those
+    // do that have not mixed, think their error smaller than it is.
+    return {std::clamp(balance.brightness * share * (one + two) / one, 0.25, 1.2),
+            std::clamp(balance.chains * (1 - share) * (one + two) / two, 0.9, 4.0)};
+}
+
+/// The mean of renders, weighted by their efforts: their squared errors are about as the reciprocals.
+class MeanRender {
+  public:
+    bool empty() const { return !result_; }
+    void add(RenderResult&& result, double effort) {
+        const bool joins = result_ && effort_ > kNegligible * effort;
+        if (result_) add_stages(others_, result_->stats);
+        if (joins) {
+            effort_ += effort;
+            blend(result.picture, result_->picture, 1 - effort / effort_);
+            result.picture.sums.clear(); // they are of one render
+            result.stats.samples += result_->stats.samples;
+        } else
+            effort_ = effort;
+        result_ = std::move(result);
+    }
+    /// A render that gave no picture took time, too.
+    void add_time_of(const RenderStats& stats) { add_stages(others_, stats); }
+    RenderResult take() {
+        auto& stages = result_->stats.stages;
+        if (others_.wall_seconds > 0) stages.insert(stages.begin(), others_);
+        result_->stats.values["effort"] = effort_;
+        return std::move(*result_);
+    }
+
+  private:
+    std::optional<RenderResult> result_; // with the stats of the last
+    double effort_ = 0;
+    StageStats others_{.name = "renders before"};
+};
+
+bool has_empty_pixels(const RenderStats& stats) {
+    const auto empty = stats.values.find("empty pixels");
+    return empty != stats.values.end() && empty->second > 0;
+}
+
+/// Renders a scene as often as there is time for.
+class RenderInTime {
+  public:
+    RenderInTime(Scene& scene, const Settings& settings, const std::set<std::string>& given, const RunContext& context,
+                 const UserPathFile& user_paths, const Share& share)
+        : scene_(scene), settings_(settings), given_(given), context_(context), user_paths_(user_paths), share_(share),
+          window_(scene.camera().window()) {}
+
+    RenderResult run() {
+        const RenderStats trial = try_out();
+        mean_.add_time_of(trial);
+        for (auto effort = affordable(); effort && add_render(*effort) && !context_.stopped();) effort = affordable();
+        RenderResult result = mean_.take();
+        std::ranges::copy_if(trial.remarks, std::back_inserter(result.stats.remarks),
+                             [](const std::string& remark) { return remark.starts_with("method "); });
+        return result;
+    }
+
+  private:
+    static double pixels_of(const ImageWindow& w) { return static_cast<double>(w.width) * w.height; }
+    double pixels() const { return pixels_of(window_); }
+    double left() const { return context_.stop->seconds_left(); }
+    Settings with(double effort, double pixels) const {
+        return with_effort(settings_, effort, static_cast<std::int64_t>(pixels), given_, balance_);
+    }
+
+    /// A first, small render, which chooses the method and shows what the stages cost. Its picture is of no use.
+    RenderStats try_out() {
+        const double start = left();
+        ImageWindow small = window_;
+        small.width = std::max(1, window_.width / kTrialScale);
+        small.height = std::max(1, window_.height / kTrialScale);
+        const double effort = std::min(kTrial * start / kSecondsOfEffort, kTrialAtMost);
+        Settings chosen = with(effort, pixels_of(small));
+        if (!given_.contains("importons")) chosen.importons /= 4;
+        chosen.seed = seed_of_render(settings_, renders_++);
+        scene_.set_window(small);
+        RenderStats stats = render(scene_, chosen, context_, user_paths_).stats;
+        scene_.set_window(window_);
+        learn(chosen, effort, pixels_of(small), stats, start);
+        return stats;
+    }
+
+    void learn(Settings settings, double effort, double pixels, const RenderStats& stats, double start) {
+        settings.method = settings_.method = stats.method; // what `auto` stands for
+        last_ = experience(settings, effort, pixels, stats, start - left());
+        balance_ = rebalance(balance_, stats);
+    }
+
+    double foreseen(double effort) const { return last_->foresee(with(effort, pixels()), pixels()); }
+
+    /// The most effort that the rest of the time is enough for; none where it is enough for none that is worth it.
+    std::optional<double> affordable() const {
+        const double worthwhile = kWorthwhile * last_->effort;
+        const bool in_two = mean_.empty() && foreseen(0) < kCheap * left();
+        const double seconds = (in_two ? kUseOfTrial : kUse) * left();
+        double least = worthwhile, most = kMostGrowth * last_->effort;
+        if (foreseen(least) > seconds) return mean_.empty() ? std::optional(least) : std::nullopt;
+        if (foreseen(most) <= foreseen(least)) return last_->effort; // all that effort is was given
+        while (most - least > 0.01 * least) {
+            const double effort = (least + most) / 2;
+            (foreseen(effort) < seconds ? least : most) = effort;
+        }
+        return least;
+    }
+
+    /// Returns whether it came to a picture.
+    bool add_render(double effort) {
+        const double start = left();
+        Settings chosen = with(effort, pixels());
+        const double expected = foreseen(effort);
+        RunContext limited = context_;
+        if (keeps_photons(chosen.method)) {
+            // Should the stages before it cost more than was foreseen, they leave stage three its time.
+            limited.reserve = std::min(1.2 * last_->foresee(chosen, pixels(), {"cache", "gather"}), start / 2) /
+                              static_cast<double>(std::max<std::int64_t>(1, chosen.passes));
+            limited.whole_round = !mean_.empty(); // there is a picture, and photons are worth that little more time
+        }
+        chosen.seed = seed_of_render(settings_, renders_++);
+        RenderResult result = render(scene_, chosen, limited, user_paths_, share_);
+        result.settings.seed = chosen.seed = settings_.seed;
+        // Where time was up before each pixel had a sample, what was there before is the better picture.
+        if (!mean_.empty() && has_empty_pixels(result.stats)) {
+            mean_.add_time_of(result.stats);
+            return false;
+        }
+        result.stats.remarks.push_back("set by the time:" + differences(settings_, chosen));
+        learn(chosen, effort, pixels(), result.stats, start);
+        // One that was cut short comes to less.
+        const double made = result.stats.complete ? 1 : std::min(1.0, last_->seconds() / expected);
+        mean_.add(std::move(result), made * effort);
+        return true;
+    }
+
+    Scene& scene_;
+    Settings settings_;
+    const std::set<std::string>& given_;
+    const RunContext& context_;
+    const UserPathFile& user_paths_;
+    const Share& share_;
+    const ImageWindow window_;
+    std::int64_t renders_ = 0; // begun
+    StageBalance balance_;
+    std::optional<Experience> last_;
+    MeanRender mean_;
+};
+
+} // namespace
+
+RenderResult render_in_time(Scene& scene, const Settings& settings, const std::set<std::string>& given,
+                            const RunContext& context, const UserPathFile& user_paths, const Share& share) {
+    Settings s = settings;
+    if (s.method == "path" || s.method == "bdpt") {
+        if (!given.contains("spp")) s.spp = 1 << 24; // as many as there is time for
+        return render(scene, s, context, user_paths, share);
+    }
+    if (!given.contains("brightness_error")) s.brightness_error = 0; // stage one gets its part of the time, no more
+    return RenderInTime{scene, s, given, context, user_paths, share}.run();
+}
+
+} // namespace keyhole

@@ -1,0 +1,81 @@
+// Renders that fill a time: what they foresee, and what they make of several pictures.
+#include "core/error.h"
+#include "core/statistics.h"
+#include "film/blend.h"
+#include "render/render_in_time.h"
+#include "render/stage_work.h"
+#include "support/test_scenes.h"
+
+#include <gtest/gtest.h>
+
+namespace keyhole {
+namespace {
+
+double mean_luminance(const Picture& picture) {
+    const Image& beauty = picture.layers.at("beauty");
+    RunningStats s;
+    for (std::size_t i = 0; i < beauty.data.size(); i += 3)
+        s.add(luminance({beauty.data[i], beauty.data[i + 1], beauty.data[i + 2]}));
+    return s.mean();
+}
+
+TEST(StageWork, IsInProportionToWhatAStageDoes) {
+    Settings one, other;
+    one.method = other.method = "mps";
+    other.spp = 3 * one.spp;
+    other.mutations = 5 * one.mutations;
+    other.light_paths = 7 * one.light_paths;
+    const auto ratio = [&](const char* stage) { return stage_work(stage, other, 100) / stage_work(stage, one, 100); };
+    EXPECT_DOUBLE_EQ(ratio("gather"), 3);
+    EXPECT_DOUBLE_EQ(ratio("photons"), 5) << "chains bring them";
+    EXPECT_DOUBLE_EQ(ratio("plan"), 1);
+    EXPECT_DOUBLE_EQ(stage_work("gather", one, 200) / stage_work("gather", one, 100), 2);
+    EXPECT_DOUBLE_EQ(stage_work("chains", one, 200) / stage_work("chains", one, 100), 1);
+    one.method = other.method = "ipm";
+    EXPECT_DOUBLE_EQ(ratio("photons"), 7) << "light paths bring them";
+    other.passes = 2 * one.passes;
+    EXPECT_DOUBLE_EQ(ratio("photons"), 14);
+}
+
+TEST(Blend, IsTheWeightedMeanOfEveryLayer) {
+    Picture a{2, 1, {{"x", Image(2, 1, 1)}, {"y", Image(2, 1, 3)}}, {}, {}}, b = a;
+    a.layers["x"].data = {1, 2};
+    b.layers["x"].data = {5, 2};
+    b.layers["y"].data[4] = 8;
+    blend(a, b, 0.25);
+    EXPECT_EQ(a.layers["x"].data, (std::vector<float>{2, 2}));
+    EXPECT_EQ(a.layers["y"].data, (std::vector<float>{0, 0, 0, 0, 2, 0}));
+    b.layers.erase("y");
+    EXPECT_THROW(blend(a, b, 0.5), InputError);
+}
+
+class RenderInTime : public testing::TestWithParam<const char*> {};
+
+/// Means of renders are as bright as each, whatever their weights; and the small trial leaves no trace in the scene.
+TEST_P(RenderInTime, IsAsBrightAsTheScene) {
+    const auto scene = test::diffuse_box();
+    const ImageWindow window = scene->camera().window();
+    Settings s;
+    s.spp = 256;
+    s.method = "path";
+    const double expected = mean_luminance(render(*scene, s, {}).picture);
+    s = {};
+    s.method = GetParam();
+    StopToken stop;
+    stop.set_cpu_limit(cpu_seconds() + 2);
+    RunContext context;
+    context.stop = &stop;
+    const RenderResult result = render_in_time(*scene, s, {}, context);
+    EXPECT_NEAR(mean_luminance(result.picture) / expected, 1, 0.08);
+    EXPECT_EQ(result.picture.width, window.width);
+    EXPECT_EQ(result.picture.height, window.height);
+    EXPECT_EQ(scene->camera().window().width, window.width);
+    EXPECT_EQ(result.settings.seed, s.seed);
+    EXPECT_EQ(result.stats.stages.front().name, "renders before");
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, RenderInTime, testing::Values("auto", "mps", "mlt", "pssmlt"),
+                         [](const auto& info) { return std::string(info.param); });
+
+} // namespace
+} // namespace keyhole
