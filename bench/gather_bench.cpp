@@ -57,9 +57,10 @@ double render_once(keyhole::Scene& scene, const keyhole::Settings& settings, boo
     StageWatcher watcher(record);
     const auto result = keyhole::render(scene, settings, {nullptr, &watcher});
     g_recording = false;
+    double seconds = 0;
     for (const auto& stage : result.stats.stages)
-        if (stage.name == "gather") return stage.cpu_seconds;
-    return 0;
+        if (stage.name == "cache" || stage.name == "gather") seconds += stage.cpu_seconds;
+    return seconds;
 }
 
 /// Seconds that Embree takes for the recorded rays.

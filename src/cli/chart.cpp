@@ -3,6 +3,7 @@
 #include "cli/chart/runs.h"
 #include "cli/command.h"
 #include "cli/interrupt.h"
+#include "cli/real_range.h"
 #include "core/error.h"
 #include "scene/load/settings_text.h"
 
@@ -98,10 +99,10 @@ void add_chart_command(CLI::App& app, Action& action) {
         ->expected(1, 2);
     command->add_option("--reference-error", o.reference_error, "relative standard error to render references to")
         ->capture_default_str()
-        ->check(CLI::Range(1e-6, 10.0));
+        ->check(real_range(1e-6, 10.0));
     command->add_option("--reference-time", o.reference_time, "most CPU seconds for the references of a scene")
         ->capture_default_str()
-        ->check(CLI::Range(0.1, 1e9));
+        ->check(real_range(0.1, 1e9));
     command->add_option("--resolution", o.resolution, "WIDTHxHEIGHT in pixels");
     command->add_option("-D", o.settings, "any setting of render, KEY=VALUE; may be repeated")->allow_extra_args(false);
     command->add_option("-j,--jobs", o.jobs, "runs at a time, one thread each; 0: one for each core")

@@ -1,4 +1,5 @@
 #include "cli/keeping.h"
+#include "cli/real_range.h"
 
 #include "core/error.h"
 #include "core/unit_set.h"
@@ -42,7 +43,7 @@ void Keeping::add_options(CLI::App& command) {
     command
         .add_option("--checkpoint", checkpoint,
                     "every so many SECONDS keep what is done, beside the picture as NAME.checkpoint.exr")
-        ->check(CLI::Range(0.0, 1e9));
+        ->check(real_range(0.0, 1e9));
     command.add_flag("--resume", resume, "go on from that file");
 }
 

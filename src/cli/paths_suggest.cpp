@@ -1,5 +1,6 @@
 // keyhole paths suggest: user paths from the renderer itself.
 #include "cli/paths.h"
+#include "cli/real_range.h"
 #include "core/error.h"
 #include "film/atomic_file.h"
 #include "render/render.h"
@@ -43,7 +44,7 @@ void add_paths_suggest_command(CLI::App& paths, Action& action) {
     command->add_option("-n,--number", o->options.count, "most paths")->check(CLI::Range(1, 1000));
     command->add_option("-o,--output", o->output, "file to write; default: the standard output");
     command->add_option("--radius", o->options.radius, "how far apart paths are alike, as a share of the scene's size")
-        ->check(CLI::Range(1e-4, 1.0));
+        ->check(real_range(1e-4, 1.0));
     command->add_option("-D", o->overrides, "any setting of render, KEY=VALUE; may be repeated")
         ->allow_extra_args(false);
     command->callback([&action, o] { action = [o] { return suggest(*o); }; });

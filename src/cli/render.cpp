@@ -5,6 +5,7 @@
 #include "cli/live_view.h"
 #include "cli/metadata.h"
 #include "cli/outputs.h"
+#include "cli/real_range.h"
 #include "cli/report.h"
 #include "cli/resolution.h"
 #include "cli/stats_json.h"
@@ -63,6 +64,9 @@ std::unique_ptr<TerminalProgress> make_progress(bool quiet) {
 /// worth a file, least of all one that replaces an earlier picture.
 bool has_picture(const RenderResult& result) {
     if (!result.picture.sums.empty()) return result.stats.samples > 0;
+    if (!result.stats.complete && !(result.stats.samples > 0) && result.stats.proposals.empty() &&
+        !result.stats.values.contains("empty pixels"))
+        return false; // chains that had no time for a step
     const auto empty = result.stats.values.find("empty pixels");
     return empty == result.stats.values.end() ||
            empty->second < static_cast<double>(result.picture.width) * static_cast<double>(result.picture.height);
@@ -127,9 +131,11 @@ RenderResult render_scene(LoadedScene& loaded, RenderOptions& options, StopToken
         const auto progress = make_progress(options.quiet);
         if (options.writes()) view.watch(share);
         const RunContext context{&stop, progress.get()};
-        // Parts of a render have to agree on its settings: none can follow from the time.
+        // Parts of a render have to agree on its settings: none can follow from the time. And where passes end by
+        // something else, they do.
         const bool alone = options.team == nullptr && !options.keeping.asked();
-        result = options.in_time() && alone && loaded.settings.passes > 0 && loaded.settings.load_map.empty()
+        const bool ends_by_time = loaded.settings.passes > 0 && loaded.settings.target_error == 0;
+        result = options.in_time() && alone && ends_by_time && loaded.settings.load_map.empty()
                      ? render_in_time(scene, loaded.settings, named_settings(options.overrides), context,
                                       loaded.user_paths, share)
                      : render(scene, loaded.settings, context, loaded.user_paths, share);
@@ -240,11 +246,14 @@ void add_render_command(CLI::App& app, Action& action, const std::string& comman
     o->keeping.add_options(*command);
     command->add_option("-t,--threads", o->threads, "threads; 0: one for each core")->check(CLI::Range(0, 4096));
     auto* timeout = command->add_option("--timeout", o->timeout, "the best picture that can be made in SECONDS")
-                        ->check(CLI::Range(0.0, 1e9));
-    command->add_option("--cpu-time", o->cpu_time, "the same in SECONDS of CPU time, of all threads together")
-        ->check(CLI::Range(0.0, 1e9))
-        ->excludes(timeout);
-    command->add_option("--quality", o->quality, "draft, good or final: how much work, in one word")->excludes(timeout);
+                        ->check(real_range(1e-3, 1e9));
+    auto* cpu_time =
+        command->add_option("--cpu-time", o->cpu_time, "the same in SECONDS of CPU time, of all threads together")
+            ->check(real_range(1e-3, 1e9))
+            ->excludes(timeout);
+    command->add_option("--quality", o->quality, "draft, good or final: how much work, in one word")
+        ->excludes(timeout)
+        ->excludes(cpu_time);
     command->add_flag("--strict", o->strict, "exit with 3 where there is a warning: the picture can't be trusted");
     command->add_option("--display-server", o->display_server, "HOST:PORT of tev, to which the picture so far is sent");
     auto* quiet = command->add_flag("-q,--quiet", o->quiet, "say nothing but errors");

@@ -14,6 +14,7 @@ struct CacheOptions {
     int rays = 400;         ///< of a record's hemisphere; bright spots get half as many on top
     double min_radius = 4;  ///< [pixels], as wide as one is at the record's distance from the eye
     double max_radius = 60; ///< [pixels]
+    double overlap = 1;     ///< how many times its radius a record is used
     std::uint64_t seed = 1;
 };
 

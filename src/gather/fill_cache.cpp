@@ -75,19 +75,30 @@ class LevelFill {
     std::vector<std::uint64_t> indices_;
 };
 
-/// How many times its radius a record is used. A sum over o^2 times as many records has o^-2 times the variance, which
-/// falls with the number of rays as well, and a square of the bias that grows as o^4: both are least together where o
-/// goes by the sixth root of the rays. With 1600 of them, twice.
-float overlap(int rays) { return std::clamp(2 * static_cast<float>(std::pow(rays / 1600.0, -1 / 6.0)), 1.0f, 2.0f); }
+constexpr double kFewestRays = 64; // that tell how far a record is good for
+
+/// A sum over o^2 times as many records has o^-2 times the variance, which falls with the number of rays as well, and a
+/// square of the bias that grows as o^4: both are least together where o goes by the sixth root of the rays. With 1600
+/// of them, twice.
+double overlap(double rays) { return 2 * std::pow(rays / 1600.0, -1 / 6.0); }
 
 } // namespace
 
-CacheOptions cache_options(const Settings& settings, std::uint64_t seed) {
-    return {.error = settings.cache_error, .rays = static_cast<int>(settings.cache_rays), .seed = seed};
+CacheOptions cache_options(const Settings& settings, double shrink, std::uint64_t seed) {
+    const auto rays = static_cast<double>(settings.cache_rays);
+    CacheOptions options;
+    options.error = settings.cache_error * shrink;
+    options.min_radius *= shrink;
+    options.max_radius *= shrink;
+    options.rays = static_cast<int>(std::max(rays * shrink * shrink, std::min(rays, kFewestRays)));
+    // The rays of all passes count; their number grows as the sixth power of 1 / shrink.
+    options.overlap = std::clamp(overlap(rays) * shrink, 1.0, 2.0);
+    options.seed = seed;
+    return options;
 }
 
 IrradianceCache fill_cache(const GatherRays& rays, const CacheOptions& options, const RunContext& context) {
-    IrradianceCache cache(static_cast<float>(options.error), overlap(options.rays));
+    IrradianceCache cache(static_cast<float>(options.error), static_cast<float>(options.overlap));
     context.begin("irradiance cache", 6, "levels");
     const BrightSpots spots(rays, options.seed, context);
     const RecordMaker maker(rays, spots, options);

@@ -7,7 +7,9 @@
 
 namespace keyhole {
 
-CacheOptions cache_options(const Settings& settings, std::uint64_t seed);
+/// @param shrink see Radii: later passes have more records with fewer rays each, for about the same time. What
+/// interpolation makes wrong shrinks from pass to pass like what lookups do; noise goes with the number of passes.
+CacheOptions cache_options(const Settings& settings, double shrink, std::uint64_t seed);
 
 /// Records where the eye's rays, through glass and by mirrors, meet near-Lambertian surfaces and the cache knows
 /// nothing yet: first at every 16th pixel in each direction, then between them down to each pixel, twice. Points are

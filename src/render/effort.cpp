@@ -33,10 +33,10 @@ Settings with_effort(const Settings& settings, double effort, std::int64_t pixel
     // Small pictures get more samples a pixel, large ones fewer, so that photons and pixels share the time alike.
     const double spp = 8 * std::sqrt(effort * kPixels / static_cast<double>(pixels));
     const double photons = 80e3 * std::pow(effort, 0.6);
-    const double passes =
-        given.contains("passes") || !keeps_photons(s.method)
-            ? 1
-            : std::min(static_cast<double>(passes_for(static_cast<std::int64_t>(photons), s)), std::max(1.0, spp));
+    const double passes = given.contains("passes") || !keeps_photons(s.method)
+                              ? 1
+                              : std::min(static_cast<double>(passes_for(static_cast<std::int64_t>(photons), s)),
+                                         std::floor(std::max(1.0, spp)));
     set("passes", &Settings::passes, passes, 1, 1 << 20);
     set("spp", &Settings::spp, spp / passes, 1, 1 << 24);
     set("photons", &Settings::photons, photons / passes, 1000, 1 << 30);
@@ -47,8 +47,9 @@ Settings with_effort(const Settings& settings, double effort, std::int64_t pixel
         0x1p50);
     set("brightness_samples", &Settings::brightness_samples,
         (multiplexed ? 50e3 : 100e3) * effort * balance.brightness / passes, 5000, 0x1p40);
-    // However short the render: without them photons would be weighed, or looked for, by chance, which costs more.
-    set("importons", &Settings::importons, 100e3 * effort / passes, 50e3, 1 << 30);
+    // More of them where the render is short, though not where they would take all of its time: without them photons
+    // would be weighed, or looked for, by chance, which costs more.
+    set("importons", &Settings::importons, 100e3 * effort / passes, std::clamp(1e6 * effort, 10e3, 50e3), 1 << 30);
     set("cache_rays", &Settings::cache_rays, 1600 * std::pow(effort, 0.7) / std::sqrt(passes), 64, 1 << 20);
     return s;
 }

@@ -29,8 +29,8 @@ class EmissionSampler final : public PhotonSampler {
                           .seed = seed,
                           .user_paths = by_importance_ ? LightGuides(c_.scene, c_.user_paths) : LightGuides()},
                          context);
-        stats.values["light paths"] = static_cast<double>(photons.paths);
-        stats.values["photons before storing"] = static_cast<double>(photons.arrivals);
+        stats.values["light paths"] += static_cast<double>(photons.paths);
+        stats.values["photons before storing"] += static_cast<double>(photons.arrivals);
         stats.photon_bytes = std::max<std::uint64_t>(stats.photon_bytes, photons.bytes + stats.importon_bytes);
         return photons;
     }

@@ -56,7 +56,9 @@ PassGather::PassGather(const SamplerContext& c, const RenderPlan& plan, std::int
                              .patches = &c.patches,
                              .reach = c.reach},
                   lookups(s, radii), static_cast<int>(s.max_depth));
-    if (plan.cache) cache_ = fill_cache(*rays_, cache_options(s, seed), context.with_reserve(kForSamples));
+    if (plan.cache)
+        cache_ = fill_cache(*rays_, cache_options(s, static_cast<double>(radii.shrink), seed),
+                            context.with_reserve(kForSamples));
     if (cache_) stats.values["cached irradiances"] = static_cast<double>(cache_->size());
     gather_.emplace(*rays_, cache_ ? &*cache_ : nullptr,
                     GatherSamples{.light = static_cast<int>(s.light_samples),

@@ -18,8 +18,8 @@ RenderResult render_path(const Scene& scene, const Settings& settings, const Run
         const auto depth = static_cast<int>(settings.max_depth);
         while (const auto round = work.take(context)) {
             const bool whole = sample_round(scene, *work.unit().film, *round, static_cast<std::uint64_t>(settings.seed),
-                                            StreamPurpose::path_tracing, context, luminance,
-                                            [&](const Vec2& image, SampleSource& source) {
+                                            StreamPurpose::path_tracing, *round == 0 ? context.first_round() : context,
+                                            luminance, [&](const Vec2& image, SampleSource& source) {
                                                 PixelSink sink{};
                                                 trace_path(scene, image, depth, source, sink);
                                                 return sink.pixel;

@@ -41,10 +41,6 @@ struct Experience {
     double effort, pixels;
     std::vector<std::pair<std::string, double>> stages; ///< name, seconds
 
-    double seconds() const {
-        return std::accumulate(stages.begin(), stages.end(), 0.0,
-                               [](double sum, const auto& stage) { return sum + stage.second; });
-    }
     /// What some stages, all if none is named, of a render with other settings would take [s].
     double foresee(const Settings& other, double its_pixels, std::initializer_list<std::string_view> names = {}) const {
         double sum = 0;
@@ -55,14 +51,19 @@ struct Experience {
     }
 };
 
-/// @param seconds that all took, of the kind that is limited.
+/// @param seconds that the render took, of the kind that is limited: by the clock, or of CPU time.
 Experience experience(const Settings& settings, double effort, double pixels, const RenderStats& stats,
                       double seconds) {
-    double all = 0;
-    for (const StageStats& stage : stats.stages) all += stage.wall_seconds;
+    double wall = 0, cpu = 0;
+    for (const StageStats& stage : stats.stages) {
+        wall += stage.wall_seconds;
+        cpu += stage.cpu_seconds;
+    }
+    const bool by_cpu = std::abs(seconds - cpu) < std::abs(seconds - wall);
     Experience e{settings, effort, pixels, {}};
+    e.stages.emplace_back("between stages", std::max(0.0, seconds - (by_cpu ? cpu : wall)));
     for (const StageStats& stage : stats.stages)
-        if (stage.name != kChoice) e.stages.emplace_back(stage.name, seconds * stage.wall_seconds / all);
+        if (stage.name != kChoice) e.stages.emplace_back(stage.name, by_cpu ? stage.cpu_seconds : stage.wall_seconds);
     return e;
 }
 
@@ -121,40 +122,68 @@ StageBalance rebalance(const StageBalance& balance, const RenderStats& stats) {
             std::clamp(balance.chains * (1 - share) * (one + two) / two, 0.9, 4.0)};
 }
 
-/// The mean of renders, weighted by their efforts: their squared errors are about as the reciprocals.
+/// The mean of renders, weighted by their efforts: their squared errors are about as the reciprocals. What is told of
+/// it is what is to be told of the one with most effort.
 class MeanRender {
   public:
     bool empty() const { return !result_; }
     void add(RenderResult&& result, double effort) {
-        const bool joins = result_ && effort_ > kNegligible * effort;
-        if (result_) add_stages(others_, result_->stats);
-        if (joins) {
-            effort_ += effort;
-            blend(result.picture, result_->picture, 1 - effort / effort_);
-            result.picture.sums.clear(); // they are of one render
-            result.stats.samples += result_->stats.samples;
-        } else
-            effort_ = effort;
-        result_ = std::move(result);
+        if (!result_ || effort_ <= kNegligible * effort) {
+            if (result_) add_stages(others_, result_->stats);
+            result_ = std::move(result);
+            effort_ = most_ = effort;
+            return;
+        }
+        effort_ += effort;
+        blend(result_->picture, result.picture, effort_ > 0 ? effort / effort_ : 0);
+        result_->picture.sums.clear(); // they are of one render
+        const double samples = result_->stats.samples + result.stats.samples;
+        if (effort > most_) {
+            most_ = effort;
+            std::swap(result_->stats, result.stats);
+            result_->settings = result.settings;
+        }
+        result_->stats.samples = samples;
+        add_stages(others_, result.stats);
     }
+    const Picture& picture() const { return result_->picture; }
     /// A render that gave no picture took time, too.
     void add_time_of(const RenderStats& stats) { add_stages(others_, stats); }
     RenderResult take() {
         auto& stages = result_->stats.stages;
-        if (others_.wall_seconds > 0) stages.insert(stages.begin(), others_);
+        stages.insert(stages.begin(), others_);
         result_->stats.values["effort"] = effort_;
         return std::move(*result_);
     }
 
   private:
-    std::optional<RenderResult> result_; // with the stats of the last
-    double effort_ = 0;
-    StageStats others_{.name = "renders before"};
+    std::optional<RenderResult> result_;
+    double effort_ = 0, most_ = 0;
+    StageStats others_{.name = "other renders"};
 };
 
 bool has_empty_pixels(const RenderStats& stats) {
     const auto empty = stats.values.find("empty pixels");
     return empty != stats.values.end() && empty->second > 0;
+}
+
+/// What part of what was asked for there was time for.
+double share_done(const Settings& asked, const RenderStats& stats) {
+    if (stats.complete && stats.proposals.empty() && !stats.values.contains("light paths")) return 1; // no light found
+    const auto passes = static_cast<double>(std::max<std::int64_t>(1, asked.passes));
+    double share = 1;
+    if (const auto paths = stats.values.find("light paths"); paths != stats.values.end())
+        share = paths->second / (passes * static_cast<double>(asked.light_paths));
+    else {
+        const double steps =
+            std::accumulate(stats.proposals.begin(), stats.proposals.end(), 0.0,
+                            [](double sum, const ProposalStats& p) { return sum + static_cast<double>(p.proposed); });
+        share = steps / (passes * static_cast<double>(asked.mutations));
+    }
+    // Fewer samples of a pixel leave what photons and the cache know of it as it is.
+    const double samples =
+        keeps_photons(asked.method) && !stats.complete ? stats.samples / (passes * static_cast<double>(asked.spp)) : 1;
+    return std::min(share, 1.0) * std::clamp(samples, 0.1, 1.0);
 }
 
 /// Renders a scene as often as there is time for.
@@ -168,6 +197,7 @@ class RenderInTime {
     RenderResult run() {
         const RenderStats trial = try_out();
         mean_.add_time_of(trial);
+        if (keeps_photons(settings_.method) && foreseen(0) > left()) return trace_paths();
         for (auto effort = affordable(); effort && add_render(*effort) && !context_.stopped();) effort = affordable();
         RenderResult result = mean_.take();
         std::ranges::copy_if(trial.remarks, std::back_inserter(result.stats.remarks),
@@ -190,14 +220,29 @@ class RenderInTime {
         small.width = std::max(1, window_.width / kTrialScale);
         small.height = std::max(1, window_.height / kTrialScale);
         const double effort = std::min(kTrial * start / kSecondsOfEffort, kTrialAtMost);
-        Settings chosen = with(effort, pixels_of(small));
-        if (!given_.contains("importons")) chosen.importons /= 4;
+        Settings chosen = with_effort(settings_, effort, static_cast<std::int64_t>(pixels_of(small)), {},
+                                      balance_); // what is given may be much
+        chosen.save_map.clear();
         chosen.seed = seed_of_render(settings_, renders_++);
         scene_.set_window(small);
         RenderStats stats = render(scene_, chosen, context_, user_paths_).stats;
         scene_.set_window(window_);
         learn(chosen, effort, pixels_of(small), stats, start);
         return stats;
+    }
+
+    /// Where there isn't time for the least of what photon maps take. Paths of a sample a pixel are a noisy picture,
+    /// not a wrong one, and are traced even if time is up.
+    RenderResult trace_paths() {
+        Settings chosen = settings_;
+        chosen.method = "path";
+        chosen.spp = 1 << 24;
+        RunContext whole = context_;
+        whole.whole_round = true;
+        mean_.add(render(scene_, chosen, whole, user_paths_, share_), 0);
+        RenderResult result = mean_.take();
+        result.stats.warnings.push_back("too little time for " + settings_.method + " here: paths were traced instead");
+        return result;
     }
 
     void learn(Settings settings, double effort, double pixels, const RenderStats& stats, double start) {
@@ -227,7 +272,6 @@ class RenderInTime {
     bool add_render(double effort) {
         const double start = left();
         Settings chosen = with(effort, pixels());
-        const double expected = foreseen(effort);
         RunContext limited = context_;
         if (keeps_photons(chosen.method)) {
             // Should the stages before it cost more than was foreseen, they leave stage three its time.
@@ -236,19 +280,27 @@ class RenderInTime {
             limited.whole_round = !mean_.empty(); // there is a picture, and photons are worth that little more time
         }
         chosen.seed = seed_of_render(settings_, renders_++);
-        RenderResult result = render(scene_, chosen, limited, user_paths_, share_);
+        if (!mean_.empty()) chosen.save_map.clear();
+        RenderResult result = render(scene_, chosen, limited, user_paths_, share_to_look_at());
         result.settings.seed = chosen.seed = settings_.seed;
         // Where time was up before each pixel had a sample, what was there before is the better picture.
-        if (!mean_.empty() && has_empty_pixels(result.stats)) {
+        if (!mean_.empty() && !result.stats.complete && has_empty_pixels(result.stats)) {
             mean_.add_time_of(result.stats);
             return false;
         }
         result.stats.remarks.push_back("set by the time:" + differences(settings_, chosen));
         learn(chosen, effort, pixels(), result.stats, start);
         // One that was cut short comes to less.
-        const double made = result.stats.complete ? 1 : std::min(1.0, last_->seconds() / expected);
-        mean_.add(std::move(result), made * effort);
+        const double made = effort * share_done(chosen, result.stats);
+        mean_.add(std::move(result), made);
         return true;
+    }
+
+    /// Who looks sees the mean once there is one, not the begin of what comes after.
+    Share share_to_look_at() const {
+        Share share = share_;
+        if (share.look && !mean_.empty()) share.look = [this](const Picture&) { share_.look(mean_.picture()); };
+        return share;
     }
 
     Scene& scene_;

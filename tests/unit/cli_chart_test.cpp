@@ -30,7 +30,7 @@ TEST_F(Program, CpuTimeSetsSamplesAndPhotons) {
     const auto stats = nlohmann::json::parse(read("s.json"));
     EXPECT_THAT(stats["remarks"].dump(), HasSubstr("set by the time:"));
     EXPECT_GT(stats["values"]["effort"], 0);
-    EXPECT_EQ(stats["stages"][0]["name"], "renders before") << "the trial is not what comes out";
+    EXPECT_EQ(stats["stages"][0]["name"], "other renders") << "the trial is not what comes out";
     const std::string settings = read_exr(scratch.path("a.exr")).metadata.at("settings");
     EXPECT_THAT(settings, testing::Not(HasSubstr("light_paths=1000000 ")));
     // What the command line names stays.

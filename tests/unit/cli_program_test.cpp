@@ -66,6 +66,8 @@ TEST_F(Program, BadInputExitsWithTwoAndOneLine) {
                                   "render scene.yaml -q -v",
                                   "render scene.yaml -t -1",
                                   "render scene.yaml --timeout -1",
+                                  "render scene.yaml --cpu-time nan",
+                                  "render scene.yaml --timeout nan",
                                   "render scene.yaml --timeout 0",
                                   "render scene.yaml --cpu-time 0",
                                   "render scene.yaml --cpu-time 1 --timeout 1",

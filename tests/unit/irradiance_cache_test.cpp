@@ -2,6 +2,7 @@
 
 #include "core/rng.h"
 #include "core/statistics.h"
+#include "gather/fill_cache.h"
 
 #include <gtest/gtest.h>
 
@@ -129,6 +130,24 @@ TEST(IrradianceCache, ClampsRadiiByNeighboursAndBounds) {
     EXPECT_FLOAT_EQ(cache.radius(3), kMin);
     cache.insert(record({-90, 0, 0}, 1, std::numeric_limits<double>::infinity()));
     EXPECT_FLOAT_EQ(cache.radius(4), kMax);
+}
+
+/// What records make wrong together must vanish with passes, in about the same time a pass: finer, with fewer rays.
+TEST(CacheOptions, ShrinkFromPassToPass) {
+    Settings s;
+    s.cache_rays = 1600;
+    const CacheOptions first = cache_options(s, 1, 1), later = cache_options(s, 0.5, 1),
+                       late = cache_options(s, 0.01, 1);
+    EXPECT_DOUBLE_EQ(later.error, first.error / 2);
+    EXPECT_DOUBLE_EQ(later.min_radius, first.min_radius / 2);
+    EXPECT_DOUBLE_EQ(later.max_radius, first.max_radius / 2);
+    EXPECT_EQ(first.rays, 1600);
+    EXPECT_EQ(later.rays, 400);
+    EXPECT_EQ(late.rays, 64) << "fewer don't tell how far a record is good for";
+    EXPECT_DOUBLE_EQ(first.overlap, 2);
+    EXPECT_DOUBLE_EQ(later.overlap, 1);
+    s.cache_rays = 16;
+    EXPECT_EQ(cache_options(s, 0.01, 1).rays, 16) << "as few as were asked for";
 }
 
 TEST(IrradianceCache, ReachEndsWhereTheGradientStopsHolding) {
