@@ -6,6 +6,7 @@
 #include "sampling/path_tracer.h"
 
 #include <algorithm>
+#include <span>
 #include <vector>
 
 namespace keyhole {
@@ -18,47 +19,59 @@ constexpr double kLeastLight = 0.01, kLeastSeen = 0.1;
 /// thousands of rays still leave more noise than a density estimate from photons would.
 constexpr double kBearable = 40;
 
-constexpr std::int64_t kBlocks = 64;
 constexpr std::uint64_t kSeed = 1; // as Reach: the choice doesn't change with the seed
+/// Gather rays to find out by. Fewer miss what few of them find, and take it for little.
+constexpr std::int64_t kRays = 1 << 15;
+/// What so many of them find may be chance. Where many others, by their effective number, find light as well, these
+/// tell of the noise.
+constexpr std::int64_t kChance = 3;
+constexpr double kMany = 20;
 
-/// What one gather ray after the other finds.
+/// What a gather ray finds.
 struct GatheredLight {
-    const PathSet& set;
-    double near = 0, beyond = 0; // of the ray
-    RunningStats all{}, all_beyond{};
+    const PathSet* set = nullptr;
+    double near = 0, beyond = 0;
 
     static bool arrival(const EyeWalk& /*walk*/, const Rgb& /*throughput*/, int /*finite*/) { return true; }
     void contribution(const EyeWalk& walk, const Vertex& x0, const Rgb& value, LightClass light) {
         if (light == LightClass::second || light == LightClass::indirect)
-            (reaches_d2(set, walk, x0) ? near : beyond) += luminance(value);
-    }
-    void end() {
-        all.add(near + beyond);
-        all_beyond.add(beyond);
-        near = beyond = 0;
+            (reaches_d2(*set, walk, x0) ? near : beyond) += luminance(value);
     }
 };
 
-/// Whether a final gather would be too noisy, or find nothing at all, of the light beyond reach.
-bool too_noisy(const Scene& scene, const Reach& reach, int max_scatterings, std::int64_t paths) {
-    const PathSet set{.reach = &reach};
-    std::vector<GatheredLight> parts(kBlocks, GatheredLight{set});
-    parallel_for(kBlocks, [&](std::int64_t b) {
-        GatheredLight& part = parts[static_cast<std::size_t>(b)];
-        const Range range = split(paths, kBlocks, b);
-        for (std::int64_t i = range.begin; i < range.end; ++i) {
-            Rng rng(kSeed, StreamPurpose::reach_trial, static_cast<std::uint64_t>(i));
-            trace_path(scene, lattice_image_point(kSeed, StreamPurpose::reach_trial, i), max_scatterings, rng, part);
-            part.end();
-        }
-    });
+bool too_noisy(std::span<const GatheredLight> rays) {
     RunningStats all, beyond;
-    for (const GatheredLight& part : parts) {
-        all.merge(part.all);
-        beyond.merge(part.all_beyond);
+    for (const GatheredLight& ray : rays) {
+        all.add(ray.near + ray.beyond);
+        beyond.add(ray.beyond);
     }
-    if (!(beyond.mean() > 0)) return true;
     return beyond.mean() > kLeastSeen * all.mean() && beyond.variance() > kBearable * all.mean() * all.mean();
+}
+
+/// How many rays that all found as much would be as good a sample of the light beyond reach.
+double effective_rays(std::span<const GatheredLight> rays) {
+    double sum = 0, squares = 0;
+    for (const GatheredLight& ray : rays) {
+        sum += ray.beyond;
+        squares += ray.beyond * ray.beyond;
+    }
+    return squares > 0 ? sum * sum / squares : 0;
+}
+
+/// Whether a final gather would be too noisy, or find nothing at all, of the light beyond reach.
+bool too_noisy(const Scene& scene, const Reach& reach, int max_scatterings) {
+    const PathSet set{.reach = &reach};
+    std::vector<GatheredLight> rays(kRays, GatheredLight{&set});
+    parallel_for(kRays, [&](std::int64_t i) {
+        Rng rng(kSeed, StreamPurpose::reach_trial, static_cast<std::uint64_t>(i));
+        trace_path(scene, lattice_image_point(kSeed, StreamPurpose::reach_trial, i), max_scatterings, rng,
+                   rays[static_cast<std::size_t>(i)]);
+    });
+    if (effective_rays(rays) == 0) return true;
+    if (!too_noisy(rays)) return false;
+    std::ranges::nth_element(rays, rays.end() - kChance, {}, &GatheredLight::beyond);
+    const std::span most(rays.data(), rays.size() - kChance);
+    return effective_rays(most) < kMany || too_noisy(most);
 }
 
 } // namespace
@@ -76,8 +89,7 @@ ReachFound find_reach(const Scene& scene, const Settings& settings) {
     Reach reach(scene, depth, paths);
     found.beyond = light_beyond_reach(scene, reach, depth, paths / 8);
     const bool always = settings.plan == "all";
-    if (always || (found.beyond > kLeastLight && too_noisy(scene, reach, depth, paths / 2)))
-        found.reach = std::move(reach);
+    if (always || (found.beyond > kLeastLight && too_noisy(scene, reach, depth))) found.reach = std::move(reach);
     return found;
 }
 

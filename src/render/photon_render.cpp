@@ -150,6 +150,8 @@ RenderResult render_photons(const Scene& scene, const Settings& settings, const 
     const RenderPlan plan = make_plan(c, stats, context);
     c.reach = plan.reach ? &*plan.reach : nullptr;
     c.caustics = plan.caustics || c.reach != nullptr;
+    if (plan.photons && settings.reach != "off")
+        stats.values["light beyond gather rays is stored"] = plan.reach ? 1 : 0;
     const std::optional<ImageWeight> weight = weigh_pixels(c, plan, stats, context);
     c.weight = weight ? &*weight : nullptr;
     const auto sampler = make_sampler(c, plan, stats, context);

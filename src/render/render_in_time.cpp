@@ -228,6 +228,10 @@ class RenderInTime {
         RenderStats stats = render(scene_, chosen, context_, user_paths_).stats;
         scene_.set_window(window_);
         learn(chosen, effort, pixels_of(small), stats, start);
+        // What gather rays reach is a question of the scene, and takes time to answer.
+        if (const auto stored = stats.values.find("light beyond gather rays is stored");
+            stored != stats.values.end() && stored->second == 0)
+            settings_.reach = "off";
         return stats;
     }
 

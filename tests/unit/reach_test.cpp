@@ -57,7 +57,12 @@ TEST(Reach, IsEverywhereInARoom) {
 TEST(Reach, IsSoughtWhereAFinalGatherWouldBeNoise) {
     Settings off;
     off.reach = "off";
-    EXPECT_TRUE(find_reach(*test::two_rooms(0.01f), {}).reach.has_value());
+    for (const float width : {0.03f, 0.01f, 0.003f})
+        for (const std::int64_t importons : {10'000, 100'000, 400'000}) {
+            Settings s;
+            s.importons = importons;
+            EXPECT_TRUE(find_reach(*test::two_rooms(width), s).reach.has_value()) << width << " m, " << importons;
+        }
     EXPECT_FALSE(find_reach(*test::two_rooms(2), {}).reach.has_value());
     EXPECT_FALSE(find_reach(*test::two_rooms(0.01f), off).reach.has_value());
     Settings standard;
