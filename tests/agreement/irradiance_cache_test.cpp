@@ -14,7 +14,7 @@ void expect_agreement(Scene& scene) {
     settings.importons = 50'000;
     settings.mutations = 100'000;
     settings.photons = 30'000;
-    constexpr int kRuns = 4;
+    constexpr int kRuns = 3;
     const test::Blocks cached = test::render_blocks(scene, settings, kRuns, "indirect");
     settings.irradiance_cache = false;
     settings.seed = 100;

@@ -56,13 +56,13 @@ TEST_P(RenderInTime, IsAsBrightAsTheScene) {
     const auto scene = test::diffuse_box();
     const ImageWindow window = scene->camera().window();
     Settings s;
-    s.spp = 256;
+    s.spp = 128;
     s.method = "path";
     const double expected = mean_luminance(render(*scene, s, {}).picture);
     s = {};
     s.method = GetParam();
     StopToken stop;
-    stop.set_cpu_limit(cpu_seconds() + 2);
+    stop.set_cpu_limit(cpu_seconds() + 1);
     RunContext context;
     context.stop = &stop;
     const RenderResult result = render_in_time(*scene, s, {}, context);
