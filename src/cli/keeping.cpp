@@ -1,6 +1,6 @@
 #include "cli/keeping.h"
-#include "cli/real_range.h"
 
+#include "cli/real_range.h"
 #include "core/error.h"
 #include "core/unit_set.h"
 #include "film/exr.h"

@@ -186,6 +186,13 @@ double share_done(const Settings& asked, const RenderStats& stats) {
     return std::min(share, 1.0) * std::clamp(samples, 0.1, 1.0);
 }
 
+/// For a method that takes samples as long as there is time.
+Settings with_all_samples(Settings settings, const char* method, const std::set<std::string>& given) {
+    settings.method = method;
+    if (!given.contains("spp")) settings.spp = 1 << 24;
+    return settings;
+}
+
 /// Renders a scene as often as there is time for.
 class RenderInTime {
   public:
@@ -238,12 +245,9 @@ class RenderInTime {
     /// Where there isn't time for the least of what photon maps take. Paths of a sample a pixel are a noisy picture,
     /// not a wrong one, and are traced even if time is up.
     RenderResult trace_paths() {
-        Settings chosen = settings_;
-        chosen.method = "path";
-        chosen.spp = 1 << 24;
         RunContext whole = context_;
         whole.whole_round = true;
-        mean_.add(render(scene_, chosen, whole, user_paths_, share_), 0);
+        mean_.add(render(scene_, with_all_samples(settings_, "path", given_), whole, user_paths_, share_), 0);
         RenderResult result = mean_.take();
         result.stats.warnings.push_back("too little time for " + settings_.method + " here: paths were traced instead");
         return result;
@@ -324,11 +328,10 @@ class RenderInTime {
 
 RenderResult render_in_time(Scene& scene, const Settings& settings, const std::set<std::string>& given,
                             const RunContext& context, const UserPathFile& user_paths, const Share& share) {
+    for (const char* method : {"path", "bdpt"})
+        if (settings.method == method)
+            return render(scene, with_all_samples(settings, method, given), context, user_paths, share);
     Settings s = settings;
-    if (s.method == "path" || s.method == "bdpt") {
-        if (!given.contains("spp")) s.spp = 1 << 24; // as many as there is time for
-        return render(scene, s, context, user_paths, share);
-    }
     if (!given.contains("brightness_error")) s.brightness_error = 0; // stage one gets its part of the time, no more
     return RenderInTime{scene, s, given, context, user_paths, share}.run();
 }

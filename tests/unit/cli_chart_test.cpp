@@ -38,6 +38,16 @@ TEST_F(Program, CpuTimeSetsSamplesAndPhotons) {
     EXPECT_THAT(read_exr(scratch.path("b.exr")).metadata.at("settings"), HasSubstr("spp=3 "));
 }
 
+/// Where there is no time for photons paths are traced: noisy, not wrong, and it says so.
+TEST_F(Program, TooLittleTimeForPhotonsStillGivesAPicture) {
+    ASSERT_EQ(run("render scene.yaml -o a.exr --cpu-time 0.001 --method ipm --stats s.json --no-png -q"), 0)
+        << read("err");
+    const auto stats = nlohmann::json::parse(read("s.json"));
+    EXPECT_EQ(stats["method"], "path");
+    EXPECT_THAT(stats["warnings"].dump(), HasSubstr("too little time for ipm"));
+    EXPECT_FALSE(read_exr(scratch.path("a.exr")).layers.at("beauty").data.empty());
+}
+
 TEST_F(Program, QualityIsEffortInOneWord) {
     std::int64_t before = 0;
     for (const char* quality : {"draft", "good"}) {
