@@ -12,6 +12,7 @@
 #include <cstring>
 #include <fcntl.h>
 #include <filesystem>
+#include <mutex>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -24,9 +25,11 @@ namespace fs = std::filesystem;
     throw InputError(fmt::format("{}: cannot write: {}", path, std::strerror(error)));
 }
 
-/// Name of the temporary file that is being written, for a signal handler; empty: none. Only one is written at a time.
+/// Name of the temporary file that is being written, for a signal handler, which can ask for one only: threads take
+/// turns.
 std::array<char, PATH_MAX> unfinished{};
 std::atomic<bool> is_unfinished{false};
+std::mutex turn;
 
 void remember(const std::string& name) {
     if (name.size() >= unfinished.size()) return;
@@ -37,14 +40,15 @@ void remember(const std::string& name) {
 /// An open file; closed, and removed if it is still temporary, at the end of its scope.
 struct File {
     int descriptor = -1;
-    std::string temporary; ///< name, empty: not to be removed
+    std::string temporary;                ///< name, empty: not to be removed
+    std::unique_lock<std::mutex> writing; ///< held while `unfinished` is its name
     File() = default;
     File(const File&) = delete;
     File& operator=(const File&) = delete;
     ~File() {
         if (descriptor >= 0) close(descriptor);
         if (!temporary.empty()) unlink(temporary.c_str());
-        is_unfinished = false;
+        if (writing) is_unfinished = false;
     }
 };
 
@@ -72,6 +76,7 @@ Kind kind_of(const std::string& path, const fs::path& target) {
 /// A new file in the target's folder, with the permissions of the file that it is to replace.
 void open_temporary(File& file, const std::string& path, const fs::path& target) {
     const fs::path folder = target.parent_path();
+    file.writing = std::unique_lock(turn);
     for (int attempt = 0;; ++attempt) {
         const std::string name = (folder / fmt::format(".keyhole-{}-{}.tmp", getpid(), attempt)).string();
         remember(name);

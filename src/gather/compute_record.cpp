@@ -37,6 +37,7 @@ void RecordMaker::add_spot(const VisiblePoint& c, const Frame& frame, const Spot
                            HemisphereEstimate& sum) const {
     const Frame around(cone.axis);
     const double shift0 = rng.next(), shift1 = rng.next(), share = cone.solid_angle() / cone.rays;
+    double sum1 = 0, sum2 = 0;
     for (int i = 0; i < cone.rays; ++i) {
         const Vec3 w = around.to_world(
             uniform_cone(kronecker(shift0, i, kR2[0]), kronecker(shift1, i, kR2[1]), cone.cos_half_angle));
@@ -46,6 +47,9 @@ void RecordMaker::add_spot(const VisiblePoint& c, const Frame& frame, const Spot
         if (spots_.spot_at(c.vertex.point.p + w * arrival.distance) != cone.spot) continue;
         const Rgb brought = arrival.indirect * share;
         sum.irradiance += brought * static_cast<double>(z);
+        const double y = luminance(brought) * static_cast<double>(z);
+        sum1 += y;
+        sum2 += y * y;
         const Vec3 tangent = w - frame.n * z;
         for (int k = 0; k < 3; ++k) {
             const auto radiance = static_cast<float>(brought[k]);
@@ -54,6 +58,7 @@ void RecordMaker::add_spot(const VisiblePoint& c, const Frame& frame, const Spot
             sum.translation[static_cast<std::size_t>(k)] += tangent * (3 * radiance * z / arrival.distance);
         }
     }
+    sum.variance += sum2 - sum1 * sum1 / cone.rays;
 }
 
 } // namespace keyhole

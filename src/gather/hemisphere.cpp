@@ -16,6 +16,8 @@ void add(RgbGradient& sum, const Rgb& c, const Vec3& v) {
     sum[2] += v * static_cast<float>(c.z);
 }
 
+double square(double x) { return x * x; }
+
 Vec2 direction_at(double azimuth) {
     return {static_cast<float>(std::cos(azimuth)), static_cast<float>(std::sin(azimuth))};
 }
@@ -48,12 +50,18 @@ double HemisphereGrid::mean_tangent(int row) const {
 HemisphereEstimate HemisphereGrid::estimate(std::span<const HemisphereRay> rays, const Frame& frame) const {
     assert(rays.size() == static_cast<std::size_t>(size()));
     HemisphereEstimate e;
-    double inverse_distance = 0;
+    double inverse_distance = 0, unlike = 0;
+    std::vector<double> before; // luminance of the last column's, which is the first one's neighbour
+    for (int j = 0; j < rows_; ++j)
+        before.push_back(luminance(rays[static_cast<std::size_t>((j + 1) * columns_ - 1)].radiance));
     for (int k = 0; k < columns_; ++k) {
         Rgb turned(0.0);
         for (int j = 0; j < rows_; ++j) {
             const HemisphereRay& ray = rays[static_cast<std::size_t>(j * columns_ + k)];
             e.irradiance += ray.radiance;
+            const double y = luminance(ray.radiance);
+            unlike += square(y - before[static_cast<std::size_t>(j)]);
+            before[static_cast<std::size_t>(j)] = y;
             turned += ray.radiance * mean_tangents_[static_cast<std::size_t>(j)];
             if (ray.distance > 0) inverse_distance += 1 / static_cast<double>(ray.distance);
         }
@@ -61,6 +69,7 @@ HemisphereEstimate HemisphereGrid::estimate(std::span<const HemisphereRay> rays,
     }
     const double share = kPi / size();
     e.irradiance *= share;
+    e.variance = unlike / 2 * square(share);
     for (Vec3& v : e.rotation) v *= static_cast<float>(share);
     add_translation(rays, frame, e.translation);
     e.distance = size() / inverse_distance;

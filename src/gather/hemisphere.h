@@ -26,6 +26,7 @@ struct HemisphereEstimate {
         kNoGradient; ///< derivative with respect to the normal [W/m^2]: E(n') ~ E + rotation . (n' - n)
     RgbGradient translation = kNoGradient; ///< derivative with respect to the position [W/m^3]
     double distance = 0;                   ///< harmonic mean of the rays' [m]; infinite if nothing was hit
+    double variance = 0;                   ///< of the irradiance's luminance, at most [(W/m^2)^2]
 };
 
 /// The cells of a hemisphere: `rows` polar angles times `columns` azimuths, each with the same share of the cosine.
@@ -43,7 +44,8 @@ class HemisphereGrid {
     Vec3 direction(int cell, double u0, double u1) const;
 
     /// `rays` has size() entries, one drawn in each cell of `frame`. Between cells light is taken to change at their
-    /// borders, at the distance of the nearer of the two.
+    /// borders, at the distance of the nearer of the two. The variance is told from how unlike neighbours are: cells
+    /// that share one radiance have none.
     HemisphereEstimate estimate(std::span<const HemisphereRay> rays, const Frame& frame) const;
 
   private:

@@ -14,7 +14,12 @@ constexpr float kNormalReach = 0.06f;
 /// Along the normal a record is used no farther than it keeps others away.
 constexpr float kHeight2 = 16;
 
+/// Relative error, over the cache's, by which two records may foretell each other wrongly.
+constexpr float kDoubt = 1.0f / 3;
+
 Vec3 to_vec(const Rgb& c) { return {static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z)}; }
+
+float luminance_of(const Vec3& c) { return c.dot(Vec3(0.2126f, 0.7152f, 0.0722f)); }
 
 /// Of cells as wide as the reach of their records, so that these stand in 8 to 27 of them: larger cells would offer
 /// more records in vain.
@@ -66,17 +71,22 @@ IrradianceCache::Answer IrradianceCache::irradiance(const Vec3& position, const 
         const float w = kernel(std::max(apart2, turned));
         if (!(w > 0)) return;
         covered += kernel(std::max(across2 / (r.radius * r.radius) + raised, turned));
-        Vec3 e = r.irradiance;
-        for (int c = 0; c < 3; ++c) {
-            const auto k = static_cast<std::size_t>(c);
-            e[c] = std::max(0.0f, e[c] + r.rotation[k].dot(turn) + r.translation[k].dot(d));
-        }
-        sum += e * w;
+        sum += irradiance_at(r, d, turn) * w;
         weights += w;
     });
     if (!(weights > 0)) return {};
     sum /= weights;
     return {Rgb(sum.x, sum.y, sum.z), true, covered};
+}
+
+/// What `r` foretells at an offset `to` of it, where normals are turned by `turn`.
+Vec3 IrradianceCache::irradiance_at(const Stored& r, const Vec3& to, const Vec3& turn) {
+    Vec3 e = r.irradiance;
+    for (int c = 0; c < 3; ++c) {
+        const auto k = static_cast<std::size_t>(c);
+        e[c] = std::max(0.0f, e[c] + r.rotation[k].dot(turn) + r.translation[k].dot(to));
+    }
+    return e;
 }
 
 void IrradianceCache::insert(const IrradianceRecord& record) {
@@ -86,6 +96,7 @@ void IrradianceCache::insert(const IrradianceRecord& record) {
              .irradiance = to_vec(e.irradiance),
              .rotation = e.rotation,
              .translation = e.translation,
+             .variance = static_cast<float>(e.variance),
              .distance = static_cast<float>(std::min(e.distance, 1e30)),
              .min_radius = record.min_radius,
              .max_radius = record.max_radius};
@@ -99,6 +110,7 @@ void IrradianceCache::insert(const IrradianceRecord& record) {
     const float held = error_ * r.distance / r.radius;
     if (held < 1)
         for (Vec3& g : r.translation) g *= held;
+    end_where_wrong(r);
     records_.push_back(r);
     index(static_cast<std::uint32_t>(records_.size() - 1));
 }
@@ -128,6 +140,27 @@ void IrradianceCache::clamp_with_neighbours(Stored& r) {
         update_radius(other);
     });
     update_radius(r);
+}
+
+void IrradianceCache::end_where_wrong(Stored& r) {
+    const float doubt = kDoubt * error_;
+    visit_near(r.position, [&](std::uint32_t i) {
+        Stored& other = records_[i];
+        const Vec3 d = r.position - other.position, turn = r.normal - other.normal;
+        const float apart = d.length();
+        if (!(apart < std::max(r.reach, other.reach)) || turn.length2() > 2 * kNormalReach) return;
+        const float here = luminance_of(r.irradiance), there = luminance_of(other.irradiance);
+        const float wrong = std::max(std::abs(luminance_of(irradiance_at(other, d, turn)) - here),
+                                     std::abs(luminance_of(irradiance_at(r, -d, -turn)) - there));
+        const float noise2 = 4 * (r.variance + other.variance), allowed = doubt * std::max(here, there);
+        if (!(wrong * wrong > allowed * allowed + noise2)) return;
+        // What first order leaves out grows as the square of the distance.
+        const float good = apart * std::sqrt(allowed / wrong);
+        for (Stored* s : {&r, &other}) {
+            s->distance = std::min(s->distance, good / error_);
+            update_radius(*s);
+        }
+    });
 }
 
 void IrradianceCache::index(std::uint32_t i) {

@@ -30,7 +30,8 @@ class IrradianceCache {
     explicit IrradianceCache(float error, float overlap = 2) : error_(error), overlap_(overlap) {}
 
     /// Clamps the record's radius by its neighbours' and theirs by its: what one of them sees close by is close to the
-    /// others, too, even where their rays missed it.
+    /// others, too, even where their rays missed it. Where one foretells of another's place something else than that
+    /// one found, by more than noise would do, both end where they would be right.
     void insert(const IrradianceRecord& record);
 
     struct Answer {
@@ -55,6 +56,7 @@ class IrradianceCache {
         float radius = 0; ///< how far there is no need of another record [m]
         Vec3 irradiance;
         RgbGradient rotation, translation;
+        float variance;                                        ///< of the luminance of `irradiance` [(W/m^2)^2]
         float distance;                                        ///< to surrounding surfaces, clamped by neighbours' [m]
         float border = std::numeric_limits<float>::infinity(); ///< to where it ends unless its radius is larger [m]
         float min_radius, max_radius;
@@ -63,6 +65,8 @@ class IrradianceCache {
 
     void update_radius(Stored& r) const;
     void clamp_with_neighbours(Stored& r);
+    void end_where_wrong(Stored& r);
+    static Vec3 irradiance_at(const Stored& r, const Vec3& to, const Vec3& turn);
     void index(std::uint32_t i);
     /// Calls visit(record) for all whose reach may include `position`.
     template <class Visit> void visit_near(const Vec3& position, Visit&& visit) const;

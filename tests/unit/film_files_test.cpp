@@ -14,6 +14,9 @@
 #include <fstream>
 #include <limits>
 #include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
 
 using namespace keyhole;
 using testing::AllOf;
@@ -95,6 +98,21 @@ TEST(Exr, WritingIsAtomicAndFollowsLinks) {
     EXPECT_EQ(read_exr(scratch.path("old.exr")).layers.size(), 5u);
     EXPECT_EQ(fs::status(scratch.path("old.exr")).permissions(), fs::perms(0640));
     EXPECT_EQ(entries(scratch.path("")), 2u) << "a temporary file was left behind";
+}
+
+/// As the jobs of a chart do; for the thread sanitizer above all.
+TEST(Exr, ThreadsMayWriteAtTheSameTime) {
+    const ScratchDirectory scratch;
+    const std::string content(100'000, 'x');
+    std::vector<std::thread> threads;
+    for (int t = 0; t < 4; ++t)
+        threads.emplace_back([&, t] {
+            for (int i = 0; i < 8; ++i)
+                write_file_atomically(scratch.path(std::to_string(t)), content + std::to_string(i));
+        });
+    for (std::thread& t : threads) t.join();
+    EXPECT_EQ(entries(scratch.path("")), 4u);
+    for (int t = 0; t < 4; ++t) EXPECT_EQ(read_all(scratch.path(std::to_string(t))), content + "7");
 }
 
 TEST(Exr, WhatCannotBeWrittenIsNamed) {

@@ -2,6 +2,7 @@
 #include "gather/hemisphere.h"
 
 #include "core/rng.h"
+#include "core/statistics.h"
 
 #include <gtest/gtest.h>
 
@@ -64,6 +65,28 @@ TEST(Hemisphere, OfUniformLightHasNoGradients) {
     EXPECT_NEAR(e.irradiance.z, 0.5 * kPi, 1e-9);
     for (const Vec3& g : e.rotation) EXPECT_LT(g.length(), 1e-5f);
     for (const Vec3& g : e.translation) EXPECT_LT(g.length(), 1e-6f);
+}
+
+TEST(Hemisphere, TellsItsVariance) {
+    Rng light(2, StreamPurpose::test, 0);
+    const auto spread_told = [](const Field& field) {
+        RunningStats found, told;
+        for (std::uint64_t i = 0; i < 400; ++i) {
+            const auto e = look(field, {0, 0, 0}, {0, 0, 1}, 300, i);
+            found.add(e.irradiance.x);
+            told.add(e.variance);
+        }
+        return told.mean() / found.variance();
+    };
+    const Rectangle lamp{{-0.4f, 0.1f, 1}, {0.3f, 0.8f, 1}};
+    EXPECT_NEAR(spread_told([&](const Vec3&, const Vec3&) {
+                    return HemisphereRay{Rgb(light.next()), 1};
+                }),
+                1, 0.2)
+        << "light without any pattern";
+    const double ratio = spread_told(lamp);
+    EXPECT_GT(ratio, 0.9) << "never more certain than it is";
+    EXPECT_LT(ratio, 4) << "borders of cells and lamps fall together only in part";
 }
 
 TEST(Hemisphere, RotationGradientOfHalfASkyIsExact) {

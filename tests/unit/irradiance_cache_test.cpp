@@ -11,12 +11,14 @@ namespace {
 
 constexpr float kMin = 0.01f, kMax = 10;
 
+/// One so uncertain that it contradicts no other.
 IrradianceRecord record(const Vec3& p, double e, double distance, const Vec3& slope = Vec3(0.0f),
                         const Vec3& n = {0, 0, 1}) {
     IrradianceRecord r{p, n, {}, kMin, kMax};
     r.light.irradiance = Rgb(e);
     r.light.translation = {slope, slope, slope};
     r.light.distance = distance;
+    r.light.variance = 1e6;
     return r;
 }
 
@@ -154,6 +156,46 @@ TEST(IrradianceCache, ReachEndsWhereTheGradientStopsHolding) {
     IrradianceCache cache(0.2f);
     cache.insert(record({0, 0, 0}, 1, 5, {1, 0, 0})); // changes by its own size within 1 m
     EXPECT_FLOAT_EQ(cache.radius(0), 0.2f);
+}
+
+/// Light that peaks about x = 1, and a record of it whose rays missed that it does: without a gradient.
+double peak(double x) { return 1 + 8 * std::exp(-50 * (x - 1) * (x - 1)); }
+IrradianceRecord peak_record(float x) {
+    IrradianceRecord r = record({x, 0, 0}, peak(x), 2);
+    r.light.variance = 0;
+    return r;
+}
+
+TEST(IrradianceCache, GetsFinerWhereGradientsForetellWrongly) {
+    IrradianceCache cache(0.3f);
+    std::size_t flat = 0, curved = 0;
+    for (const float step : {0.4f, 0.2f, 0.1f, 0.05f, 0.02f, 0.01f})
+        for (float x = -2; x < 2; x += step)
+            if (!(cache.irradiance({x, 0, 0}, {0, 0, 1}).covered >= 0.1)) {
+                cache.insert(peak_record(x));
+                ++(x < 0 ? flat : curved);
+            }
+    for (float x = 0.2f; x < 1.8f; x += 0.013f)
+        EXPECT_NEAR(cache.irradiance({x, 0, 0}, {0, 0, 1}).irradiance.x, peak(x), 0.15 * peak(x)) << "at " << x;
+    EXPECT_LT(flat, 8) << "straight light needs no more of them";
+    EXPECT_LT(curved, 60);
+}
+
+TEST(IrradianceCache, DoesNotTakeNoiseForLight) {
+    Rng rng(2, StreamPurpose::test, 0);
+    const auto finest = [&](double told) {
+        IrradianceCache cache(0.3f);
+        for (int i = 0; i < 100; ++i) {
+            IrradianceRecord r = record({0.3f * static_cast<float>(i), 0, 0}, 10 + 10 * (rng.next() - 0.5), 1);
+            r.light.variance = told;
+            cache.insert(r);
+        }
+        float least = kMax;
+        for (std::size_t i = 0; i < cache.size(); ++i) least = std::min(least, cache.radius(i));
+        return least;
+    };
+    EXPECT_LT(finest(0), 0.25f);
+    EXPECT_FLOAT_EQ(finest(25), 0.3f);
 }
 
 } // namespace
