@@ -70,7 +70,7 @@ Rgb GatherRays::reflected(const Vertex& v, const Vec3& back, const Leg& leg, Sam
         const Rgb direct = direct_light(scene_, v, back, 1, source);
         return direct + global(v, back);
     }
-    const auto known = maps_.irradiance->irradiance(v.point.p, facing(v.point.ng, back));
+    const auto known = maps_.irradiance->irradiance(v.point, facing(v.point.ng, back));
     // Photons may be near, but none that this place sees: those of the other side of a wall.
     if (!known.known) return direct_light(scene_, v, back, 1, source);
     const Rgb f = v.bsdf.eval(back, back);

@@ -17,23 +17,24 @@ void PathDepositor::Tally::merge(const Tally& o) {
     untrusted += o.untrusted;
 }
 
-bool PathDepositor::Pending::holds(const Path& path, const StoragePoint& at) const {
+bool PathDepositor::Pending::holds(const Path& path, const StoragePoint& at, const Rgb& its_flux) const {
     const auto i = static_cast<std::size_t>(at.vertex);
-    return kind == at.kind && vertex.point.p == path.x[i].point.p &&
-           to_light == direction(path.x[i].point, path.x[i - 1].point);
+    // Another emitter may send another colour along the same last edge.
+    return kind == at.kind && scatterings == at.vertex && vertex.point.p == path.x[i].point.p &&
+           to_light == direction(path.x[i].point, path.x[i - 1].point) && flux == its_flux;
 }
 
 void PathDepositor::deposit(const Path& path, double weight) {
     const StoragePoint at = options_.set.storage_point(path);
     if (at.kind == PhotonKind::none || !(weight > 0)) return;
     tally_.total += weight;
-    if (!recent_.holds(path, at)) {
+    const auto i = static_cast<std::size_t>(at.vertex);
+    Rgb flux(1.0);
+    for (std::size_t k = 0; k < i; ++k) flux *= path.x[k].value / luminance(path.x[k].value);
+    if (!recent_.holds(path, at, flux)) {
         std::swap(recent_, older_);
-        if (!recent_.holds(path, at)) {
+        if (!recent_.holds(path, at, flux)) {
             store(recent_);
-            const auto i = static_cast<std::size_t>(at.vertex);
-            Rgb flux(1.0);
-            for (std::size_t k = 0; k < i; ++k) flux *= path.x[k].value / luminance(path.x[k].value);
             recent_ = {.kind = at.kind,
                        .vertex = path.x[i],
                        .to_light = direction(path.x[i].point, path.x[i - 1].point),

@@ -82,7 +82,7 @@ class PathDepositor {
         double literal = 0; ///< sum of weight times literal_factor()
         double density = 0; ///< sum of weight times literal_factor() times eye_side_density()
 
-        bool holds(const Path& path, const StoragePoint& at) const;
+        bool holds(const Path& path, const StoragePoint& at, const Rgb& its_flux) const;
     };
 
     void store(Pending& pending);

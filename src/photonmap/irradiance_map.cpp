@@ -12,6 +12,12 @@ namespace {
 constexpr float kLift = 0.25f;
 constexpr unsigned kLevels = 8;
 
+/// Distance of a place over the largest radius of estimates. Farther than the estimates themselves look: where photons
+/// are rare, most places have none that near, and to call them dark would take light away.
+constexpr float kFarthest = 4;
+/// Size of a cell for which one place will do, over the radius of its estimate.
+constexpr float kMostOfRadius = 0.5f;
+
 /// Bit i is set if something may stand on the region of radius r / 2^i. It looks from half to three halves of the
 /// height kLift r / 2^i, where lines of sight run between places that are more than half as far from each other.
 std::uint8_t obstructed_levels(const SurfacePatches& patches, const SurfaceRegion& region, float r) {
@@ -35,6 +41,11 @@ IrradianceMap::IrradianceMap(const PhotonMap& scouts, const PhotonMap& carriers,
         context.advance(kBlock);
     });
     exchange_parts(estimates_, context);
+    if (options.scene != nullptr)
+        grid_.emplace(options.scene->shapes(), kCellsPerPlace * estimates_.size(),
+                      [this](const Vec3& middle, const Vec3& normal, float size) {
+                          return place_for_cell(middle, normal, size);
+                      });
     context.end();
     if (own.size() == 0) return;
     for (const Count& u : used) mean_ += u;
@@ -64,19 +75,31 @@ IrradianceMap::Count IrradianceMap::estimate(std::uint32_t i, const PhotonMap& c
     return {static_cast<double>(e.photons), squares > 0 ? sum * sum / squares : 0.0};
 }
 
+std::uint32_t IrradianceMap::place_for_cell(const Vec3& middle, const Vec3& normal, float size) const {
+    const auto near = scouts_.nearest_one({middle, normal}, kFarthest * max_radius_);
+    if (!near) return PlaceGrid::kNothing;
+    return size <= kMostOfRadius * estimates_[near->index].radius ? near->index : PlaceGrid::kSearch;
+}
+
 IrradianceMap::Answer IrradianceMap::irradiance(const Vec3& position, const Vec3& normal) const {
-    // Farther than the estimates themselves look: where photons are rare, most places have none that near, and to call
-    // them dark would take light away.
     const SurfaceRegion region{position, normal};
-    const auto near = scouts_.nearest_one(region, 4 * max_radius_);
-    if (!near) return {};
-    std::uint32_t place = near->index;
+    const auto near = scouts_.nearest_one(region, kFarthest * max_radius_);
+    return near ? answer(near->index, region) : Answer{};
+}
+
+IrradianceMap::Answer IrradianceMap::irradiance(const SurfacePoint& point, const Vec3& normal) const {
+    const std::uint32_t place = grid_ ? grid_->at(point, normal) : PlaceGrid::kSearch;
+    if (place == PlaceGrid::kSearch) return irradiance(point.p, normal);
+    return place == PlaceGrid::kNothing ? Answer{} : answer(place, {point.p, normal});
+}
+
+IrradianceMap::Answer IrradianceMap::answer(std::uint32_t place, const SurfaceRegion& region) const {
     const auto visible = [&](const Photon& p) {
-        const float lift = kLift * (p.position() - position).length();
+        const float lift = kLift * (p.position() - region.position).length();
         return in_sight(*scene_, region, lift, p.position());
     };
-    if (may_be_hidden(place, position) && !visible(scouts_[place])) {
-        const auto other = scouts_.nearest_accepted(region, 4 * max_radius_, visible);
+    if (may_be_hidden(place, region.position) && !visible(scouts_[place])) {
+        const auto other = scouts_.nearest_accepted(region, kFarthest * max_radius_, visible);
         if (!other) return {};
         place = other->index;
     }

@@ -2,11 +2,13 @@
 #pragma once
 
 #include "core/progress.h"
+#include "photonmap/place_grid.h"
 #include "photonmap/scouted_map.h"
 #include "sampling/reach.h"
 #include "scene/scene.h"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace keyhole {
@@ -37,6 +39,9 @@ class IrradianceMap {
 
     /// Irradiance on the side of unit `normal`.
     Answer irradiance(const Vec3& position, const Vec3& normal) const;
+    /// The same at a point of the scene; on large triangles it takes a fraction of the time, and the nearest place to
+    /// the middle of a cell stands for that to the point.
+    Answer irradiance(const SurfacePoint& point, const Vec3& normal) const;
 
     /// Where irradiance was estimated.
     std::span<const Photon> places() const { return scouts_.photons(); }
@@ -44,9 +49,11 @@ class IrradianceMap {
     float radius(std::uint32_t i) const { return estimates_[i].radius; }
 
     /// Memory without that of the scouts [bytes].
-    std::size_t bytes() const { return estimates_.capacity() * sizeof(Estimate); }
+    std::size_t bytes() const { return estimates_.capacity() * sizeof(Estimate) + (grid_ ? grid_->bytes() : 0); }
     /// Of it, for one scout [bytes].
-    static constexpr std::size_t bytes_per_place() { return sizeof(Estimate); }
+    static constexpr std::size_t bytes_per_place() {
+        return sizeof(Estimate) + kCellsPerPlace * PlaceGrid::bytes_per_cell();
+    }
     /// Number of photons that went into an estimate, on average over those that this process made.
     double mean_photons() const { return mean_.photons; }
     /// How many equal ones would be as good, on average over estimates: squared sum of power over sum of squares
@@ -54,11 +61,16 @@ class IrradianceMap {
     double effective_photons() const { return mean_.effective; }
 
   private:
+    static constexpr std::size_t kCellsPerPlace = 1;
+
     struct Estimate {
         SharedExponentRgb irradiance;
         std::uint8_t obstructed; ///< bit i: something may stand on the region of radius / 2^i
         float radius;
     };
+    /// The estimate at `place`, or another one where something hides that from the region's middle.
+    Answer answer(std::uint32_t place, const SurfaceRegion& region) const;
+    std::uint32_t place_for_cell(const Vec3& middle, const Vec3& normal, float size) const;
     /// Whether something may stand between place and position.
     bool may_be_hidden(std::uint32_t place, const Vec3& position) const;
     struct Count {
@@ -76,6 +88,7 @@ class IrradianceMap {
     std::vector<Estimate> estimates_;
     float max_radius_;
     const Scene* scene_;
+    std::optional<PlaceGrid> grid_;
     Count mean_;
 };
 
