@@ -55,6 +55,7 @@ std::string Keeping::file(const std::string& exr, int rank) const {
 
 /// Several processes leave a file each. They become one, whatever the number of processes now.
 void Keeping::read(const std::string& exr, const NamedPicture& render) {
+    const std::string own = file(exr); // of the first process, which the others go on from, too
     std::vector<std::string> files;
     for (int rank = 0; rank < kMostRanks; ++rank)
         if (const std::string path = file(exr, rank); fs::exists(path)) files.push_back(path);
@@ -67,14 +68,14 @@ void Keeping::read(const std::string& exr, const NamedPicture& render) {
             done_ = std::move(next);
         } else if (!units_of(done_).contains(units_of(next))) {
             Picture joined = join_shares(std::array{std::move(done_), std::move(next)});
-            done_ = {files.front(), std::move(joined)};
+            done_ = {own, std::move(joined)};
         }
     }
-    if (files.size() == 1 || done_.name.empty()) return;
+    if (done_.name.empty() || (files.size() == 1 && files.front() == own)) return;
     // Once it is written what is in the others is in it, so that a death at any point here loses nothing.
-    write_exr(files.front(), done_.picture);
+    write_exr(own, done_.picture);
     for (const std::string& path : files)
-        if (path != file(exr)) fs::remove(path);
+        if (path != own) fs::remove(path);
 }
 
 Share Keeping::share(const std::string& exr, const Picture& render, const Settings& settings, Team* team) {
@@ -109,10 +110,17 @@ Share Keeping::share(const std::string& exr, const Picture& render, const Settin
         if (!done_.name.empty()) share.done = &done_.picture;
     }
     share.save_every = checkpoint.value_or(kSeconds);
-    share.save = [path = file(exr, rank), identity = render.metadata](Picture picture) {
+    // What more processes left of an earlier render would stand in the way of going on from this one.
+    std::vector<std::string> left_over;
+    if (!resume && rank == 0)
+        for (int r = team != nullptr ? team->size() : 1; r < kMostRanks; ++r)
+            if (const std::string path = file(exr, r); fs::exists(path)) left_over.push_back(path);
+    share.save = [path = file(exr, rank), identity = render.metadata, left_over](Picture picture) mutable {
         picture.metadata.insert(identity.begin(), identity.end());
         try {
             write_exr(path, picture);
+            for (const std::string& old : left_over) fs::remove(old);
+            left_over.clear();
         } catch (const InputError& e) {
             // A full disk is no reason to lose the render as well: there may be room again.
             fmt::print(stderr, "keyhole: warning: no checkpoint: {}\n", e.what());

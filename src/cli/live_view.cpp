@@ -1,5 +1,7 @@
 #include "cli/live_view.h"
 
+#include "core/error.h"
+
 #include <fmt/format.h>
 
 #include <atomic>
@@ -44,7 +46,14 @@ bool LiveView::wants_look() const {
 }
 
 void LiveView::look(const Picture& picture) {
-    if (asked.exchange(false)) write_(picture);
+    if (asked.exchange(false)) {
+        try {
+            write_(picture);
+        } catch (const InputError& e) {
+            // A full disk is no reason to lose the render as well: there may be room again.
+            fmt::print(stderr, "keyhole: warning: no picture so far: {}\n", e.what());
+        }
+    }
     show(picture);
 }
 

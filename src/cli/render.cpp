@@ -15,6 +15,7 @@
 #include "core/parallel.h"
 #include "film/atomic_file.h"
 #include "render/effort.h"
+#include "render/methods.h"
 #include "render/render_in_time.h"
 #include "sampling/scene_hash.h"
 #include "scene/load/load.h"
@@ -63,6 +64,7 @@ std::unique_ptr<TerminalProgress> make_progress(bool quiet) {
 /// Whether at least one pixel has a sample, or a share at least one unit of work. A stop before that leaves nothing
 /// worth a file, least of all one that replaces an earlier picture.
 bool has_picture(const RenderResult& result) {
+    if (result.picture.layers.empty()) return false; // no unit of a team's
     if (!result.picture.sums.empty()) return result.stats.samples > 0;
     if (!result.stats.complete && !(result.stats.samples > 0) && result.stats.proposals.empty() &&
         !result.stats.values.contains("empty pixels"))
@@ -166,13 +168,23 @@ int run(RenderOptions options) {
 
     const InterruptHandler interrupts(stop);
     std::vector<std::string> load_warnings;
-    const std::set<std::string> named = named_settings(options.overrides);
+    std::set<std::string> named = named_settings(options.overrides);
     // An error to reach asks for as many passes as that takes, unless somebody says how many.
     std::vector<std::string> overrides = options.overrides;
     const bool in_passes = options.in_time() && (options.team != nullptr || options.keeping.asked());
-    if (named.contains("target_error") || in_passes) overrides.insert(overrides.begin(), "passes=0");
+    if (named.contains("target_error") || in_passes) {
+        overrides.insert(overrides.begin(), "passes=0");
+        named.insert("passes"); // an effort has no say in it
+    }
     LoadedScene loaded = load(options.scene, overrides, &load_warnings);
     if (!options.quality.empty()) loaded.settings = with_quality(loaded.settings, options.quality, named);
+    if (!options.save_map.empty() && !keeps_photons(loaded.settings.method))
+        throw InputError(fmt::format("--save-map: found method {}, expected one that keeps photons: mps, ipm, pm, pss "
+                                     "or auto",
+                                     loaded.settings.method));
+    if (options.team != nullptr && options.in_time())
+        throw InputError("found --timeout or --cpu-time, which end one process; expected --passes, a number that all "
+                         "processes know beforehand");
     loaded.settings.save_map = options.save_map;
     loaded.settings.load_map = options.load_map;
     if (!options.user_paths.empty()) loaded.user_paths = load_user_paths(options.user_paths);
@@ -221,7 +233,7 @@ void add_render_command(CLI::App& app, Action& action, const std::string& comman
     command->add_flag("--no-png", o->no_png, "write no tone-mapped picture")->excludes(png);
     command->add_option("--stats", o->outputs.stats, "write statistics to this file (JSON)");
     command->add_option("--resolution", o->resolution, "WIDTHxHEIGHT in pixels");
-    command->add_option("--user-paths", o->user_paths, "user paths for the chains, instead of the scene's");
+    command->add_option("--user-paths", o->user_paths, "user paths for mps, mlt, ipm and auto, instead of the scene's");
     for (const char* key : {"method", "spp", "mutations", "photons", "passes", "seed"})
         command->add_option_function<std::string>(
             std::string("--") + key,
@@ -258,7 +270,7 @@ void add_render_command(CLI::App& app, Action& action, const std::string& comman
     command->add_option("--display-server", o->display_server, "HOST:PORT of tev, to which the picture so far is sent");
     auto* quiet = command->add_flag("-q,--quiet", o->quiet, "say nothing but errors");
     command->add_flag("-v,--verbose", o->verbose, "print statistics")->excludes(quiet);
-    command->footer(settings_help() + "Whole numbers may be written 100k, 2.5M or 1e6.");
+    command->footer(settings_help() + "Whole numbers may be written 100k, 2.5M, 1G, 1e6 or 16MiB.");
     command->callback([&action, o] { action = [o] { return run(*o); }; });
 }
 

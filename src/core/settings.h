@@ -118,8 +118,8 @@ template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
     visit("builder", s.builder, std::vector<std::string_view>{"path", "endpoints", "bidirectional"},
           "how pssmlt makes paths");
     visit("failures", s.failures, std::vector<std::string_view>{"exclude", "reject", "exclude_large", "delay"},
-          "what pssmlt and mmlt do with proposals that make no path; exclude is biased");
-    visit("p_large", s.p_large, 0.0, 1.0, "probability of large steps of pssmlt, mmlt and pss");
+          "what pssmlt, mmlt and rjmlt do with proposals that make no path; exclude is biased");
+    visit("p_large", s.p_large, 0.0, 1.0, "probability of large steps of pssmlt, mmlt, rjmlt and pss");
     visit("large_step_mis", s.large_step_mis, std::vector<std::string_view>{"on", "off"},
           "whether large steps deposit as samples on their own account");
     visit("irradiance_cache", s.irradiance_cache, "cache irradiance on diffuse surfaces");

@@ -103,15 +103,20 @@ void write_all(int descriptor, const std::string& path, std::span<const char> by
 } // namespace
 
 void write_file_atomically(const std::string& path, std::span<const char> bytes) {
+    write_file_atomically(path, std::array{bytes});
+}
+
+void write_file_atomically(const std::string& path, std::span<const std::span<const char>> parts) {
     const fs::path target = final_target(path);
     File file;
     if (kind_of(path, target) == Kind::direct) {
         file.descriptor = open(target.c_str(), O_WRONLY | O_CLOEXEC);
         if (file.descriptor < 0) fail(path, errno);
-        return write_all(file.descriptor, path, bytes);
+        for (const auto& bytes : parts) write_all(file.descriptor, path, bytes);
+        return;
     }
     open_temporary(file, path, target);
-    write_all(file.descriptor, path, bytes);
+    for (const auto& bytes : parts) write_all(file.descriptor, path, bytes);
     if (fsync(file.descriptor) != 0) fail(path, errno);
     if (rename(file.temporary.c_str(), target.c_str()) != 0) fail(path, errno);
     file.temporary.clear();

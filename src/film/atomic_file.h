@@ -10,6 +10,8 @@ namespace keyhole {
 /// disk the old one stays. Follows symbolic links; what is no regular file (a pipe, a device) is written to directly.
 /// @throws InputError with the path and the reason.
 void write_file_atomically(const std::string& path, std::span<const char> bytes);
+/// The same with what lies in several places, one after the other.
+void write_file_atomically(const std::string& path, std::span<const std::span<const char>> parts);
 
 /// Removes the temporary file of a write_file_atomically() that is under way, if there is one. Signal-safe: for a
 /// process that is about to end.

@@ -28,7 +28,7 @@ void take_signal(MPI_Comm comm, int source, int tag);
 void wait_for(MPI_Request& request, const Check& check);
 
 /// Any number of bytes from one process to another.
-void send_bytes(MPI_Comm comm, int to, const std::vector<char>& bytes, const Check& check);
+void send_bytes(MPI_Comm comm, int to, std::vector<char> bytes, const Check& check);
 std::vector<char> receive_bytes(MPI_Comm comm, int from, const Check& check);
 
 /// What all processes have sent each other.
@@ -37,6 +37,6 @@ struct Exchanged {
     bool stop;                            ///< whether one of them wants to
 };
 /// Sends each process what all have. @throws InputError for 2 GiB and more together.
-Exchanged exchange_bytes(MPI_Comm comm, const std::vector<char>& part, bool stop, const Check& check);
+Exchanged exchange_bytes(MPI_Comm comm, std::vector<char> part, bool stop, const Check& check);
 
 } // namespace keyhole

@@ -23,7 +23,7 @@ std::optional<std::int64_t> MpiTeam::take_number() {
 }
 
 std::vector<std::vector<char>> MpiTeam::exchange(std::vector<char> part, bool stop) {
-    Exchanged all = exchange_bytes(MPI_COMM_WORLD, part, stop, [this] { pulse_.check_all(); });
+    Exchanged all = exchange_bytes(MPI_COMM_WORLD, std::move(part), stop, [this] { pulse_.check_all(); });
     stopped_ = stopped_ || all.stop;
     return std::move(all.parts);
 }

@@ -31,7 +31,7 @@ Settings with_effort(const Settings& settings, double effort, std::int64_t pixel
         if (!given.contains(key)) s.*member = static_cast<std::int64_t>(std::clamp(value, least, most));
     };
     // Small pictures get more samples a pixel, large ones fewer, so that photons and pixels share the time alike.
-    const double spp = 8 * std::sqrt(effort * kPixels / static_cast<double>(pixels));
+    const double spp = 12 * std::sqrt(effort * kPixels / static_cast<double>(pixels));
     const double photons = 80e3 * std::pow(effort, 0.6);
     const double passes = given.contains("passes") || !keeps_photons(s.method)
                               ? 1
@@ -50,7 +50,10 @@ Settings with_effort(const Settings& settings, double effort, std::int64_t pixel
     // More of them where the render is short, though not where they would take all of its time: without them photons
     // would be weighed, or looked for, by chance, which costs more.
     set("importons", &Settings::importons, 100e3 * effort / passes, std::clamp(1e6 * effort, 10e3, 50e3), 1 << 30);
-    set("cache_rays", &Settings::cache_rays, 1600 * std::pow(effort, 0.7) / std::sqrt(passes), 64, 1 << 20);
+    // Where there is time for few rays, they are better spent on few records than on poor ones.
+    if (!given.contains("cache_error"))
+        s.cache_error = Settings().cache_error * std::clamp(std::pow(effort, -0.3), 1.0, 2.0);
+    set("cache_rays", &Settings::cache_rays, 1000 * std::pow(effort, 0.7) / std::sqrt(passes), 64, 1 << 20);
     return s;
 }
 

@@ -1,7 +1,10 @@
 // Photons from a file.
 #include "core/error.h"
+#include "render/memory_plan.h"
 #include "render/photon_file.h"
 #include "render/photon_sampler.h"
+
+#include <fmt/format.h>
 
 namespace keyhole {
 namespace {
@@ -10,8 +13,15 @@ class FileSampler final : public PhotonSampler {
   public:
     explicit FileSampler(const SamplerContext& context) : c_(context) {}
 
-    Photons sample(std::uint64_t /*seed*/, RenderStats& /*stats*/, const RunContext& /*context*/) override {
-        return load_photons(c_.settings.load_map, photon_file_key(c_.scene, c_.settings, c_.reach));
+    Photons sample(std::uint64_t /*seed*/, RenderStats& stats, const RunContext& /*context*/) override {
+        Photons photons = load_photons(c_.settings.load_map, photon_file_key(c_.scene, c_.settings, c_.reach));
+        if (const std::size_t held = plan_memory(c_.settings, ImportanceUse::none, 2).photons,
+            found = photons.global.size() + photons.caustic.size();
+            found > held && c_.settings.photons == 0)
+            stats.warnings.push_back(fmt::format("{}: {} photons, where photon_memory holds {}: the map takes more "
+                                                 "memory than it may",
+                                                 c_.settings.load_map, found, held));
+        return photons;
     }
 
   private:

@@ -63,9 +63,8 @@ void check(const std::string& path, const Header& found, const PhotonFileKey& ke
                            "reach, plan and importons that it was made with");
 }
 
-void append(std::vector<char>& bytes, const void* data, std::size_t size) {
-    const auto* begin = static_cast<const char*>(data);
-    bytes.insert(bytes.end(), begin, begin + size);
+template <class T> std::span<const char> bytes_of(const T* data, std::size_t count = 1) {
+    return {reinterpret_cast<const char*>(data), count * sizeof(T)};
 }
 
 std::uint64_t checksum(const Photons& photons) {
@@ -94,11 +93,9 @@ void save_photons(const std::string& path, const PhotonFileKey& key, const Photo
     header.reach = key.reach;
     for (std::size_t i = 0; i < kParts; ++i) header.photons[i] = parts(photons)[i]->size();
     header.checksum = checksum(photons);
-    std::vector<char> bytes;
-    bytes.reserve(sizeof header + (photons.global.size() + photons.caustic.size()) * sizeof(Photon));
-    append(bytes, &header, sizeof header);
-    for (const auto* part : parts(photons)) append(bytes, part->data(), part->size() * sizeof(Photon));
-    write_file_atomically(path, bytes);
+    std::vector<std::span<const char>> bytes{bytes_of(&header)};
+    for (const auto* part : parts(photons)) bytes.push_back(bytes_of(part->data(), part->size()));
+    write_file_atomically(path, bytes); // a copy of them all would go beyond the memory that they may take
 }
 
 Photons load_photons(const std::string& path, const PhotonFileKey& key) {

@@ -90,14 +90,14 @@ class Passes {
         }
     }
     const RunningStats& luminance() const { return luminance_; }
+    bool has_saved_photons() const { return saved_; }
 
   private:
     /// Returns whether to go on.
     bool run_pass(std::int64_t pass, const RunContext& context) {
         const std::uint64_t seed = seed_of_pass(c_.settings, pass);
         Photons photons = sampler_.sample(seed, stats_, context);
-        if (pass == 0 && !c_.settings.save_map.empty() && (context.crew == nullptr || context.crew->rank() == 0))
-            save_photons(c_.settings.save_map, photon_file_key(c_.scene, c_.settings, c_.reach), photons);
+        if (pass == 0) save(photons, context);
         // The photons of a pass that was cut short are good for a first picture, not for one that is there.
         if (context.stopped() && (context.crew != nullptr || !work_.is_first())) return false;
         report_photons(photons, stats_);
@@ -112,6 +112,14 @@ class Passes {
         const bool whole = sample_rounds(*gather, pass, all_time.alone());
         gather->report(stats_);
         return whole || context.crew != nullptr; // a crew ends where all can agree on it: in the next pass
+    }
+
+    /// Where a file is asked for.
+    void save(const Photons& photons, const RunContext& context) {
+        if (c_.settings.save_map.empty()) return;
+        if (context.crew == nullptr || context.crew->rank() == 0)
+            save_photons(c_.settings.save_map, photon_file_key(c_.scene, c_.settings, c_.reach), photons);
+        saved_ = true;
     }
 
     /// Samples pixels, round by round of a pass. Returns whether the last round came to its end.
@@ -136,6 +144,7 @@ class Passes {
     Work& work_;
     RenderStats& stats_;
     RunningStats luminance_;
+    bool saved_ = false;
     std::optional<std::int64_t> next_; // unit
 };
 
@@ -147,20 +156,25 @@ RenderResult render_photons(const Scene& scene, const Settings& settings, const 
     RenderStats& stats = result.stats;
     const SurfacePatches patches(scene.shapes());
     SamplerContext c{scene, settings, patches, paths};
-    const RenderPlan plan = make_plan(c, stats, context);
+    // A crew has to come to one plan: who is stopped in the middle of a trial would make another.
+    RunContext deciding = context;
+    if (share.crew != nullptr) deciding.stop = nullptr;
+    const RenderPlan plan = make_plan(c, stats, deciding);
     c.reach = plan.reach ? &*plan.reach : nullptr;
     c.caustics = plan.caustics || c.reach != nullptr;
     if (plan.photons && settings.reach != "off")
         stats.values["light beyond gather rays is stored"] = plan.reach ? 1 : 0;
-    const std::optional<ImageWeight> weight = weigh_pixels(c, plan, stats, context);
+    const std::optional<ImageWeight> weight = weigh_pixels(c, plan, stats, deciding);
     c.weight = weight ? &*weight : nullptr;
-    const auto sampler = make_sampler(c, plan, stats, context);
+    const auto sampler = make_sampler(c, plan, stats, deciding);
     Work work(settings, scene.camera().window(), Exposure::Parts::film, share, settings.spp, Work::PassStart::costly);
     Passes passes(c, plan, *sampler, work, stats);
     if (work.crew() == nullptr)
         passes.run(context);
     else
         passes.run_together(context);
+    if (!settings.save_map.empty() && !passes.has_saved_photons())
+        stats.warnings.push_back("no photons were saved: those of the first pass were not made here");
     sampler->finish(stats);
     warn_of_photons(stats);
     report_eye_samples(passes.luminance(), scene, stats);

@@ -4,6 +4,7 @@
 #include "core/statistics.h"
 #include "photonmap/importance_guide.h"
 #include "photonmap/importance_tracing.h"
+#include "render/pass_seed.h"
 #include "render/radii.h"
 #include "sampling/brightness.h"
 #include "sampling/chain.h"
@@ -90,7 +91,7 @@ double try_emission(const SamplerContext& c, const Scene* walls, const RunContex
     const bool delta = c.caustics;
     const Extent extent(c.settings);
     const auto depth = static_cast<int>(c.settings.max_depth);
-    const auto seed = static_cast<std::uint64_t>(c.settings.seed);
+    const std::uint64_t seed = seed_of_trial(c.settings);
     Importons importons = trace_importance(
         c.scene,
         {.samples = extent.importons, .at_d1 = delta, .max_scatterings = depth, .seed = seed, .weight = c.weight}, run);
@@ -118,7 +119,7 @@ double try_metropolis(const SamplerContext& c, const RunContext& run) {
     const StageOneSettings first{.set = set,
                                  .max_scatterings = static_cast<int>(s.max_depth),
                                  .samples = extent.brightness_samples,
-                                 .seed = static_cast<std::uint64_t>(s.seed),
+                                 .seed = seed_of_trial(s),
                                  .guides = c.user_paths.empty() ? nullptr : &guides};
     const std::uint64_t start = rays_traced();
     const StageOne one = run_stage_one(c.scene, first, run);

@@ -138,7 +138,7 @@ Picture Work::finish(RenderStats& stats) {
     stats.complete = open ? passes > 0 : done_.missing(0, begin_) >= end_;
     stats.values["passes"] = static_cast<double>(passes);
     if (passes > 1 && settings_.passes != 1 && knows_error_) stats.values["relative error"] = error_.relative();
-    if (share_.save) share_.save(snapshot(stats));
+    if (share_.save && done_.size() > 0) share_.save(snapshot(stats)); // nothing is not worth an older checkpoint
     if (pending_ && !share_.keep_sums) total_.merge(*pending_);
     if (total_.film) total_.film->report(stats);
     stats.samples = samples();

@@ -25,6 +25,21 @@ TEST_F(Program, HangupWritesThePictureSoFarAndTheRenderGoesOn) {
     EXPECT_EQ(wait(pid), 130) << read("err");
 }
 
+TEST_F(Program, HangupWithoutAPlaceToWriteToIsNoEnd) {
+    std::filesystem::create_directory(scratch.path("pictures"));
+    const pid_t pid = start("render scene.yaml -o pictures/a.exr --no-png --spp 10M");
+    const auto running = [&] { return waitpid(pid, nullptr, WNOHANG) == 0; };
+    while (read("err").find("path tracing") == std::string::npos && running()) usleep(20'000);
+    std::filesystem::remove(scratch.path("pictures"));
+    kill(pid, SIGHUP);
+    while (read("err").find("no picture so far") == std::string::npos && running()) usleep(20'000);
+    EXPECT_TRUE(running()) << read("err");
+    std::filesystem::create_directory(scratch.path("pictures"));
+    kill(pid, SIGINT);
+    EXPECT_EQ(wait(pid), 130) << read("err");
+    EXPECT_TRUE(exists("pictures/a.exr"));
+}
+
 TEST_F(Program, CpuTimeSetsSamplesAndPhotons) {
     ASSERT_EQ(run("render scene.yaml -o a.exr --cpu-time 0.5 --method ipm --stats s.json --no-png"), 0) << read("err");
     const auto stats = nlohmann::json::parse(read("s.json"));

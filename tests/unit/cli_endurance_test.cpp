@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <csignal>
 #include <cstdlib>
@@ -116,9 +117,43 @@ TEST_F(LongRender, GoesOnOnlyFromItsOwnCheckpoint) {
 TEST_F(LongRender, InterruptedLeavesACheckpoint) {
     const pid_t pid = start("render scene.yaml --no-png -o a.exr --spp 4 --passes 100k --checkpoint 1000");
     while (read("err").find("path tracing") == std::string::npos && waitpid(pid, nullptr, WNOHANG) == 0) usleep(20'000);
+    usleep(200'000); // a round takes less than a hundredth of that
     kill(pid, SIGTERM);
     EXPECT_EQ(wait(pid), 130) << read("err");
     EXPECT_TRUE(read_exr(scratch.path("a.checkpoint.exr")).metadata.contains("units"));
+}
+
+TEST_F(LongRender, GoesOnFromWhatAnyProcessLeft) {
+    const std::string render = "render scene.yaml -q --no-png -o a.exr --checkpoint 1000 --passes ";
+    ASSERT_EQ(run("render scene.yaml -q --no-png -o whole.exr --passes 3"), 0) << read("err");
+    ASSERT_EQ(run(render + "3 --pass-range 0:1"), 0) << read("err");
+    std::filesystem::rename(scratch.path("a.checkpoint.exr"), scratch.path("a.checkpoint.1.exr"));
+    ASSERT_EQ(run(render + "3 --pass-range 1:2"), 0) << read("err");
+    std::filesystem::rename(scratch.path("a.checkpoint.exr"), scratch.path("a.checkpoint.2.exr"));
+    for (const char* again : {"what is missing", "nothing is missing"}) {
+        ASSERT_EQ(run(render + "3 --resume"), 0) << again << ": " << read("err");
+        EXPECT_TRUE(exists("a.checkpoint.exr")) << again;
+        EXPECT_FALSE(exists("a.checkpoint.1.exr") || exists("a.checkpoint.2.exr")) << again;
+        expect_same("a.exr", "whole.exr");
+    }
+}
+
+TEST_F(LongRender, KeepsACheckpointUntilThereIsABetterOne) {
+    const std::string render = "render scene.yaml -q --no-png -o a.exr --checkpoint 1000 --passes 2";
+    ASSERT_EQ(run(render), 0) << read("err");
+    const std::string kept = read("a.checkpoint.exr");
+    scratch.write("a.checkpoint.5.exr", kept);
+    EXPECT_EQ(run("render scene.yaml -q --no-png -o a.exr --checkpoint 1000 --timeout 0.001"), 2);
+    EXPECT_EQ(read("a.checkpoint.exr"), kept) << "there was no time for anything";
+    EXPECT_TRUE(exists("a.checkpoint.5.exr"));
+    ASSERT_EQ(run(render), 0) << read("err");
+    EXPECT_FALSE(exists("a.checkpoint.5.exr")) << "of an earlier render";
+}
+
+TEST_F(LongRender, ReachesAnErrorByWhateverEffort) {
+    ASSERT_EQ(run("render scene.yaml -q --no-png -o a.exr --quality draft --target-error 0.9 --stats s.json"), 0)
+        << read("err");
+    EXPECT_GE(nlohmann::json::parse(read("s.json"))["values"]["passes"], 4) << "so many tell an error";
 }
 
 TEST_F(LongRender, MergesSharesAndSeeds) {
