@@ -78,7 +78,7 @@ TEST(FailureGallery_Keyhole, IsOpenedByAUserPath) {
     const Case& c = kCases[0];
     const UserPathFile paths = load_user_paths(KEYHOLE_SOURCE_DIR "/userpaths/keyhole.yaml");
     for (const char* method : {"auto", "ipm", "mps", "mlt"}) {
-        RunningStats mean; // a single one is known to 10 %
+        RunningStats mean; // a single one is known to 10 to 30 %
         for (int seed = 1; seed <= 3; ++seed) {
             const RenderResult result = make(c,
                                              {fmt::format("method={}", method), fmt::format("seed={}", seed),
@@ -91,7 +91,7 @@ TEST(FailureGallery_Keyhole, IsOpenedByAUserPath) {
                 EXPECT_TRUE(w.find("photon") == std::string::npos || result.stats.method == "mps")
                     << method << ": " << w;
         }
-        EXPECT_NEAR(mean.mean(), c.mean, 0.15 * c.mean) << method;
+        EXPECT_NEAR(mean.mean(), c.mean, 0.15 * c.mean + 2 * mean.standard_error()) << method;
     }
 }
 
