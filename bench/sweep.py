@@ -38,7 +38,7 @@ def variants(settings):
     for key in MAIN:
         for factor in (0.5, 2):
             value = float(settings[key]) * factor
-            yield f"{method}:{key}={value:g}" if key == "cache_error" else f"{method}:{key}={max(1, round(value))}"
+            yield f"{method}:{key}={min(value, 1):g}" if key == "cache_error" else f"{method}:{key}={max(1, round(value))}"
 
 
 def main():

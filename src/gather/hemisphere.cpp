@@ -52,6 +52,7 @@ HemisphereEstimate HemisphereGrid::estimate(std::span<const HemisphereRay> rays,
     HemisphereEstimate e;
     double inverse_distance = 0, unlike = 0;
     std::vector<double> before; // luminance of the last column's, which is the first one's neighbour
+    before.reserve(static_cast<std::size_t>(rows_));
     for (int j = 0; j < rows_; ++j)
         before.push_back(luminance(rays[static_cast<std::size_t>((j + 1) * columns_ - 1)].radiance));
     for (int k = 0; k < columns_; ++k) {

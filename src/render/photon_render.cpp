@@ -174,7 +174,7 @@ RenderResult render_photons(const Scene& scene, const Settings& settings, const 
     else
         passes.run_together(context);
     if (!settings.save_map.empty() && !passes.has_saved_photons())
-        stats.warnings.push_back("no photons were saved: those of the first pass were not made here");
+        stats.warnings.emplace_back("no photons were saved: those of the first pass were not made here");
     sampler->finish(stats);
     warn_of_photons(stats);
     report_eye_samples(passes.luminance(), scene, stats);
