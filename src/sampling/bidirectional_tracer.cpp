@@ -56,7 +56,7 @@ void extend(const Scene& scene, TracedSubPath& walk, From from, Start start, Dep
     while (walk.vertices.size() < most) {
         if (!append_next(scene, ray, walk)) return;
         Vertex &v = walk.vertices.back(), &before = walk.vertices[walk.vertices.size() - 2];
-        const Rgb clear = scene.transmittance(*ray.from, v.point);
+        const Rgb clear = scene.transmittance(before.point, v.point); // the ray of an infinite emitter starts nearer
         TracedSubPath::Note& note = walk.notes.back();
         note.throughput *= clear;
         density(v, from) = solid_angle_to_area(ray.pdf, before.point, v.point, ray.w);

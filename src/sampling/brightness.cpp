@@ -5,6 +5,7 @@
 #include "scene/ray_counter.h"
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
 
 namespace keyhole {
@@ -12,9 +13,8 @@ namespace {
 
 constexpr std::int64_t kBlock = 64 * StageOne::kGroup;
 
-/// Takes from a technique's contributions what belongs to the guides, by the balance heuristic.
+/// Takes from the contributions of bidirectional tracing what belongs to the guides, by the balance heuristic.
 template <class Sink> struct BesideGuides {
-    Technique technique;
     const GuidedPaths& guides;
     Sink& sink;
 
@@ -25,7 +25,7 @@ template <class Sink> struct BesideGuides {
         const Path path = make_path();
         const double guided = guides.density(path);
         if (!(guided > 0)) return sink.contribution(value, kind, [&]() -> const Path& { return path; });
-        const double own = independent_density(technique, path);
+        const double own = bidirectional_density(path);
         sink.contribution(value * (own / (own + guided)), kind, [&]() -> const Path& { return path; });
     }
 };
@@ -36,12 +36,13 @@ void trace_sample(const Scene& scene, const StageOneSettings& settings, Techniqu
     const Vec2 image = lattice_image_point(settings.seed, StreamPurpose::brightness, i);
     if (settings.guides == nullptr)
         return trace_independent(technique, scene, image, settings.max_scatterings, settings.set, rng, sink);
-    BesideGuides<std::remove_reference_t<decltype(sink)>> rest{technique, *settings.guides, sink};
+    assert(technique == Technique::bidirectional);
+    BesideGuides<std::remove_reference_t<decltype(sink)>> rest{*settings.guides, sink};
     trace_independent(technique, scene, image, settings.max_scatterings, settings.set, rng, rest);
     settings.guides->sample(image, rng, [&](const Path& path) {
         const double guided = settings.guides->density(path);
         if (!(guided > 0)) return; // rounding carried it out of cones or openings
-        sink.contribution(path.contribution / (guided + independent_density(technique, path)),
+        sink.contribution(path.contribution / (guided + bidirectional_density(path)),
                           settings.set.storage_point(path).kind, [&]() -> const Path& { return path; });
     });
 }

@@ -4,7 +4,9 @@
 #include "sampling/ledger.h"
 #include "sampling/mixture.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 namespace keyhole {
@@ -57,15 +59,14 @@ template <class State, class Stream = Rng> class Chain {
         return accepted;
     }
 
-    /// min(1, [f(y) / T(x->y)] / [f(x) / T(y->x)]); 0, and counted, where that is zero or not a number.
+    /// min(1, [f(y) / T(x->y)] / [f(x) / T(y->x)]); 0, and counted, where that is zero or not a finite number.
     double acceptance(const State& y, std::size_t k, LedgerEntry& entry) const {
         if (y.target == 0) {
             ++entry.zero;
             return 0;
         }
         const double ratio = mixture_->acceptance_ratio(state_, y, k);
-        if (ratio >= 1) return 1;
-        if (ratio > 0) return ratio;
+        if (ratio > 0 && std::isfinite(ratio)) return std::min(ratio, 1.0);
         ++(ratio == 0 ? entry.rejected : entry.nan);
         return 0;
     }

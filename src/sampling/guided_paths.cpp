@@ -91,7 +91,7 @@ void GuidedPaths::sample_pair(const Vec2& image, Rng& rng, const std::function<v
     if (!guide.trace(light, rng, why)) return;
     const int most = max_scatterings_ + 2, first = guide.vertices();
     eye.push_back(sample_eye(*scene_, rng));
-    for (int steps = 0; first + steps + 2 < most && goes_on(rng); ++steps)
+    for (int steps = 0; first + steps + 1 < most && goes_on(rng); ++steps)
         if (!grow(*scene_, eye, From::eye, image, false, rng, why)) break;
     for (int steps = 0; first + steps + 1 < most && goes_on(rng); ++steps)
         if (!grow(*scene_, light, From::light, image, false, rng, why)) break;

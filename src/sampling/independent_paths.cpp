@@ -2,10 +2,10 @@
 
 namespace keyhole {
 
-double independent_density(Technique technique, const Path& path) {
-    const std::size_t n = path.x.size(), most_from_light = technique == Technique::path ? 1 : n - 1;
+double bidirectional_density(const Path& path) {
+    const std::size_t n = path.x.size();
     double density = 0, from_light = 1;
-    for (std::size_t s = 0; s <= most_from_light; ++s) {
+    for (std::size_t s = 0; s < n; ++s) {
         if (s == 0 || joinable(path.x[s - 1], path.x[s])) {
             double product = from_light;
             for (std::size_t i = s; i < n; ++i) product *= path.x[i].pdf_from_eye;

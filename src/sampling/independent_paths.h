@@ -13,9 +13,9 @@ enum class Technique {
     bidirectional, ///< bidirectional path tracing: finds light that path tracing meets by chance only
 };
 
-/// Density with which a sample of a technique makes a measured path, by any number of vertices from the light, in the
-/// convention of measure.h. Roulette counts as survived; of the emitters, path tracing chooses by power.
-double independent_density(Technique technique, const Path& path);
+/// Density with which a sample of bidirectional path tracing makes a measured path, by any number of vertices from the
+/// light, in the convention of measure.h. Roulette counts as survived.
+double bidirectional_density(const Path& path);
 
 /// What a path of class `light` stores; `reached()`: whether gather rays come to its d2.
 template <class Reached> PhotonKind stored_kind(LightClass light, const PathSet& set, const Reached& reached) {

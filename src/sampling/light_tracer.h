@@ -51,7 +51,8 @@ template <class Sink> void trace_light_path(const Scene& scene, int max_scatteri
     for (int scatterings = 1; scatterings <= max_scatterings && !is_black(power); ++scatterings) {
         const auto hit = next_vertex(scene, v, w);
         if (!hit || hit->point.site == Site::infinite) return;
-        power *= scene.transmittance(v.point, hit->point);
+        // From where light sets out: it may have come from infinity.
+        power *= scene.transmittance(scatterings == 1 ? start->vertex.point : v.point, hit->point);
         v = *hit;
         if (!sink.arrival(v, -w, power, past)) return;
         const auto next = continue_walk(v, -w, From::light, source);

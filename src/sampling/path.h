@@ -40,7 +40,6 @@ struct Path {
     double target = 0;     ///< what a chain samples in proportion to: PathSet::target(), or 0 outside the path set
 
     int vertices() const { return static_cast<int>(x.size()); }
-    int edges() const { return vertices() - 1; }
     /// Number of vertices between the light and the eye.
     int scatterings() const { return vertices() - 2; }
 };

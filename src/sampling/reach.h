@@ -24,9 +24,6 @@ class Reach {
     /// Whether rays come near `p` on the side of the unit geometric normal `n`.
     bool comes_to(const Vec3& p, const Vec3& n) const;
 
-    std::size_t cells() const { return cells_.size(); }
-    std::size_t bytes() const { return cells_.capacity() * sizeof(std::uint64_t); }
-
   private:
     std::uint64_t cell(const Vec3& p, const Vec3& n) const;
 

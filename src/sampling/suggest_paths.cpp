@@ -30,7 +30,7 @@ int light_vertices(const Path& path) {
 
 /// Contribution over the density of a wholly new path, summed over all ways of making it from both ends.
 double hardness(const Path& path) {
-    const double density = independent_density(Technique::bidirectional, path);
+    const double density = bidirectional_density(path);
     return density > 0 ? path.target / density : 0;
 }
 
@@ -89,7 +89,7 @@ bool works(const Scene& scene, const UserPathSpec& spec) {
     }
 }
 
-/// Names, and weights with a mean of 1.
+/// Names, and weights with a mean of about 1.
 void finish(UserPathFile& file) {
     double total = 0;
     for (const UserPathSpec& path : file.paths) total += path.weight;

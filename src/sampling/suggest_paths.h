@@ -10,7 +10,6 @@ struct SuggestOptions {
     std::size_t count = 10;   ///< most paths to suggest
     std::int64_t pool = 4000; ///< paths of stage one to choose from
     double radius = 0.08; ///< paths whose vertices all lie nearer than this are alike, as a share of the scene's size
-    std::uint64_t seed = 1;
 };
 
 /// Paths that are drawn in proportion to contribution from stage one are weighted once more, by contribution over the

@@ -53,7 +53,8 @@ SurfacePoint triangle_point(const TriangleMesh& mesh, std::uint32_t triangle, fl
     const float w = 1 - u - v;
     SurfacePoint s;
     s.p = a * w + b * u + c * v;
-    s.ng = (b - a).cross(c - a).normalized();
+    // Lengths to the fourth power, which floats don't hold for all that may be in a scene.
+    s.ng = Vec3(Imath::V3d(b - a).cross(Imath::V3d(c - a)).normalized());
     s.offset = kRelativeError * absolute(s.ng).dot(absolute(a) * w + absolute(b) * u + absolute(c) * v);
     s.ns = s.ng;
     s.primitive = triangle;

@@ -21,10 +21,12 @@ void merge_cones(EmitterBounds& a, const EmitterBounds& b) {
     } else {
         const double spread = std::min((wide.spread + between + narrow.spread) / 2, kPi), turn = spread - wide.spread;
         const Vec3 side = narrow.axis - wide.axis * wide.axis.dot(narrow.axis);
-        a.axis = side.length2() > 1e-8f ? wide.axis * static_cast<float>(std::cos(turn)) +
-                                              side.normalized() * static_cast<float>(std::sin(turn))
-                                        : wide.axis;
-        a.spread = side.length2() > 1e-8f ? spread : kPi;
+        const bool apart = side.length2() > 1e-8f;
+        a.axis = apart ? wide.axis * static_cast<float>(std::cos(turn)) +
+                             side.normalized() * static_cast<float>(std::sin(turn))
+                       : wide.axis;
+        // Axes that are alike but for rounding may stay as they are; opposite ones leave it open which way to turn.
+        a.spread = apart ? spread : between < 1 ? std::min(wide.spread + between, kPi) : kPi;
     }
     a.reach = reach;
 }

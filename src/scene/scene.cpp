@@ -40,7 +40,7 @@ void check_sphere(const Sphere& sphere) {
 void remove_degenerate_triangles(TriangleMesh& mesh) {
     std::erase_if(mesh.triangles, [&](const auto& t) {
         const Vec3& a = mesh.positions[t[0]];
-        const Vec3 n = (mesh.positions[t[1]] - a).cross(mesh.positions[t[2]] - a);
+        const Imath::V3d n = Imath::V3d(mesh.positions[t[1]] - a).cross(Imath::V3d(mesh.positions[t[2]] - a));
         return !(n.length2() > std::numeric_limits<float>::min());
     });
 }

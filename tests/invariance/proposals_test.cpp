@@ -25,6 +25,7 @@ const SceneCase kScenes[] = {
      }},
     {"Furnace", [] { return test::furnace(0.6); }},
     {"Haze", test::hazy_box},
+    {"Coat", test::coated_box},
     {"Sky", test::sky_box},
     {"DistantLight", test::distant_light_scene},
     {"Spot", test::spot_scene},

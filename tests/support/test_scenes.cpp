@@ -124,6 +124,24 @@ std::unique_ptr<Scene> hazy_box() {
     return m.build();
 }
 
+std::unique_ptr<Scene> coated_box() {
+    const auto white = make_diffuse(Rgb(0.7));
+    const auto number = [](double x) { return constant_texture(x); };
+    const Coat coat{.eta = 1.5, .alpha_x = number(0), .alpha_y = number(0), .thickness = number(0.01)};
+    const auto coated = make_coated_conductor(coat, constant_texture(Rgb(0.9)), number(0.5), number(0.5));
+    SceneMaker m;
+    m.rectangle({-1, -1, -1}, {2, 0, 0}, {0, 2, 0}, coated)
+        .rectangle({-1, -1, 1}, {2, 0, 0}, {0, 0, -2}, coated)
+        .rectangle({-1, 1, 1}, {0, 0, -2}, {2, 0, 0}, white)
+        .rectangle({-1, -1, 1}, {0, 0, -2}, {0, 2, 0}, white)
+        .rectangle({1, -1, 1}, {0, 2, 0}, {0, 0, -2}, white)
+        .rectangle({-1, -1, 1}, {0, 2, 0}, {2, 0, 0}, white)
+        .rectangle({-0.3f, 0.9f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}, make_diffuse(Rgb(0.0)), Rgb(9.0))
+        .camera({0, 0, 0.9f}, {0, 0, 0}, 90)
+        .window(32, 32);
+    return m.build();
+}
+
 std::unique_ptr<Scene> point_light_box() {
     SceneMaker m = box_shell(make_diffuse(Rgb(0.2, 0.4, 0.7)));
     m.emitter(make_point_emitter({0.2f, 1.7f, 0.3f}, Rgb(2.0, 1.8, 1.5)));

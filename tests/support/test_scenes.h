@@ -52,6 +52,9 @@ std::unique_ptr<Scene> two_rooms(float slit, bool thin = false);
 /// mirror_glass_box() with a ball of green glass, and a block of haze that has no surface.
 std::unique_ptr<Scene> hazy_box();
 
+/// Two rough walls of metal under a smooth coat, which now and then swallow what they scatter, in a diffuse room.
+std::unique_ptr<Scene> coated_box();
+
 /// Open: a diffuse floor with a mirror ball and a glass ball under a sky that is bright on one side.
 std::unique_ptr<Scene> sky_box();
 

@@ -76,17 +76,24 @@ TEST(Chain, CountsAcceptancesThatAreNotNumbersAndRejectsThem) {
         std::string_view name() const override { return "broken"; }
         double suitability(const Point&) const override { return 1; }
         std::optional<Point> propose(const Point&, Rng&, Failure&) const override { return Point(0.25); }
-        double transition_density(const Point&, const Point&) const override { return std::nan(""); }
+        double transition_density(const Point& x, const Point&) const override { return x.x == 0.5 ? forward_ : 1; }
+        explicit Broken(double forward) : forward_(forward) {}
+
+      private:
+        double forward_;
     };
-    Mixture<Point> mixture;
-    mixture.add(std::make_unique<Broken>(), 1);
-    Chain<Point> chain(Point(0.5), mixture, Rng(1, StreamPurpose::test, 0));
-    double stayed = 0;
-    for (int i = 0; i < 10; ++i)
-        EXPECT_FALSE(chain.step([&](const Point& p, double w) { stayed += p.x == 0.5 ? w : 0; }));
-    EXPECT_EQ(stayed, 10);
-    EXPECT_EQ(chain.ledger()[0].nan, 10u);
-    EXPECT_EQ(chain.longest_stay(), 10u);
+    // With a density of nothing for the move that it made, a proposal belies itself.
+    for (const double forward : {std::nan(""), 0.0}) {
+        Mixture<Point> mixture;
+        mixture.add(std::make_unique<Broken>(forward), 1);
+        Chain<Point> chain(Point(0.5), mixture, Rng(1, StreamPurpose::test, 0));
+        double stayed = 0;
+        for (int i = 0; i < 10; ++i)
+            EXPECT_FALSE(chain.step([&](const Point& p, double w) { stayed += p.x == 0.5 ? w : 0; }));
+        EXPECT_EQ(stayed, 10);
+        EXPECT_EQ(chain.ledger()[0].nan, 10u);
+        EXPECT_EQ(chain.longest_stay(), 10u);
+    }
 }
 
 } // namespace

@@ -83,5 +83,23 @@ TEST(LightTree_Choice, IsThatByPowerWithAFloorForFewEmitters) {
     EXPECT_NEAR(scene->light_tree().probability(floor_point(0, 0), 0), (1 + 0.2) / (4 + 0.4), 1e-6);
 }
 
+// Rounding makes the angle between two lamps that look the same way a little more than nothing.
+TEST(LightTree_Choice, KnowsWhichLampsFaceAway) {
+    for (const float tilt : {0.0f, 0.1f, 0.2f, 0.7f, 0.8f}) {
+        test::SceneMaker m;
+        m.rectangle({-50, 0, -50}, {0, 0, 100}, {100, 0, 0}, make_diffuse(Rgb(0.5)));
+        const Vec3 u(0.2f * std::cos(tilt), 0.2f * std::sin(tilt), 0), v(0, 0, 0.2f);
+        for (int i = 0; i < 16; ++i) {
+            const Vec3 corner(static_cast<float>(i % 8) - 4, i < 8 ? 2.0f : 2.5f, 0);
+            m.rectangle(corner, i < 8 ? u : v, i < 8 ? v : u, make_diffuse(Rgb(0.0)), Rgb(1.0));
+        }
+        const auto scene = m.build();
+        double facing = 0, away = 0;
+        for (std::uint32_t i = 0; i < 16; ++i)
+            (i < 8 ? facing : away) += scene->light_tree().probability(floor_point(0.3f, 0.2f), i);
+        EXPECT_LT(std::min(facing, away), 0.2) << tilt;
+    }
+}
+
 } // namespace
 } // namespace keyhole

@@ -88,6 +88,23 @@ TEST_P(AlongUserPaths, StageOneFindsTheSameBrightness) {
 INSTANTIATE_TEST_SUITE_P(Scenes, AlongUserPaths, testing::Range<std::size_t>(0, test::guided_scenes().size()),
                          [](const auto& info) { return test::guided_scenes()[info.param].name; });
 
+// The longest paths that are looked for count as well.
+TEST(ShortPaths, HaveTheBrightnessThatTheyHaveWithoutUserPaths) {
+    const auto scene = test::diffuse_box();
+    const UserPaths paths =
+        bind_user_paths(*scene, {{test::user_path("to the floor", {{0, 1.95f, 0}, {0.2f, 0, 0.4f}}, 0.9)}});
+    for (const int depth : {3, 4}) {
+        const GuidedPaths guides(*scene, paths, PathSet::stored, depth);
+        StageOneSettings settings{.max_scatterings = depth, .samples = 100'000, .seed = 3};
+        const StageOne without = run_stage_one(*scene, settings, {});
+        settings.seed = 4;
+        settings.guides = &guides;
+        const StageOne with = run_stage_one(*scene, settings, {});
+        EXPECT_LT(std::abs(z(with.brightness, without.brightness)), 4)
+            << "depth " << depth << ": " << with.brightness.mean() / without.brightness.mean();
+    }
+}
+
 /// Through a slit of 3 cm in a wall of 10, by which a free path goes once in some hundred times.
 TEST(ThroughASlit, UserPathsFindLightThatIsHardToFind) {
     constexpr float kSlit = 0.03f;

@@ -1,6 +1,9 @@
 // Absorption, boundaries without a surface, and holes.
+#include "sampling/bidirectional_tracer.h"
 #include "sampling/direct_light.h"
+#include "sampling/light_tracer.h"
 #include "scene/emitters/distant.h"
+#include "scene/emitters/environment.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -125,6 +128,41 @@ TEST(Alpha_Sheet, StopsItsShareOfRaysAndNoOthersThanItHides) {
         EXPECT_NEAR(stopped / double{n}, alpha, 4 * std::sqrt(alpha * (1 - alpha) / n) + 1e-12);
         // A hit is placed anew by each ray, and now and then falls on the other side of the screen's lines.
         EXPECT_LE(disagree, alpha == 0 || alpha == 1 ? 0 : n / 200);
+    }
+}
+
+// However it is looked for: next-event estimation asks for the way to infinity, light paths for that to where they
+// enter.
+TEST(Media_Outermost, LeavesNothingOfLightFromInfinity) {
+    for (const bool sky : {false, true}) {
+        SceneDescription d;
+        d.shapes.resize(1);
+        d.shapes[0].geometry = Sphere{};
+        d.shapes[0].material = make_diffuse(Rgb(0.5));
+        d.emitters.push_back(sky ? make_constant_environment(Rgb(1.0)) : make_distant_emitter({0, -1, 0}, Rgb(1.0)));
+        d.medium = medium(0.2); // clear for blue
+        const Scene scene(std::move(d));
+        Rng rng(1, StreamPurpose::test, 0);
+        struct {
+            Rgb power{0.0};
+            bool arrival(const Vertex&, const Vec3&, const Rgb& carried, const LightPast&) {
+                power += carried;
+                return false;
+            }
+        } sink;
+        TracedSubPath walk;
+        int arrived = 0;
+        for (int i = 0; i < 1000; ++i) {
+            trace_light_path(scene, 4, rng, sink);
+            trace_light_subpath(scene, 4, rng, nullptr, walk);
+            if (walk.size() < 2) continue;
+            EXPECT_EQ(walk.notes[1].throughput.x, 0);
+            EXPECT_GT(walk.notes[1].throughput.z, 0);
+            ++arrived;
+        }
+        EXPECT_GT(arrived, 100);
+        EXPECT_EQ(sink.power.x, 0);
+        EXPECT_GT(sink.power.z, 0);
     }
 }
 

@@ -100,5 +100,18 @@ TEST(Ply, ImpossibleCountsAreErrors) {
         EXPECT_THROW(read_ply(d.write("bad.ply", text)), InputError) << text;
 }
 
+TEST(Ply, NumbersBeyondADoubleAreErrorsAndThoseBelowAreNothing) {
+    const ScratchDirectory d;
+    const auto mesh = [&](const std::string& x) {
+        return read_ply(d.write("t.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                                         "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+                                         "end_header\n" +
+                                             x + " -1 0\n0 0 0\n1 0 0\n3 0 1 2\n"));
+    };
+    EXPECT_EQ(mesh("1e-400").positions[0], Vec3(0, -1, 0));
+    EXPECT_THROW(mesh("1e400"), InputError);
+    EXPECT_THROW(mesh("-1e400"), InputError);
+}
+
 } // namespace
 } // namespace keyhole

@@ -37,5 +37,30 @@ TEST(PrimaryChains, DepositTheBrightnessWithEveryStep) {
         }
 }
 
+// Numbers written where the other technique doesn't read them lead to another path. That is found out only where they
+// are read: moves would be made one way and refused the other, and one technique starved.
+TEST(PrimaryChains, ChangeTechniquesOnlyWhereTheWayBackIsThere) {
+    const struct {
+        const char* light;
+        std::unique_ptr<Scene> scene;
+    } cases[] = {{"area", test::mirror_glass_box()},
+                 {"point", test::point_light_box()},
+                 {"spot", test::spot_scene()},
+                 {"distant", test::distant_light_scene()},
+                 {"sky", test::sky_box()}};
+    for (const auto& [light, scene] : cases) {
+        const EmitterInverse inverses(*scene);
+        PrimaryStart start =
+            PrimaryStart::by_length({scene.get(), 8}, &inverses, {.samples = 20'000, .seed = 1}, RunContext{});
+        with_threads(1, [&] {
+            PrimaryChains chains(start.choose_seeds(30, 0), 1, false);
+            chains.advance({Failures::reject, 0.3}, 2000, {}, [](const Splat&, double) {});
+            const ChangeCounts counts = chains.changes();
+            EXPECT_GE(counts.accepted, std::string_view(light) == "area" ? 100u : 0u) << light;
+            EXPECT_LE(counts.drifted * 200, counts.accepted) << light;
+        });
+    }
+}
+
 } // namespace
 } // namespace keyhole

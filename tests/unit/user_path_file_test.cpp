@@ -263,4 +263,26 @@ TEST(EmitterPatch, SamplesLieInsideWithTheDensityThatIsTold) {
     EXPECT_NEAR(static_cast<double>(inside) / n, expected, 5 * std::sqrt(expected / n));
 }
 
+TEST(EmitterPatch, OnASphereIsTheCapThatItSamplesHoweverSmall) {
+    SceneDescription d;
+    d.shapes.resize(1);
+    d.shapes[0].geometry = Sphere{};
+    d.shapes[0].material = make_black();
+    d.shapes[0].emission = std::make_unique<SurfaceEmission>(SurfaceEmission{Rgb(1.0)});
+    const Scene scene(std::move(d));
+    Rng rng(1, StreamPurpose::test, 0);
+    const SurfacePoint center = scene.emitter(0).sample_point(rng).point;
+    for (const double radius : {0.1, 1e-3, 3e-4}) {
+        const EmitterPatch patch(scene, center, radius), around(scene, center, 3 * radius);
+        int inside = 0, own = 0;
+        constexpr int n = 20'000;
+        for (int i = 0; i < n; ++i) {
+            own += patch.pdf(patch.sample(rng)) > 0 ? 1 : 0;
+            inside += patch.pdf(around.sample(rng)) > 0 ? 1 : 0;
+        }
+        EXPECT_GT(own, 0.998 * n) << "but for rounding at the rim, radius " << radius;
+        EXPECT_NEAR(inside / static_cast<double>(n), 1.0 / 9, 0.01) << radius;
+    }
+}
+
 } // namespace keyhole

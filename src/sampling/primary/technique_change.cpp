@@ -20,7 +20,8 @@ double weight_ratio(double densities, MisHeuristic heuristic) {
     return 0; // one technique has it all
 }
 
-/// Where a stream keeps the numbers of vertex j's continuation: what the tracers of sub-paths ask for before it.
+/// Where a stream keeps the numbers of vertex j's continuation: what the tracers of sub-paths ask for before it. Those
+/// of light are for emitters on surfaces.
 constexpr std::size_t kEyeBsdf = 4; // after the window point and the point on the lens
 constexpr std::size_t kEmitterRay = 4, kLightBsdf = 6;
 std::size_t eye_bsdf(int j) { return kEyeBsdf + 3 * static_cast<std::size_t>(j - 1); }
@@ -86,6 +87,8 @@ bool TechniqueChange::set_light_number(const Path& path, int j, bool used, Rng& 
         edits.set(stream, kEmitterRay, emitters_->ray(x0, leaving_direction(path, 0, 1)), used, rng);
         return true;
     }
+    // Other emitters ask for fewer numbers.
+    if (x0.site != Site::surface) return false;
     const auto u = invert_bsdf(at(path, j), leaving_direction(path, j, -1), leaving_direction(path, j, 1), rng);
     if (u) edits.set(stream, light_bsdf(j), *u, used, rng);
     return u.has_value();

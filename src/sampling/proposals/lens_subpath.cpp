@@ -35,6 +35,8 @@ bool LensSubpath::trace_eye(SubPath& eye, const Vec2& image, int room, Rng& rng,
         Vertex& v = eye.back();
         if (!v.bsdf.traits().delta) return true;
         const auto next = continue_walk(v, -w, From::eye, rng);
+        // Having chosen a finite event it ends here, whether or not that would have led anywhere.
+        if (!next && v.bsdf.traits().finite) return true;
         if (!next) return why = Failure::absorbed, false;
         if (!is_specular(next->event)) return true;
         v.event = next->event;

@@ -9,11 +9,9 @@
 namespace keyhole {
 namespace {
 
-double from_srgb(double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); }
-
 double radiance_of(float texel) { return texel; }
-double radiance_of(std::uint8_t texel) { return from_srgb(texel / 255.0); }
-double radiance_of(std::uint16_t texel) { return from_srgb(texel / 65535.0); }
+double radiance_of(std::uint8_t texel) { return srgb_to_linear(texel / 255.0); }
+double radiance_of(std::uint16_t texel) { return srgb_to_linear(texel / 65535.0); }
 
 class ImageEnvironment final : public Emitter {
   public:

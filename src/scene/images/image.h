@@ -3,6 +3,7 @@
 
 #include "core/vec.h"
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -32,6 +33,9 @@ struct Image {
     }
     std::size_t bytes() const;
 };
+
+/// Of a value in [0,1] (IEC 61966-2-1).
+inline double srgb_to_linear(double x) { return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4); }
 
 constexpr int kMaxImageSide = 1 << 16;
 constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 28;

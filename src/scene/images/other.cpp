@@ -38,7 +38,7 @@ ReadImage* load_module() {
         if (std::filesystem::exists(path, error)) throw InputError(fmt::format("OpenImageIO: {}", dlerror()));
         tried += ' ' + path.string();
     }
-    throw InputError("images other than EXR and PFM need the module with OpenImageIO, not found at" + tried);
+    throw InputError("images other than EXR, PFM, TGA and JPEG need the module with OpenImageIO, not found at" + tried);
 }
 
 } // namespace

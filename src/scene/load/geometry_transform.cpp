@@ -59,6 +59,17 @@ void transform_geometry(Geometry& geometry, const Transform& t) {
     transform_mesh(std::get<TriangleMesh>(geometry), t);
 }
 
+bool has_bounded_positions(const Geometry& geometry) {
+    const auto bounded = [](const Vec3& p) {
+        constexpr float kMost = 1e13f;
+        return std::abs(p.x) <= kMost && std::abs(p.y) <= kMost && std::abs(p.z) <= kMost;
+    };
+    if (const auto* s = std::get_if<Sphere>(&geometry)) return bounded(s->center) && bounded(Vec3(s->radius));
+    for (const Vec3& p : std::get<TriangleMesh>(geometry).positions)
+        if (!bounded(p)) return false;
+    return true;
+}
+
 void flip(Geometry& geometry) {
     if (auto* sphere = std::get_if<Sphere>(&geometry)) {
         sphere->inward = !sphere->inward;

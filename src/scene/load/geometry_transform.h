@@ -20,6 +20,9 @@ void transform_mesh(TriangleMesh& mesh, const Transform& t);
 /// As transform_mesh(). A sphere stays one where `t` scales all directions alike, else it becomes a mesh with normals.
 void transform_geometry(Geometry& geometry, const Transform& t);
 
+/// Whether no coordinate is beyond 1e13, a margin around what files may say: cubes of lengths stay within a float.
+bool has_bounded_positions(const Geometry& geometry);
+
 /// Exchanges outside and inside.
 void flip(Geometry& geometry);
 

@@ -9,6 +9,7 @@
 #include <array>
 #include <bit>
 #include <charconv>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -188,6 +189,8 @@ class TextBody {
         if (error == std::errc::invalid_argument)
             fail(fmt::format("found '{:.12}' in the data, expected a number",
                              std::string_view(at_, static_cast<std::size_t>(std::find(at_, end_, '\n') - at_))));
+        // from_chars() doesn't tell too large from too small.
+        if (error == std::errc::result_out_of_range) value = std::strtod(std::string(at_, next).c_str(), nullptr);
         at_ = next;
         return value;
     }

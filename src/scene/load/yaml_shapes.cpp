@@ -8,23 +8,10 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 namespace keyhole {
 namespace {
 
 constexpr int kMaxGroupDepth = 64; // bounds the recursion below
-
-bool has_bounded_positions(const Geometry& geometry) {
-    const auto bounded = [](const Vec3& p) {
-        constexpr float kMost = 1e13f; // a margin around kCoordinate; products of lengths stay finite
-        return std::abs(p.x) <= kMost && std::abs(p.y) <= kMost && std::abs(p.z) <= kMost;
-    };
-    if (const auto* s = std::get_if<Sphere>(&geometry)) return bounded(s->center) && bounded(Vec3(s->radius));
-    for (const Vec3& p : std::get<TriangleMesh>(geometry).positions)
-        if (!bounded(p)) return false;
-    return true;
-}
 
 /// Emission of a shape in its final place: power follows from its area. Null where nothing is emitted.
 std::unique_ptr<SurfaceEmission> read_emission(const YamlNode& node, double area) {

@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <exception>
 #include <map>
 #include <numeric>
@@ -27,17 +26,6 @@ template <class Body> void parallel_attempt(std::size_t n, const Body& body) {
     });
     for (const auto& error : errors)
         if (error) std::rethrow_exception(error);
-}
-
-bool has_bounded_positions(const Geometry& geometry) {
-    const auto bounded = [](const Vec3& p) {
-        constexpr float kMost = 1e13f; // products of lengths stay finite
-        return std::abs(p.x) <= kMost && std::abs(p.y) <= kMost && std::abs(p.z) <= kMost;
-    };
-    if (const auto* s = std::get_if<Sphere>(&geometry)) return bounded(s->center) && bounded(Vec3(s->radius));
-    for (const Vec3& p : std::get<TriangleMesh>(geometry).positions)
-        if (!bounded(p)) return false;
-    return true;
 }
 
 /// Triangles `begin` to `end` of a mesh, with the positions that they use.

@@ -64,10 +64,7 @@ LightSource spot(const Source& s) {
     const Imath::V3d from = s.p.point("from", Imath::V3d(0.0)), to = s.p.point("to", Imath::V3d(0, 0, 1));
     spot.position = Vec3(s.position(from));
     spot.axis = Vec3(s.direction(to - from));
-    if (const double power = s.target("power"); power > 0) {
-        const double end = std::cos(spot.edge_degrees * kPi / 180), start = std::cos(spot.full_degrees * kPi / 180);
-        spot.intensity *= power / (2 * kPi * ((1 - start) + (start - end) / 2)); // the smooth step's mean is a half
-    }
+    if (const double power = s.target("power"); power > 0) spot.intensity *= power / spot_solid_angle(spot);
     if (is_black(spot.intensity)) return {};
     return {make_spot_emitter(spot), false};
 }

@@ -8,8 +8,6 @@
 namespace keyhole {
 namespace {
 
-double srgb_to_linear(double x) { return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4); }
-
 double decode(double x, const ImageOptions& options) {
     switch (options.encoding) {
     case Encoding::linear:
