@@ -12,8 +12,7 @@ struct PixelSample {
     Rgb caustic{0.0};  ///< light that came through specular surfaces to the surface seen
     Rgb albedo{0.0};   ///< hemispherical reflectance, approximately; of the first non-specular surface
     Vec3 normal{0, 0, 0};
-    double depth = 0;          ///< distance along the ray to the first surface of any kind [m]; 0: nothing
-    double photon_density = 0; ///< photons per area where the global map was asked [1/m^2]
+    double depth = 0; ///< distance along the ray to the first surface of any kind [m]; 0: nothing
 };
 
 } // namespace keyhole
