@@ -35,7 +35,6 @@ class GuidedPaths {
     void sample_pair(const Vec2& image, Rng& rng, const std::function<void(const Path&)>& found) const;
     /// Number density of y among the joints of a pair.
     double expected_joints(const Path& y) const;
-    std::optional<Path> join_ends(const SubPath& light, const SubPath& eye, Vec2 image, Failure& why) const;
 
     const Scene* scene_;
     PathSet set_;
