@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/pixel_sample.h"
+#include "film/splats.h"
 #include "sampling/path_tracer.h"
 #include "sampling/seen_surface.h"
 
@@ -33,19 +34,9 @@ struct PixelSink {
     }
 
     void add(const Rgb& value, LightClass light) {
-        switch (light) {
-        case LightClass::emission:
-        case LightClass::direct:
-            pixel.direct += value;
-            break;
-        case LightClass::caustic:
-            pixel.caustic += value;
-            break;
-        case LightClass::second:
-        case LightClass::indirect:
-            pixel.indirect += value;
-            break;
-        }
+        using Layer = SplatFilm::Layer;
+        const Layer layer = SplatFilm::layer_of(light);
+        (layer == Layer::direct ? pixel.direct : layer == Layer::caustic ? pixel.caustic : pixel.indirect) += value;
     }
 };
 
