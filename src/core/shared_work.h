@@ -35,7 +35,7 @@ template <class T> void exchange_parts(std::vector<T>& items, const RunContext& 
 }
 
 /// parallel_for() that a crew shares out: body(i) fills in items[i], and depends on i alone. All items are there
-/// afterwards, in every process.
+/// afterwards, in every process. @throws TeamLost by a crew that has lost a process.
 template <class T, class Body> void shared_for(std::vector<T>& items, const RunContext& context, Body&& body) {
     const Range own = own_part(static_cast<std::int64_t>(items.size()), context);
     parallel_for(own.size(), [&](std::int64_t k) { body(own.begin + k); });
@@ -48,7 +48,7 @@ inline std::int64_t blocks_of(Range own) { return (own.size() + kBlockOfItems - 
 
 /// shared_for() for items that take little time each: body(b, i) fills in items[i], which is one of block b of
 /// own_part(). A block is done by one thread, in order. Tells `context` of the own items that are done, between begin()
-/// and end().
+/// and end(). @throws TeamLost as shared_for().
 template <class T, class Body> void shared_blocks(std::vector<T>& items, const RunContext& context, Body&& body) {
     const Range own = own_part(static_cast<std::int64_t>(items.size()), context);
     parallel_for(blocks_of(own), [&](std::int64_t b) {

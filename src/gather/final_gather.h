@@ -15,7 +15,7 @@ struct GatherSamples {
     int rays;  ///< gather rays, where the cache doesn't serve
 };
 
-/// Thread-safe; immutable but for what it counts.
+/// Thread-safe; immutable but for what it counts. All arguments by reference or pointer must outlive it.
 class FinalGather {
   public:
     /// `cache` may be null: gather rays from every sample.
