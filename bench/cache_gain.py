@@ -9,23 +9,12 @@ their mean (5 t); with the cache the error is the mean of (I - U1)(I - U2), whic
 includes what the cache biases. Both are relative to the squared luminance, smoothed 5x5, without the worst 0.1 % of
 the pixels. Needs Debian's python3-openimageio and python3-numpy.
 """
-import argparse, json, os, resource, subprocess, tempfile
+import argparse, json, os, tempfile
 import numpy as np
-import OpenImageIO as oiio
+import common
+from common import luminance
 
 SETTINGS = "method=ipm light_paths=300k photons=100k spp=2 cache_rays=400"
-
-
-def cpu_seconds():
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
-
-
-def luminance(path):
-    image = oiio.ImageInput.open(path)
-    spec = image.spec()
-    pixels = np.asarray(image.read_image(oiio.FLOAT), dtype=np.float64).reshape(spec.height, spec.width, spec.nchannels)
-    return pixels[..., [spec.channelnames.index(c) for c in "RGB"]] @ np.array([0.2126, 0.7152, 0.0722])
 
 
 def smooth(a, k=2):
@@ -40,12 +29,10 @@ def trimmed(e):
 
 
 def render(keyhole, scene, settings, picture):
-    before = cpu_seconds()
-    subprocess.run([keyhole, "render", scene, "-q", "-t", "1", "--no-png", "-o", picture, "--stats", picture + ".json"]
-                   + [word for s in settings for word in ("-D", s)], check=True)
+    seconds = common.render(keyhole, scene, settings, picture, "--stats", picture + ".json")
     with open(picture + ".json") as f:
         gather = sum(s["cpu_seconds"] for s in json.load(f)["stages"] if s["name"] == "gather")
-    return cpu_seconds() - before, gather
+    return seconds, gather
 
 
 def main():

@@ -7,7 +7,8 @@ SHARED holds scenes/mps/NAME.pbrt, references/mps/NAME.{a,b}.exr and tools/pictu
 thread with the settings of BUDGETS and prints the CPU seconds of the whole process and the trimmed relative squared
 error free of the references' noise (cross_trim), with the bound it is to stay below: a quarter of the best peer's.
 """
-import argparse, json, os, resource, subprocess, sys, tempfile
+import argparse, json, os, subprocess, sys, tempfile
+from common import render
 
 # Settings meant to use about so many CPU seconds; what they do use is printed. The Box lives by its photons (caustics
 # seen in mirrors), the others by the rays of their irradiance records. filter=box is what the references have.
@@ -25,18 +26,6 @@ BOUND = {"box": {5: .0018, 15: .0012, 45: .0009},
          "rooms": {5: .0028, 15: .0005, 45: .0002},
          "lantern": {5: .0065, 15: .0021, 45: .0021}}
 MASK = {"lantern": ["--mask", "110,190,70,160"]}
-
-
-def cpu_seconds():
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
-
-
-def render(keyhole, scene, settings, picture):
-    before = cpu_seconds()
-    subprocess.run([keyhole, "render", scene, "-q", "-t", "1", "--no-png", "-o", picture]
-                   + [word for s in settings for word in ("-D", s)], check=True)
-    return cpu_seconds() - before
 
 
 def error(shared, name, picture):

@@ -14,7 +14,8 @@ import pathlib
 import subprocess
 
 import numpy
-import OpenImageIO as oiio
+
+from common import luminance
 
 GUIDED = ["--user-paths", "USER_PATHS"]
 METHODS = {"pm": [], "ipm": [], "mps": [], "pss": [], "auto": [], "ipm, user paths": GUIDED, "mps, user paths": GUIDED,
@@ -69,9 +70,7 @@ class Bench:
 
 
 def blocks(path):
-    picture = oiio.ImageBuf(str(path))
-    pixels, names = picture.get_pixels(oiio.FLOAT), picture.spec().channelnames
-    y = sum(w * pixels[..., names.index(c)] for w, c in ((0.2126, "R"), (0.7152, "G"), (0.0722, "B"))).astype(float)
+    y = luminance(path)
     return y.reshape(y.shape[0] // 4, 4, y.shape[1] // 4, 4).mean((1, 3))
 
 

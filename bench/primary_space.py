@@ -13,7 +13,8 @@ import subprocess
 import sys
 
 import numpy
-import OpenImageIO as oiio
+
+from common import luminance
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SCENES = ['glossy', 'egg', 'tube', 'ball', 'disco']
@@ -57,14 +58,6 @@ class Bench:
 
     def scenes(self):
         return self.arguments.scenes.split(',')
-
-
-def luminance(path):
-    file = oiio.ImageInput.open(str(path))  # not ImageBuf, whose cache takes files of the same second for the same
-    names = file.spec().channelnames
-    pixels = file.read_image(oiio.FLOAT)
-    file.close()
-    return sum(w * pixels[..., names.index(c)] for w, c in ((0.2126, 'R'), (0.7152, 'G'), (0.0722, 'B'))).astype(float)
 
 
 def error(picture, halves):

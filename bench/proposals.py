@@ -19,7 +19,8 @@ import subprocess
 import sys
 
 import numpy
-import OpenImageIO
+
+from common import luminance
 
 KINDS = {
     "bidirectional": "BD", "lens_subpath": "LS", "lens_perturbation": "LP", "multi_chain_perturbation": "MC",
@@ -42,12 +43,7 @@ def configurations():
 
 def indirect(path):
     """Luminance of the layers that chains draw."""
-    image = OpenImageIO.ImageInput.open(path)
-    names = image.spec().channelnames
-    pixels = image.read_image("float")
-    image.close()
-    rgb = sum(pixels[:, :, [names.index(f"{layer}.{c}") for c in "RGB"]] for layer in ("indirect", "caustic"))
-    return rgb @ numpy.array([0.2126, 0.7152, 0.0722])
+    return sum(luminance(path, layer) for layer in ("indirect", "caustic"))
 
 
 def error(a, r1, r2, trim=0.005):

@@ -18,7 +18,8 @@ import sys
 import tempfile
 
 import numpy
-import OpenImageIO as oiio
+
+from common import luminance
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SIZE = (96, 64)
@@ -29,18 +30,6 @@ CASES = [
     ("Box", "box", ("indirect", "caustic"), None),
     ("Box, small caustic", "box", ("caustic",), (0.44, 0.85, 0.53, 0.93)),
 ]
-
-
-def read_layers(path):
-    """Luminance of each layer, by name."""
-    picture = oiio.ImageBuf(str(path))
-    pixels = picture.get_pixels(oiio.FLOAT)
-    names = picture.spec().channelnames
-    layers = {}
-    for name in {n.split(".")[0] for n in names if n.endswith(".R")}:
-        rgb = [pixels[..., names.index(f"{name}.{c}")] for c in "RGB"]
-        layers[name] = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]
-    return layers
 
 
 def render(keyhole, scene, guided, mutations, seed, folder):
@@ -55,7 +44,7 @@ def render(keyhole, scene, guided, mutations, seed, folder):
     user = [p for p in s["proposals"] if p["name"].startswith("user path")]
     moved = {"acceptance": s["values"]["chains, acceptance"],
              "user accepted": sum(p["accepted"] for p in user) / max(1, sum(p["proposed"] for p in user))}
-    return {n: layer / s["brightness"] for n, layer in read_layers(exr).items()}, moved
+    return {layer: luminance(exr, layer) / s["brightness"] for layer in ("indirect", "caustic")}, moved
 
 
 def values(layers, names, region):

@@ -1,7 +1,6 @@
 // keyhole merge: several pictures of one scene made into one.
 #include "cli/command.h"
 #include "cli/outputs.h"
-#include "core/error.h"
 #include "film/exr.h"
 #include "film/join.h"
 

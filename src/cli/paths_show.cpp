@@ -1,7 +1,6 @@
 // keyhole paths show: a preview of the scene with user paths drawn over it.
 #include "cli/outputs.h"
 #include "cli/paths.h"
-#include "core/error.h"
 #include "film/atomic_file.h"
 #include "film/drawing.h"
 #include "film/png.h"

@@ -4,7 +4,6 @@
 #include "core/error.h"
 #include "sampling/light_ray.h"
 #include "sampling/nearest_emitter.h"
-#include "sampling/walk.h"
 
 #include <fmt/format.h>
 

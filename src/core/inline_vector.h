@@ -25,7 +25,6 @@ template <class T, std::size_t N> class InlineVector {
     }
     ~InlineVector() = default;
 
-    static constexpr std::size_t capacity() { return N; }
     std::size_t size() const { return size_; }
     bool empty() const { return size_ == 0; }
     bool full() const { return size_ == N; }
@@ -49,7 +48,7 @@ template <class T, std::size_t N> class InlineVector {
         assert(!full());
         std::construct_at(items_ + size_++, v);
     }
-    /// Appends an element as its default constructor leaves it. resize() would clear it before.
+    /// Appends an element as its default constructor leaves it; T{} might clear it before.
     T& emplace_back() {
         assert(!full());
         return *::new (static_cast<void*>(items_ + size_++)) T;
@@ -59,11 +58,6 @@ template <class T, std::size_t N> class InlineVector {
         --size_;
     }
     void clear() { size_ = 0; }
-    void resize(std::size_t n) {
-        assert(n <= N);
-        if (n > size_) std::uninitialized_value_construct_n(items_ + size_, n - size_);
-        size_ = n;
-    }
 
   private:
     std::size_t size_ = 0;

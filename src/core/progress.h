@@ -62,7 +62,7 @@ struct RunContext {
     double reserve = 0;           ///< of the time until `stop`, what is left to later stages [s]
     bool whole_round = false;     ///< every pixel gets its first sample even if time is up
     bool in_overtime = false;     ///< goes on when time is up, until somebody asks for a stop
-    Crew* crew = nullptr;         ///< that does this together; null: this process is alone
+    Crew* crew = nullptr;         ///< that does this together: its user throws TeamLost; null: alone
 
     /// Whether to finish early: where there is a crew, by what it has agreed on.
     bool stopped() const { return crew != nullptr ? crew->stopped() : asked_to_stop(); }

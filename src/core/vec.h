@@ -12,7 +12,6 @@ namespace keyhole {
 
 using Vec2 = Imath::V2f;
 using Vec3 = Imath::V3f;
-using Matrix4 = Imath::M44f;
 
 /// Linear Rec. 709 triple. Double, because contributions of long paths span hundreds of decades.
 using Rgb = Imath::Color3<double>;

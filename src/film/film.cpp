@@ -17,9 +17,8 @@ Film::Film(int width, int height, const PixelFilter& filter)
 }
 
 Film::Channels Film::channels(const PixelSample& s) {
-    return {s.direct.x,  s.direct.y,  s.direct.z,  s.indirect.x, s.indirect.y,    s.indirect.z,
-            s.caustic.x, s.caustic.y, s.caustic.z, s.albedo.x,   s.albedo.y,      s.albedo.z,
-            s.normal.x,  s.normal.y,  s.normal.z,  s.depth,      s.photon_density};
+    return {s.direct.x,  s.direct.y, s.direct.z, s.indirect.x, s.indirect.y, s.indirect.z, s.caustic.x, s.caustic.y,
+            s.caustic.z, s.albedo.x, s.albedo.y, s.albedo.z,   s.normal.x,   s.normal.y,   s.normal.z,  s.depth};
 }
 
 std::size_t Film::index(int x, int y) const {

@@ -26,19 +26,16 @@ class Film {
         bool is_signed; ///< may be negative
     };
     /// The layers of a PixelSample, in its order.
-    static constexpr std::array<Layer, 7> kLayers{{{"direct", 3, false},
+    static constexpr std::array<Layer, 6> kLayers{{{"direct", 3, false},
                                                    {"indirect", 3, false},
                                                    {"caustic", 3, false},
                                                    {"albedo", 3, false},
                                                    {"normal", 3, true},
-                                                   {"depth", 1, false},
-                                                   {"photon_density", 1, false}}};
+                                                   {"depth", 1, false}}};
 
     /// @param width,height in pixels, at least 1.
     Film(int width, int height, const PixelFilter& filter = PixelFilter());
 
-    int width() const { return width_; }
-    int height() const { return height_; }
     /// What samples are to be distributed as around their pixels' centres.
     const PixelFilter& filter() const { return filter_; }
 
@@ -72,7 +69,7 @@ class Film {
     void report(RenderStats& stats) const;
 
   private:
-    static constexpr std::size_t kChannels = 17;
+    static constexpr std::size_t kChannels = 16;
     using Channels = std::array<double, kChannels>; ///< of all layers, one after the other
 
     struct Pixel {

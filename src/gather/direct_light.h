@@ -6,8 +6,9 @@
 
 namespace keyhole {
 
-/// The mean of `samples` samples of emitters, which share out the lights and their areas; weighted against a direction
-/// of the BSDF that the caller traces [W/(m^2 sr)].
+/// Direct light that `v` reflects towards `back` [W/(m^2 sr)], by next-event estimation: the mean of `samples`
+/// stratified samples of emitters, MIS-weighted against a direction of the BSDF, which the caller traces: by
+/// sample_emission(), or as a gather ray.
 Rgb next_event(const Scene& scene, const Vertex& v, const Vec3& back, int samples, SampleSource& source);
 
 /// What a direction drawn from the BSDF meets of emitters, weighted against next_event(): `visit(const SurfacePoint&
@@ -22,7 +23,8 @@ void sample_emission(const Scene& scene, const Vertex& v, const Vec3& back, Samp
                           emission_with_mis(scene, v, *hit, next->w, next->pdf));
 }
 
-/// Both techniques: `samples` samples of emitters and one of the BSDF [W/(m^2 sr)].
+/// Direct light that `v` reflects towards `back` [W/(m^2 sr)], by both techniques, weighted against each other: the
+/// mean of `samples` stratified samples of emitters (next_event()), and one sample of the BSDF (sample_emission()).
 Rgb direct_light(const Scene& scene, const Vertex& v, const Vec3& back, int samples, SampleSource& source);
 
 } // namespace keyhole

@@ -1,7 +1,10 @@
 #include "gather/final_gather.h"
 
 #include "gather/direct_light.h"
-#include "gather/fill_cache.h"
+#include "gather/visible_point.h"
+#include "sampling/seen_surface.h"
+
+#include <utility>
 
 namespace keyhole {
 namespace {
@@ -10,18 +13,12 @@ namespace {
 /// question of the picture.
 constexpr int kSplits = 1;
 
-/// Hemispherical reflectance where it has a simple form; other finite BSDFs show a typical value.
-Rgb albedo(const Vertex& v, const Vec3& back) {
-    const Vec3 n = v.bsdf.shading_normal();
-    return v.bsdf.eval(facing(n, back), back) * kPi;
-}
-
 } // namespace
 
 PixelSample FinalGather::sample(const Vec2& image, SampleSource& source) const {
     PixelSample out;
     const Vertex eye = sample_eye(scene_, source);
-    follow({eye, scene_.camera().ray_direction(eye.point, image), Rgb(1.0)}, 0, kSplits, source, out);
+    follow({eye, scene_.camera().ray_direction(eye.point, image), Rgb(1.0), 1}, 0, kSplits, source, out);
     return out;
 }
 
@@ -38,8 +35,7 @@ void FinalGather::follow(EyeRay ray, int scatterings, int splits, SampleSource& 
             out.direct += ray.throughput * scene_.emitter(v.point.emitter).radiance(v.point, back);
         if (scatterings == rays_.max_scatterings()) return;
         if (v.bsdf.traits().finite) {
-            out.albedo += ray.throughput * albedo(v, back);
-            if (out.normal.length2() == 0) out.normal = facing(v.point.ng, back);
+            if (!std::exchange(ray.saw_surface, true)) note_seen_surface(out, v, back, ray.throughput, ray.share);
             shade(v, back, ray.throughput, scatterings + 1, source, out);
         }
         // The finite part is done; only specular events lead on.
@@ -48,7 +44,8 @@ void FinalGather::follow(EyeRay ray, int scatterings, int splits, SampleSource& 
         if (splits > 0 && reflected && transmitted) {
             for (const DeltaScatter& lobe : {*reflected, *transmitted}) {
                 const Rgb weight = lobe.coefficient / (lobe.eta * lobe.eta);
-                follow({v, lobe.to, ray.throughput * weight}, scatterings + 1, splits - 1, source, out);
+                follow({v, lobe.to, ray.throughput * weight, ray.share * lobe.probability, ray.saw_surface},
+                       scatterings + 1, splits - 1, source, out);
             }
             return;
         }

@@ -15,7 +15,7 @@ struct GatherSamples {
     int rays;  ///< gather rays, where the cache doesn't serve
 };
 
-/// Thread-safe; immutable but for what it counts.
+/// Thread-safe; immutable but for what it counts. All arguments by reference or pointer must outlive it.
 class FinalGather {
   public:
     /// `cache` may be null: gather rays from every sample.
@@ -35,6 +35,8 @@ class FinalGather {
         Vertex from;
         Vec3 w; ///< unit
         Rgb throughput;
+        double share;             ///< probability with which a walk that is not split would have come here
+        bool saw_surface = false; ///< that is not specular
     };
     /// Adds what arrives along the ray. At the first `splits` places that both reflect and transmit both are followed.
     void follow(EyeRay ray, int scatterings, int splits, SampleSource& source, PixelSample& out) const;

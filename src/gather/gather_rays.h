@@ -24,7 +24,7 @@ struct LookupOptions {
     float shrink = 1;     ///< of lookup regions, as in PhotonQuery
 };
 
-/// Immutable and thread-safe.
+/// Immutable and thread-safe. All arguments by reference or pointer must outlive it.
 class GatherRays {
   public:
     GatherRays(const Scene& scene, const GatherMaps& maps, const LookupOptions& options, int max_scatterings)

@@ -25,15 +25,11 @@ std::optional<SurfacePoint> surface_at(const Scene& scene, const Photon& place) 
 
 Sites::Sites(const Scene& scene, std::span<const Photon> places, const SiteOptions& options, const RunContext& context)
     : places_(places), sites_(places.size()) {
-    constexpr std::int64_t kBlock = 256;
     const Range own = own_part(static_cast<std::int64_t>(places.size()), context);
-    context.begin("direct light of sites", places.size(), "sites");
-    parallel_for((own.size() + kBlock - 1) / kBlock, [&](std::int64_t b) {
-        for (std::int64_t i = own.begin + b * kBlock; i < std::min(own.end, own.begin + (b + 1) * kBlock); ++i)
-            sites_[static_cast<std::size_t>(i)] = at(scene, static_cast<std::uint32_t>(i), options);
-        context.advance(kBlock);
+    context.begin("direct light of sites", static_cast<std::uint64_t>(own.size()), "sites");
+    shared_blocks(sites_, context, [&](std::int64_t /*block*/, std::int64_t i) {
+        sites_[static_cast<std::size_t>(i)] = at(scene, static_cast<std::uint32_t>(i), options);
     });
-    exchange_parts(sites_, context);
     context.end();
 }
 

@@ -2,6 +2,7 @@
 
 #include "photonmap/eye_sides.h"
 
+#include <optional>
 #include <utility>
 
 namespace keyhole {
@@ -58,17 +59,16 @@ void PathDepositor::flush() {
 }
 
 void PathDepositor::store(Pending& pending) {
-    const bool global = pending.kind == PhotonKind::global;
-    pending.kind = PhotonKind::none;
+    const PhotonKind kind = std::exchange(pending.kind, PhotonKind::none);
     const double given = std::exchange(pending.weight, 0);
     if (!(given > 0)) return;
-    const double weight = roulette(given, global ? thresholds_.global : thresholds_.caustic, rng_);
-    if (weight == 0) return;
-    const Rgb power = options_.role == PhotonRole::scout ? Rgb(1.0) : power_of(pending, global, given, weight);
-    if (is_black(power)) return;
-    PhotonBuffer& buffer = global ? buffers_.global : buffers_.caustic;
-    buffer.photons.emplace_back(pending.vertex.point.p, pending.vertex.point.ng, pending.to_light, power);
-    buffer.weights.push_back(static_cast<float>(weight));
+    store_by_roulette(buffers_, kind, given, thresholds_, rng_, [&](double weight) -> std::optional<Photon> {
+        const Rgb power = options_.role == PhotonRole::scout
+                              ? Rgb(1.0)
+                              : power_of(pending, kind == PhotonKind::global, given, weight);
+        if (is_black(power)) return std::nullopt;
+        return Photon(pending.vertex.point.p, pending.vertex.point.ng, pending.to_light, power);
+    });
 }
 
 Rgb PathDepositor::power_of(const Pending& pending, bool global, double given, double weight) {

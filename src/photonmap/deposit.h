@@ -9,7 +9,7 @@
 
 namespace keyhole {
 
-/// How the eye's side is taken out of a photon's power (MATHEMATICS, section 5).
+/// How the eye's side is taken out of a photon's power; docs/photon-maps.md compares them.
 enum class PowerRule {
     marginal,   ///< divided by the importance map's E: consistent, and every photon weighs the same where it is asked;
                 ///< `reciprocal` where importons are too few to say, or where some may lie behind a wall:

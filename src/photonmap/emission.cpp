@@ -48,17 +48,13 @@ class Collector {
   private:
     void store(PhotonKind kind, const Vertex& v, const Vec3& to_light, const Rgb& power) {
         if (!(luminance(power) > 0)) return;
-        const bool global = kind == PhotonKind::global;
         const PhotonWeighing::Weight weight = weighing_(kind, v, to_light, power);
         ++block.arrivals;
         block.weights.add(kind, weight, luminance(power));
-        const MapStores::Thresholds& least = role_ == PhotonRole::scout ? scouts_ : carriers_;
-        const double kept = roulette(weight.value, global ? least.global : least.caustic, *rng_);
-        if (!(kept > 0)) return;
-        MapBuffers& buffers = role_ == PhotonRole::scout ? block.scouts : block.carriers;
-        PhotonBuffer& buffer = global ? buffers.global : buffers.caustic;
-        buffer.photons.emplace_back(v.point.p, v.point.ng, to_light, power / weight.value);
-        buffer.weights.push_back(static_cast<float>(kept));
+        const bool scout = role_ == PhotonRole::scout;
+        store_by_roulette(
+            scout ? block.scouts : block.carriers, kind, weight.value, scout ? scouts_ : carriers_, *rng_,
+            [&](double /*kept*/) { return Photon(v.point.p, v.point.ng, to_light, power / weight.value); });
     }
 
     PhotonWeighing weighing_;
@@ -71,14 +67,10 @@ class Collector {
 constexpr std::int64_t kBlock = 64;   // paths
 constexpr std::int64_t kPilot = 8192; // paths
 
-PhotonRole role_of_path(std::int64_t i) {
-    return i % kScoutEvery == kScoutEvery - 1 ? PhotonRole::scout : PhotonRole::carrier;
-}
-
 Block trace_block(const Scene& scene, const EmissionOptions& options, Range paths, Collector collector) {
     for (std::int64_t i = paths.begin; i < paths.end; ++i) {
         Rng rng(options.seed, StreamPurpose::emission, static_cast<std::uint64_t>(i));
-        collector.begin(role_of_path(i), rng);
+        collector.begin(role_of_sample(i), rng);
         trace_light_path(scene, options.user_paths, options.rule.max_scatterings, rng, collector);
     }
     return std::move(collector.block);

@@ -25,7 +25,7 @@ struct EmittedPhotons : Photons {
     std::size_t bytes = 0;      ///< of the stores
 };
 
-/// Traces light paths and stores a photon at every vertex where a map can be asked (MATHEMATICS: "emission"): in the
+/// Traces light paths and stores a photon at every vertex where a map can be asked (see docs/photon-maps.md): in the
 /// global map unless light came straight from the emitter, and, if it came through specular vertices only or from
 /// beyond the reach of gather rays, in the caustic map as well; each map is complete by itself.
 ///

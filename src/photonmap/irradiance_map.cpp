@@ -31,16 +31,12 @@ std::uint8_t obstructed_levels(const SurfacePatches& patches, const SurfaceRegio
 IrradianceMap::IrradianceMap(const PhotonMap& scouts, const PhotonMap& carriers, const IrradianceOptions& options,
                              const RunContext& context)
     : scouts_(scouts), estimates_(scouts.photons().size()), max_radius_(options.max_radius), scene_(options.scene) {
-    constexpr std::int64_t kBlock = 256;
     const Range own = own_part(static_cast<std::int64_t>(estimates_.size()), context);
-    std::vector<Count> used(static_cast<std::size_t>((own.size() + kBlock - 1) / kBlock));
+    std::vector<Count> used(static_cast<std::size_t>(blocks_of(own)));
     context.begin("irradiance", static_cast<std::uint64_t>(own.size()), "estimates");
-    parallel_for(static_cast<std::int64_t>(used.size()), [&](std::int64_t b) {
-        for (std::int64_t i = own.begin + b * kBlock; i < std::min(own.end, own.begin + (b + 1) * kBlock); ++i)
-            used[static_cast<std::size_t>(b)] += estimate(static_cast<std::uint32_t>(i), carriers, options);
-        context.advance(kBlock);
+    shared_blocks(estimates_, context, [&](std::int64_t b, std::int64_t i) {
+        used[static_cast<std::size_t>(b)] += estimate(static_cast<std::uint32_t>(i), carriers, options);
     });
-    exchange_parts(estimates_, context);
     if (options.scene != nullptr)
         grid_.emplace(options.scene->shapes(), kCellsPerPlace * estimates_.size(),
                       [this](const Vec3& middle, const Vec3& normal, float size) {

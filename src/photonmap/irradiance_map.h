@@ -39,8 +39,8 @@ class IrradianceMap {
 
     /// Irradiance on the side of unit `normal`.
     Answer irradiance(const Vec3& position, const Vec3& normal) const;
-    /// The same at a point of the scene; on large triangles it takes a fraction of the time, and the nearest place to
-    /// the middle of a cell stands for that to the point.
+    /// The same at a point of the scene. On large triangles it takes a fraction of the time: they are divided into
+    /// cells, and all points of a cell are answered by the place nearest to its middle.
     Answer irradiance(const SurfacePoint& point, const Vec3& normal) const;
 
     /// Where irradiance was estimated.

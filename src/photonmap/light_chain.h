@@ -36,15 +36,9 @@ struct LightChain {
     void store(const LightArrivals& sample, double weight, const LightWeights& weights) {
         if (!(weight > 0)) return;
         const double factor = weight * weights.factor(sample.target());
-        for (const Arrival& a : sample.arrivals()) {
-            const bool global = a.kind == PhotonKind::global;
-            const double least = global ? weights.thresholds.global : weights.thresholds.caustic;
-            const double kept = roulette(factor * a.weight, least, rng);
-            if (!(kept > 0)) continue;
-            PhotonBuffer& buffer = global ? buffers.global : buffers.caustic;
-            buffer.photons.push_back(a.photon);
-            buffer.weights.push_back(static_cast<float>(kept));
-        }
+        for (const Arrival& a : sample.arrivals())
+            store_by_roulette(buffers, a.kind, factor * a.weight, weights.thresholds, rng,
+                              [&](double /*kept*/) { return a.photon; });
     }
 };
 

@@ -43,7 +43,7 @@ Block sample_block(const LightBuilder& builder, std::uint64_t seed, Range sample
     return block;
 }
 
-bool is_scouts(const Find& find) { return find.sample % kScoutEvery == kScoutEvery - 1; }
+bool is_scouts(const Find& find) { return role_of_sample(find.sample) == PhotonRole::scout; }
 
 } // namespace
 

@@ -38,6 +38,10 @@ std::size_t MapStores::bytes() const {
     return scouts_.global.bytes() + scouts_.caustic.bytes() + carriers_.global.bytes() + carriers_.caustic.bytes();
 }
 
+std::size_t photons_for_caustic(double share, std::size_t photons) {
+    return static_cast<std::size_t>(std::clamp(share, 0.02, 0.98) * static_cast<double>(photons));
+}
+
 std::int64_t round_length(std::int64_t photons, std::int64_t chains) {
     return std::clamp<std::int64_t>(photons / (32 * chains), 2, 256);
 }

@@ -3,8 +3,10 @@
 
 #include "photonmap/photon_store.h"
 #include "photonmap/photons.h"
+#include "sampling/path.h"
 
 #include <cstdint>
+#include <optional>
 
 namespace keyhole {
 
@@ -12,6 +14,7 @@ namespace keyhole {
 struct MapBuffers {
     PhotonBuffer global, caustic;
 
+    PhotonBuffer& of(PhotonKind kind) { return kind == PhotonKind::global ? global : caustic; }
     auto parts() { return std::tie(global, caustic); }
 };
 
@@ -20,6 +23,8 @@ class MapStores {
   public:
     struct Thresholds {
         double global = 0, caustic = 0;
+
+        double of(PhotonKind kind) const { return kind == PhotonKind::global ? global : caustic; }
     };
 
     /// Ceilings in photons, scouts included. `initial`: as PhotonStore's.
@@ -47,6 +52,25 @@ class MapStores {
 
     Pair scouts_, carriers_;
 };
+
+/// Puts a photon of weight `weight` into its buffer if it survives the roulette of its store: what doesn't costs
+/// nothing more. make(kept) makes it, where `kept` is its weight after the roulette: a Photon, or an optional one, that
+/// is left out if there is none.
+template <class Make>
+void store_by_roulette(MapBuffers& buffers, PhotonKind kind, double weight, const MapStores::Thresholds& thresholds,
+                       Rng& rng, Make&& make) {
+    const double kept = roulette(weight, thresholds.of(kind), rng);
+    if (!(kept > 0)) return;
+    const std::optional<Photon> photon = make(kept);
+    if (!photon) return;
+    PhotonBuffer& buffer = buffers.of(kind);
+    buffer.photons.push_back(*photon);
+    buffer.weights.push_back(static_cast<float>(kept));
+}
+
+/// How many of so many photons are for the caustic map, where it has that share [0, 1] of their weight. Either map
+/// keeps a few, should the share have been found by too few samples.
+std::size_t photons_for_caustic(double share, std::size_t photons);
 
 /// Steps of each chain between two visits to the stores, so that the chains' buffers stay small beside these.
 std::int64_t round_length(std::int64_t photons, std::int64_t chains);

@@ -1,6 +1,6 @@
 #include "photonmap/photon_weighing.h"
 
-#include <algorithm>
+#include "photonmap/map_stores.h"
 
 namespace keyhole {
 
@@ -13,8 +13,7 @@ PhotonWeighing::Weight PhotonWeighing::operator()(PhotonKind kind, const Vertex&
 }
 
 std::size_t PhotonWeights::for_caustic(std::size_t photons) const {
-    const double share = known() > 0 ? std::clamp(known_caustic / known(), 0.02, 0.98) : 0.5;
-    return static_cast<std::size_t>(share * static_cast<double>(photons));
+    return photons_for_caustic(known() > 0 ? known_caustic / known() : 0.5, photons);
 }
 
 } // namespace keyhole

@@ -17,6 +17,9 @@ enum class PhotonRole : std::uint8_t { scout, carrier };
 
 /// One light path or chain in so many is a scout.
 constexpr int kScoutEvery = 4;
+inline PhotonRole role_of_sample(std::int64_t i) {
+    return i % kScoutEvery == kScoutEvery - 1 ? PhotonRole::scout : PhotonRole::carrier;
+}
 
 struct PhotonSet {
     std::vector<Photon> scouts;   ///< power means nothing

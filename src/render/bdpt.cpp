@@ -32,8 +32,8 @@ PixelSample sample_pixel(const Scene& scene, const Vec2& image, int depth, MisHe
     trace_eye_subpath(scene, image, most_eye_vertices(depth), source, &source, eye);
     trace_light_subpath(scene, most_light_vertices(depth), source, &source, light);
     PixelSink pixel;
-    for (std::size_t i = 1; i < eye.vertices.size() && !pixel.saw_surface(); ++i)
-        pixel.see(eye.vertices[i], eye.vertices[i - 1], i == 1);
+    for (std::size_t i = 1; i < eye.vertices.size() && !pixel.saw_surface; ++i)
+        pixel.see(eye.vertices[i], eye.vertices[i - 1], eye.notes[i].throughput, i == 1);
     BidirectionalSink sink{pixel, splats, scene.camera().window()};
     connect_subpaths(scene, light, eye, image, depth, PathSet::all, heuristic, sink);
     return pixel.pixel;

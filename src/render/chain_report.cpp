@@ -104,6 +104,12 @@ void add_ledger(std::vector<ProposalStats>& lines, const std::vector<ProposalSta
     }
 }
 
+void add_pass(RenderStats& stats, RenderStats pass) {
+    add_ledger(pass.proposals, stats.proposals);
+    stats.proposals = std::move(pass.proposals);
+    for (const auto& [name, value] : pass.values) stats.values[name] = value;
+}
+
 StageOne ChainReports::measure_brightness(const Scene& scene, const StageOneSettings& settings, RenderStats& stats,
                                           const RunContext& context) {
     const StageClock clock(stats, "brightness");

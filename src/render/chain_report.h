@@ -37,4 +37,7 @@ void warn_of_agreement(RenderStats& stats, const std::optional<Agreement>& agree
 /// Adds the ledgers of a later pass.
 void add_ledger(std::vector<ProposalStats>& lines, const std::vector<ProposalStats>& more);
 
+/// Adds the ledger of a later pass to that in `stats`; its other figures take the place of those of the passes before.
+void add_pass(RenderStats& stats, RenderStats pass);
+
 } // namespace keyhole

@@ -45,8 +45,7 @@ class LightChainSampler final : public PhotonSampler {
     }
 
     void finish(RenderStats& stats) override {
-        if (broken_ > 0)
-            stats.warnings.push_back(fmt::format("{} candidates had a value that is not a number", broken_));
+        warn_of_broken(stats, broken_);
         if (target_.standard_error() > 0.05 * target_.mean())
             stats.warnings.push_back(fmt::format("the visible power of light sub-paths is known to {:.0f} % only "
                                                  "(standard error): raise brightness_samples",
@@ -57,9 +56,7 @@ class LightChainSampler final : public PhotonSampler {
     void report(const LightChainPhotons& photons, RenderStats& stats) {
         RenderStats pass;
         report_steps(photons.counts, photons.chains, pass);
-        add_ledger(pass.proposals, stats.proposals);
-        stats.proposals = pass.proposals;
-        for (const auto& [name, value] : pass.values) stats.values[name] = value;
+        add_pass(stats, std::move(pass));
         report_large_steps(photons.rule, photons.p_large, stats);
         target_.merge(photons.target);
         stats.values["visible power of light sub-paths"] = target_.mean();

@@ -14,11 +14,9 @@
 namespace keyhole {
 namespace {
 
-/// Each photon weighs the same where it is asked, so the maps share the ceiling as they share the light. Either keeps
-/// a little where stage one may have missed its paths.
+/// Each photon weighs the same where it is asked, so the maps share the ceiling as they share the light.
 std::size_t caustic_share(const StageOne& one, std::size_t photons) {
-    const double share = one.caustic.mean() / one.brightness.mean();
-    return static_cast<std::size_t>(std::clamp(share, 0.02, 0.98) * static_cast<double>(photons));
+    return photons_for_caustic(one.caustic.mean() / one.brightness.mean(), photons);
 }
 
 void report_power(const PathDepositor::Tally& t, RenderStats& stats) {

@@ -63,9 +63,8 @@ bool sample_direct(const Scene& scene, const Settings& settings, const PathSet& 
 }
 
 void splat(SplatFilm& splats, const ImageWindow& window, const Path& path, double weight) {
-    const auto layer =
-        light_class(path) == LightClass::caustic ? SplatFilm::Layer::caustic : SplatFilm::Layer::indirect;
-    splats.add(window.to_pixel(path.image), layer, path.contribution * (weight / path.target));
+    splats.add(window.to_pixel(path.image), SplatFilm::layer_of(light_class(path)),
+               path.contribution * (weight / path.target));
 }
 
 /// Runs a group of the chains of a pass and adds what they draw. Returns whether they got to their end.

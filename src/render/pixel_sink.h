@@ -2,7 +2,9 @@
 #pragma once
 
 #include "core/pixel_sample.h"
+#include "film/splats.h"
 #include "sampling/path_tracer.h"
+#include "sampling/seen_surface.h"
 
 namespace keyhole {
 
@@ -10,9 +12,10 @@ namespace keyhole {
 struct PixelSink {
     const PathSet* elsewhere = nullptr; ///< what chains sample; null: nothing
     PixelSample pixel{};
+    bool saw_surface = false; ///< that is not specular
 
-    bool arrival(const EyeWalk& walk, const Rgb& /*throughput*/, int finite) {
-        if (finite == 0) see(walk.back(), walk[walk.size() - 2], walk.size() == 2);
+    bool arrival(const EyeWalk& walk, const Rgb& throughput, int finite) {
+        if (finite == 0) see(walk.back(), walk[walk.size() - 2], throughput, walk.size() == 2);
         return elsewhere == nullptr || finite < 2;
     }
 
@@ -20,32 +23,20 @@ struct PixelSink {
         if (elsewhere == nullptr || !in_set(light, *elsewhere, walk.back().point, x0.point)) add(value, light);
     }
 
-    /// Notes what vertex `v` looks like from `before`, the one nearer to the eye.
-    void see(const Vertex& v, const Vertex& before, bool first) {
+    /// Notes what vertex `v` looks like from `before`, the one nearer to the eye. `throughput`: as note_seen_surface()
+    /// has it.
+    void see(const Vertex& v, const Vertex& before, const Rgb& throughput, bool first) {
         if (v.point.site == Site::infinite) return;
         if (first) pixel.depth = Vec3(v.point.p - before.point.p).length();
-        if (!v.bsdf.traits().finite || saw_surface()) return;
-        const Vec3 back = direction(v.point, before.point);
-        const Vec3 n = v.bsdf.shading_normal();
-        pixel.normal = facing(n, back);
-        pixel.albedo = v.bsdf.eval(pixel.normal, back) * kPi;
+        if (!v.bsdf.traits().finite || saw_surface) return;
+        note_seen_surface(pixel, v, direction(v.point, before.point), throughput);
+        saw_surface = true;
     }
-    bool saw_surface() const { return pixel.normal.length2() > 0; }
 
     void add(const Rgb& value, LightClass light) {
-        switch (light) {
-        case LightClass::emission:
-        case LightClass::direct:
-            pixel.direct += value;
-            break;
-        case LightClass::caustic:
-            pixel.caustic += value;
-            break;
-        case LightClass::second:
-        case LightClass::indirect:
-            pixel.indirect += value;
-            break;
-        }
+        using Layer = SplatFilm::Layer;
+        const Layer layer = SplatFilm::layer_of(light);
+        (layer == Layer::direct ? pixel.direct : layer == Layer::caustic ? pixel.caustic : pixel.indirect) += value;
     }
 };
 

@@ -3,7 +3,6 @@
 #include "core/percent.h"
 #include "render/find_reach.h"
 #include "render/sampler_trial.h"
-#include "sampling/brightness.h"
 
 #include <algorithm>
 #include <cmath>

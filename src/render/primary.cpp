@@ -85,9 +85,7 @@ class PassReports {
     void add(const PrimaryChains& chains, RenderStats& stats) {
         RenderStats pass;
         report(chains, pass);
-        add_ledger(pass.proposals, stats.proposals);
-        stats.proposals = pass.proposals;
-        for (const auto& [name, value] : pass.values) stats.values[name] = value;
+        add_pass(stats, std::move(pass));
         report_agreement(stats, chains.agreement());
         if (passes_ == 0) warn_of_agreement(stats, chains.agreement(), chains.steps());
         broken_ += chains.broken();
@@ -104,8 +102,7 @@ class PassReports {
         }
         stats.brightness = brightness_ / passes_;
         stats.brightness_error = std::sqrt(variance_) / passes_;
-        if (broken_ > 0)
-            stats.warnings.push_back(fmt::format("{} candidates had a value that is not a number", broken_));
+        warn_of_broken(stats, broken_);
         if (stats.brightness_error > 0.05 * stats.brightness)
             stats.warnings.push_back(
                 fmt::format("the brightness of the picture is known to {:.0f} % only (standard error): "

@@ -1,5 +1,7 @@
 #include "render/primary_report.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 namespace keyhole {
@@ -33,6 +35,10 @@ void report_steps(const PrimaryCounts& counts, std::int64_t chains, RenderStats&
     stats.values["failure rate"] = share(counts.small.failed + counts.large.failed);
     stats.values["acceptance rate"] = share(counts.small.accepted + counts.large.accepted + counts.second.accepted);
     stats.values["remedied paths"] = share(counts.remedied());
+}
+
+void warn_of_broken(RenderStats& stats, std::uint64_t broken) {
+    if (broken > 0) stats.warnings.push_back(fmt::format("{} candidates had a value that is not a number", broken));
 }
 
 } // namespace keyhole

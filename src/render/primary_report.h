@@ -12,4 +12,7 @@ void report_large_steps(const LargeStepRule& rule, double p, RenderStats& stats)
 /// The ledger of so many chains. Replaces that in `stats`.
 void report_steps(const PrimaryCounts& counts, std::int64_t chains, RenderStats& stats);
 
+/// Warns where so many candidates, of all passes, had a value that is not a number.
+void warn_of_broken(RenderStats& stats, std::uint64_t broken);
+
 } // namespace keyhole

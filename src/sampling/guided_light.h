@@ -1,6 +1,6 @@
 // Light tracing that follows user paths: half of the light paths begin along one of them, the others anywhere, and
-// every photon is weighed by both (the balance heuristic, Veach 1997, section 9.2.2). Where light has to pass a
-// keyhole, photons so come through it.
+// every photon is weighed by both (the balance heuristic, Veach 1997, section 9.2.2). This is how photons get through a
+// keyhole.
 #pragma once
 
 #include "sampling/light_guides.h"

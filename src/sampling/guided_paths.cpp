@@ -54,15 +54,6 @@ double GuidedPaths::density(const Path& y) const { return kPairs * expected_join
 
 double GuidedPaths::draw_density(const Path& y) const { return (1 - kGoOn) * (1 - kGoOn) * expected_joints(y); }
 
-std::optional<Path> GuidedPaths::join_ends(const SubPath& light, const SubPath& eye, Vec2 image, Failure& why) const {
-    if (eye.size() == 1) {
-        const auto at = scene_->camera().image_point(eye[0].point, direction(eye[0].point, light.back().point));
-        if (!at) return why = Failure::outside_image, std::nullopt;
-        image = *at;
-    }
-    return join(*scene_, set_, light, eye, image, why);
-}
-
 std::optional<Path> GuidedPaths::draw(Rng& rng, Failure& why) const {
     const GuidedSubPath& guide = guides_.choose(rng);
     const int from_light = draw_steps(rng), from_eye = draw_steps(rng);
@@ -77,7 +68,7 @@ std::optional<Path> GuidedPaths::draw(Rng& rng, Failure& why) const {
         if (!grow(*scene_, eye, From::eye, Vec2(u, v), false, rng, why)) return std::nullopt;
     if (!make_joinable(light.back(), false) || !make_joinable(eye.back(), from_eye == 0))
         return why = Failure::signature, std::nullopt;
-    return join_ends(light, eye, Vec2(u, v), why);
+    return join(*scene_, set_, light, eye, Vec2(u, v), why);
 }
 
 void GuidedPaths::sample(const Vec2& image, Rng& rng, const std::function<void(const Path&)>& found) const {
@@ -107,7 +98,7 @@ void GuidedPaths::sample_pair(const Vec2& image, Rng& rng, const std::function<v
                 from_eye.back() = eye[t - 1];
                 continue;
             }
-            const auto path = join_ends(from_light, from_eye, image, why);
+            const auto path = join(*scene_, set_, from_light, from_eye, image, why);
             if (path && path->target > 0) found(*path);
             from_eye.back() = eye[t - 1];
         }

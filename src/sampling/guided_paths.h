@@ -9,8 +9,8 @@
 namespace keyhole {
 
 /// Joins every vertex of a sub-path from the light, from the end of a user path on, to every one of a sub-path from the
-/// eye, and shares what it finds with another
-/// technique by the balance heuristic (Veach 1997, section 9.2.2): one sample of either.
+/// eye, and shares what it finds with another technique by the balance heuristic (Veach 1997, section 9.2.2): one
+/// sample of either.
 class GuidedPaths {
   public:
     /// `set`: the paths to be found, of at most `max_scatterings`. The scene and the set's reach must outlive it.
@@ -21,8 +21,8 @@ class GuidedPaths {
     double density(const Path& y) const;
 
     /// One sample: some pairs of a sub-path along one of the user paths and one from the eye through window point
-    /// `image`; every join of the two that carries light is told to `found`, measured. Such paths have density()
-    /// together.
+    /// `image`. Every join of a pair that carries light is passed to `found`, measured; the number density of these
+    /// paths is density().
     void sample(const Vec2& image, Rng& rng, const std::function<void(const Path&)>& found) const;
 
     /// A single path: sub-paths of lengths that are drawn beforehand, joined at their ends. None where they carry no
@@ -35,7 +35,6 @@ class GuidedPaths {
     void sample_pair(const Vec2& image, Rng& rng, const std::function<void(const Path&)>& found) const;
     /// Number density of y among the joints of a pair.
     double expected_joints(const Path& y) const;
-    std::optional<Path> join_ends(const SubPath& light, const SubPath& eye, Vec2 image, Failure& why) const;
 
     const Scene* scene_;
     PathSet set_;

@@ -64,9 +64,9 @@ class Portal {
         const Frame frame(Vec3(normal_ * std::copysign(1.0, height(side))));
         return {Vec3(p), frame.to_world(cosine_hemisphere(u0, u1))};
     }
-    /// Density of sample_line() for the one from b to c, per area and projected solid angle [1/(m^2 sr)]: times the
-    /// geometry term of b and c it is one of the two of them, per area each. 0 where the opening is not between them,
-    /// or b not on the side of `side`.
+    /// Density of sample_line() for the one from b to c, per area and projected solid angle [1/(m^2 sr)]. Multiplied by
+    /// the geometry term of b and c it is the joint density of the two, per area at each [1/m^4]. 0 where the opening
+    /// is not between them, or b not on the side of `side`.
     double line_density(const Vec3& side, const Vec3& b, const Vec3& c) const {
         if (!(height(side) * height(b) > 0 && separates(b, c))) return 0;
         return density(b, (c - b).normalized()) > 0 ? 1 / (kPi * length_ * width_) : 0.0;

@@ -11,7 +11,16 @@
 namespace keyhole {
 
 /// Why a proposal made no state that could be evaluated. Counted in the ledger.
-enum class Failure : std::uint8_t { absorbed, no_hit, blocked, outside_image, signature, no_light, length, unchanged };
+enum class Failure : std::uint8_t {
+    absorbed,      ///< a walk ended where a surface took the light
+    no_hit,        ///< a ray met nothing, or left the scene
+    blocked,       ///< what was to be joined does not see each other
+    outside_image, ///< the eye sees the new end, but not within the image
+    signature,     ///< a vertex is specular that must not be, or the other way round, or another than the kind allows
+    no_light,      ///< no emitter at the end of the path
+    length,        ///< too few or too many vertices
+    unchanged,     ///< the old path came out
+};
 constexpr std::size_t kFailures = 8;
 constexpr std::array<std::string_view, kFailures> kFailureNames{"absorbed",  "no_hit",   "blocked", "outside_image",
                                                                 "signature", "no_light", "length",  "unchanged"};

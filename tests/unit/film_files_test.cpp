@@ -44,7 +44,7 @@ Picture sample_picture() {
     p.layers["direct"] = numbered(5, 40, 3, 1000);
     p.layers["normal"] = numbered(5, 40, 3, -500);
     p.layers["depth"] = numbered(5, 40, 1, 7);
-    p.layers["photon_density"] = numbered(5, 40, 1, 1e9f);
+    p.layers["grey"] = numbered(5, 40, 1, 1e9f);
     p.metadata = {{"command", "keyhole render 'a b.yaml'"},
                   {"seed", "1"},
                   {"a name much longer than thirty-one characters", "x\ny"},
@@ -84,7 +84,7 @@ TEST(Exr, ChannelsHaveTheNamesThatOthersExpect) {
     const ScratchDirectory scratch;
     write_exr(scratch.path("a.exr"), sample_picture());
     const std::string header = read_all(scratch.path("a.exr")).substr(0, 1000);
-    for (const char* name : {"R", "direct.G", "normal.X", "depth.Z", "photon_density.Y"})
+    for (const char* name : {"R", "direct.G", "normal.X", "depth.Z", "grey.Y"})
         EXPECT_THAT(header, HasSubstr(std::string("\0", 1) + name + '\0')) << name;
 }
 

@@ -27,7 +27,6 @@ PixelSample full_sample() {
     s.albedo = Rgb(0.25, 0.5, 0.75);
     s.normal = Vec3(0, -1, 0);
     s.depth = 4;
-    s.photon_density = 8;
     return s;
 }
 
@@ -47,7 +46,6 @@ TEST(Film, PixelsAreMeansInEveryLayer) {
     EXPECT_THAT(pixel(p, "albedo", 2, 1), ElementsAre(0.125f, 0.25f, 0.375f));
     EXPECT_THAT(pixel(p, "normal", 2, 1), ElementsAre(0, -0.5f, 0));
     EXPECT_THAT(pixel(p, "depth", 2, 1), ElementsAre(2));
-    EXPECT_THAT(pixel(p, "photon_density", 2, 1), ElementsAre(4));
     EXPECT_THAT(pixel(p, "beauty", 1, 1), ElementsAre(0, 0, 0));
 }
 

@@ -6,7 +6,6 @@
 
 #include <array>
 #include <memory>
-#include <string_view>
 
 namespace keyhole {
 
@@ -25,7 +24,6 @@ class PathBuilder {
     using Sample = PathSample;
 
     virtual ~PathBuilder() = default;
-    virtual std::string_view name() const = 0;
     /// Fills `sample`, which is empty. It stays so where no path is completed.
     virtual void build(PrimarySources sources, PathSample& sample) const = 0;
 };

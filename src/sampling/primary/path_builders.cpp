@@ -7,7 +7,6 @@ namespace {
 class PathTracingBuilder final : public PathBuilder {
   public:
     explicit PathTracingBuilder(const BuilderContext& c) : c_(c) {}
-    std::string_view name() const override { return "path"; }
 
     void build(PrimarySources sources, PathSample& sample) const override {
         struct {
@@ -56,7 +55,6 @@ void add_joint(Joint& joint, MisHeuristic heuristic, double probability, PathSam
 class EndpointBuilder final : public PathBuilder {
   public:
     explicit EndpointBuilder(const BuilderContext& c) : c_(c) {}
-    std::string_view name() const override { return "endpoints"; }
 
     void build(PrimarySources sources, PathSample& sample) const override {
         const int t = 1 + geometric(sources.choice.next()), s = geometric(sources.choice.next());
@@ -79,7 +77,6 @@ class EndpointBuilder final : public PathBuilder {
 class BidirectionalBuilder final : public PathBuilder {
   public:
     explicit BidirectionalBuilder(const BuilderContext& c) : c_(c) {}
-    std::string_view name() const override { return "bidirectional"; }
 
     void build(PrimarySources sources, PathSample& sample) const override {
         const Vec2 image = window_point(sources.eye);
@@ -102,7 +99,6 @@ class BidirectionalBuilder final : public PathBuilder {
 class MultiplexedBuilder final : public PathBuilder {
   public:
     MultiplexedBuilder(const BuilderContext& c, int scatterings) : c_(c), scatterings_(scatterings) {}
-    std::string_view name() const override { return "multiplexed"; }
 
     void build(PrimarySources sources, PathSample& sample) const override {
         auto joint = multiplexed_joint(*c_.scene, scatterings_, sources, SubPathPair::scratch(sample.room()));

@@ -144,12 +144,6 @@ std::optional<Path> Bidirectional::propose(const Path& x, Rng& rng, Failure& why
     if (hits_light && !eye.back().point.is_emitter()) return why = Failure::no_light, std::nullopt;
     if (!light.empty()) light.back().event = Event::finite;
     eye.back().event = Event::finite;
-
-    if (eye.size() == 1) {
-        const auto p = scene_.camera().image_point(eye[0].point, direction(eye[0].point, light.back().point));
-        if (!p) return why = Failure::outside_image, std::nullopt;
-        image = *p;
-    }
     auto y = join(scene_, set_, light, eye, image, why);
     if (y && added == cut->removed() && common_prefix(x, *y) == n) return why = Failure::unchanged, std::nullopt;
     return y;

@@ -81,13 +81,7 @@ std::optional<Path> CausticPerturbation::propose(const Path& x, Rng& rng, Failur
     const Ray ray = perturbed_ray(x, a, rng);
     if (!retrace(scene_, light, ray.origin, ray.w, x, a + 1, b, why)) return std::nullopt;
     for (int i = x.vertices() - 1; i > b; --i) eye.push_back(x.x[static_cast<std::size_t>(i)]);
-    Vec2 image = x.image;
-    if (eye.size() == 1) {
-        const auto p = scene_.camera().image_point(eye[0].point, direction(eye[0].point, light.back().point));
-        if (!p) return why = Failure::outside_image, std::nullopt;
-        image = *p;
-    }
-    return join(scene_, set_, light, eye, image, why);
+    return join(scene_, set_, light, eye, x.image, why);
 }
 
 double CausticPerturbation::transition_density(const Path& x, const Path& y) const {

@@ -39,9 +39,14 @@ void assemble(Path& path, const SubPath& light, const SubPath& eye) {
 
 std::optional<Path> join(const Scene& scene, PathSet set, const SubPath& light, const SubPath& eye, const Vec2& image,
                          Failure& why) {
+    std::optional<Vec2> seen_at = image;
+    if (eye.size() == 1) {
+        seen_at = scene.camera().image_point(eye[0].point, direction(eye[0].point, light.back().point));
+        if (!seen_at) return why = Failure::outside_image, std::nullopt;
+    }
     std::optional<Path> y(std::in_place);
     assemble(*y, light, eye);
-    y->image = image;
+    y->image = *seen_at;
     evaluate(scene, *y, set);
     const bool traced_to_light = light.empty();
     if (y->target > 0 && !traced_to_light && !scene.visible(light.back().point, eye.back().point))

@@ -50,8 +50,8 @@ bool grow(const Scene& scene, SubPath& walk, From from, const Vec2& image, bool 
 /// Path from a light sub-path and an eye sub-path, in order from the light.
 void assemble(Path& path, const SubPath& light, const SubPath& eye);
 
-/// The evaluated path that joins the last vertices of two sub-paths; none if the joint is blocked. An empty `light`:
-/// the eye sub-path was traced to the emitter itself.
+/// The evaluated path that joins the last vertices of two sub-paths; none if blocked, or outside the image: a path that
+/// is joined to the eye itself has the image point that follows. No `light`: the eye sub-path met the emitter.
 std::optional<Path> join(const Scene& scene, PathSet set, const SubPath& light, const SubPath& eye, const Vec2& image,
                          Failure& why);
 

@@ -1,7 +1,6 @@
 #include "sampling/proposals/tuning.h"
 
 #include "core/parallel.h"
-#include "sampling/proposals/edit.h"
 #include "scene/ray_counter.h"
 
 #include <algorithm>

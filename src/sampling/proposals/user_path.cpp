@@ -64,17 +64,11 @@ std::optional<Path> UserPathProposal::propose(const Path& x, Rng& rng, Failure& 
     const int kept = choose_join(x, rng);
     const bool new_eye = kept == x.vertices();
     SubPath light, eye;
-    Vec2 image = x.image;
     if (new_eye) eye.push_back(sample_eye(scene_, rng));
     for (int i = x.vertices() - 1; i >= kept; --i) eye.push_back(x.x[static_cast<std::size_t>(i)]);
     if (guide_.vertices() + static_cast<int>(eye.size()) > max_vertices_) return why = Failure::length, std::nullopt;
     if (!guide_.trace(light, rng, why)) return std::nullopt;
-    if (new_eye) {
-        const auto p = scene_.camera().image_point(eye[0].point, direction(eye[0].point, light.back().point));
-        if (!p) return why = Failure::outside_image, std::nullopt;
-        image = *p;
-    }
-    auto y = join(scene_, set_, light, eye, image, why);
+    auto y = join(scene_, set_, light, eye, x.image, why);
     // What rounding carried out of the cones can't be proposed, if it can't be found again.
     if (y && y->target > 0 && !(guide_.density(*y) > 0)) return why = Failure::signature, std::nullopt;
     return y;

@@ -41,7 +41,7 @@ struct UserPathFile {
 
 /// Half-angle where a file gives none [rad].
 constexpr double kDefaultBeta = 5 * kPi / 180;
-/// Most points of a path: as many as a path of the renderer can have, without its eye.
+/// Most points of a path; more are taken for a mistake in the file.
 constexpr std::size_t kMostUserPoints = 31;
 
 /// Reads a file of user paths; there is at least one. An entry for several numbers of bounces becomes a path for each.
