@@ -7,30 +7,35 @@
 
 namespace keyhole {
 
-IrradianceRecord RecordMaker::compute(const VisiblePoint& c, std::uint64_t index) const {
-    Rng rng(options_.seed, StreamPurpose::cache, index);
+IrradianceRecord RecordMaker::compute(const VisiblePoint& c, int count, std::uint64_t stream) const {
+    return {c.vertex.point.p, cache_normal(c.vertex, c.back), light(c, count, stream), min_radius(c),
+            static_cast<float>(options_.max_radius * c.pixel)};
+}
+
+HemisphereEstimate RecordMaker::light(const VisiblePoint& c, int count, std::uint64_t stream) const {
+    Rng rng(options_.seed, StreamPurpose::cache, stream);
+    const HemisphereGrid grid(count);
     const Frame frame(cache_normal(c.vertex, c.back));
-    const auto min_radius = static_cast<float>(options_.min_radius * c.pixel);
-    const std::vector<SpotCone> cones = spots_.cones_from(c.vertex.point.p, frame.n, options_.rays / 2);
+    const std::vector<SpotCone> cones = spots_.cones_from(c.vertex.point.p, frame.n, count / 2);
     const auto has_rays = [&](int spot) {
         return spot >= 0 &&
                std::any_of(cones.begin(), cones.end(), [&](const SpotCone& cone) { return cone.spot == spot; });
     };
-    std::vector<HemisphereRay> found(static_cast<std::size_t>(grid_.size()));
-    for (int i = 0; i < grid_.size(); ++i) {
+    std::vector<HemisphereRay> found(static_cast<std::size_t>(grid.size()));
+    for (int i = 0; i < grid.size(); ++i) {
         const double u0 = rng.next(), u1 = rng.next();
-        const Vec3 local = grid_.direction(i, u0, u1), w = frame.to_world(local);
+        const Vec3 local = grid.direction(i, u0, u1), w = frame.to_world(local);
         HemisphereRay& ray = found[static_cast<std::size_t>(i)];
         ray.distance = std::numeric_limits<float>::infinity();
         if (!c.leaves(w)) continue;
         const auto arrival = rays_.trace(c.vertex, w, local.z * kInvPi, c.scatterings, rng);
         // What lies nearer than the least reach can't be told apart anyway.
-        ray.distance = std::max(arrival.distance, min_radius);
+        ray.distance = std::max(arrival.distance, min_radius(c));
         if (!has_rays(spots_.spot_at(c.vertex.point.p + w * arrival.distance))) ray.radiance = arrival.indirect;
     }
-    HemisphereEstimate light = grid_.estimate(found, frame);
-    for (const SpotCone& cone : cones) add_spot(c, frame, cone, rng, light);
-    return {c.vertex.point.p, frame.n, light, min_radius, static_cast<float>(options_.max_radius * c.pixel)};
+    HemisphereEstimate sum = grid.estimate(found, frame);
+    for (const SpotCone& cone : cones) add_spot(c, frame, cone, rng, sum);
+    return sum;
 }
 
 void RecordMaker::add_spot(const VisiblePoint& c, const Frame& frame, const SpotCone& cone, Rng& rng,

@@ -11,7 +11,7 @@ namespace keyhole {
 
 struct CacheOptions {
     double error = 0.3;     ///< reach of a record over its distance to surrounding surfaces
-    int rays = 400;         ///< of a record's hemisphere; bright spots get half as many on top
+    int rays = 400;         ///< of records' hemispheres on average; bright spots get half as many on top
     double min_radius = 4;  ///< [pixels], as wide as one is at the record's distance from the eye
     double max_radius = 60; ///< [pixels]
     double overlap = 1;     ///< how many times its radius a record is used
@@ -23,23 +23,26 @@ class RecordMaker {
   public:
     /// All must outlive this.
     RecordMaker(const GatherRays& rays, const BrightSpots& spots, const CacheOptions& options)
-        : rays_(rays), spots_(spots), options_(options), grid_(options.rays) {}
+        : rays_(rays), spots_(spots), options_(options) {}
 
-    /// The record at `c`, from the random stream `index`. The hemisphere of rays finds what doesn't come from bright
-    /// spots; each of these has rays of its own, in the cone that it fills, so that no record depends on whether one
-    /// of its few hundred rays happens to meet it.
-    IrradianceRecord compute(const VisiblePoint& c, std::uint64_t index) const;
+    /// Irradiance at `c` by a hemisphere of about `count` rays, from the random stream `stream`. They find what doesn't
+    /// come from bright spots; each of these has rays of its own, in the cone that it fills, so that no record depends
+    /// on whether one of its few hundred rays happens to meet it.
+    HemisphereEstimate light(const VisiblePoint& c, int count, std::uint64_t stream) const;
+
+    /// The record at `c` with that light.
+    IrradianceRecord compute(const VisiblePoint& c, int count, std::uint64_t stream) const;
 
     const GatherRays& rays() const { return rays_; }
 
   private:
+    float min_radius(const VisiblePoint& c) const { return static_cast<float>(options_.min_radius * c.pixel); }
     void add_spot(const VisiblePoint& c, const Frame& frame, const SpotCone& cone, Rng& rng,
                   HemisphereEstimate& sum) const;
 
     const GatherRays& rays_;
     const BrightSpots& spots_;
     const CacheOptions& options_;
-    HemisphereGrid grid_;
 };
 
 } // namespace keyhole

@@ -2,8 +2,10 @@
 
 #include "core/shared_work.h"
 #include "gather/compute_record.h"
+#include "gather/ray_shares.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -13,6 +15,9 @@ namespace {
 constexpr int kCoarsest = 16;      // [pixels] between the points of the first level
 constexpr std::size_t kBatch = 64; // records computed at once
 constexpr double kCovered = 0.1;   // share below which a point needs a record of its own
+constexpr double kFirst = 0.5;     // share of rays that each record gets alike
+constexpr int kLeastMore = 8;      // fewer rays are not worth a hemisphere
+constexpr std::array kSteps{kCoarsest, kCoarsest / 2, kCoarsest / 4, kCoarsest / 8, 1, 1};
 
 /// Pixels of one level in an order that jumps about, so that those of one batch are far from each other.
 std::vector<int> level_pixels(const ImageWindow& window, int step) {
@@ -28,13 +33,14 @@ std::vector<int> level_pixels(const ImageWindow& window, int step) {
     return order;
 }
 
-/// Fills one level; batch by batch, since what a batch inserts tells the next what is still missing.
-class LevelFill {
+/// Fills level by level; batch by batch, since what a batch inserts tells the next what is still missing.
+class CacheFill {
   public:
-    LevelFill(const RecordMaker& maker, const CacheOptions& options, IrradianceCache& cache)
-        : maker_(maker), rays_(maker.rays()), options_(options), cache_(cache) {}
+    CacheFill(const RecordMaker& maker, const CacheOptions& options, IrradianceCache& cache)
+        : maker_(maker), rays_(maker.rays()), options_(options), cache_(cache),
+          first_(std::max(kLeastMore, static_cast<int>(std::lround(kFirst * options.rays)))) {}
 
-    void run(int step, std::uint64_t level, const RunContext& context) {
+    void fill_level(int step, std::uint64_t level, const RunContext& context) {
         const ImageWindow& window = rays_.scene().camera().window();
         const auto pixels = static_cast<std::uint64_t>(window.width) * static_cast<std::uint64_t>(window.height);
         for (const int pixel : level_pixels(window, step)) {
@@ -52,6 +58,26 @@ class LevelFill {
         flush(context);
     }
 
+    /// The rest of the rays, where records have the most to say: most of them stand in corners and serve a few pixels.
+    void refine(const RunContext& context) {
+        std::vector<double> worths = cache_.relative_noise();
+        for (std::size_t i = 0; i < worths.size(); ++i) worths[i] *= cache_.radius(i) / placed_[i].pixel;
+        const std::vector<int> rays = share_rays(worths, first_, options_.rays - first_);
+        const ImageWindow& window = rays_.scene().camera().window();
+        const auto streams = 2 * kSteps.size() * static_cast<std::size_t>(window.width * window.height);
+        for (std::size_t begin = 0; begin < placed_.size() && !context.stopped(); begin += kBatch) {
+            std::vector<HemisphereEstimate> found(std::min(kBatch, placed_.size() - begin));
+            const auto more = [&](std::size_t i) { return rays[begin + i] - first_; };
+            shared_for(found, context, [&](std::int64_t k) {
+                const auto i = static_cast<std::size_t>(k);
+                if (more(i) >= kLeastMore) found[i] = maker_.light(placed_[begin + i], more(i), streams + begin + i);
+            });
+            for (std::size_t i = 0; i < found.size(); ++i)
+                if (more(i) >= kLeastMore)
+                    cache_.refine(begin + i, found[i], more(i) / static_cast<double>(rays[begin + i]));
+        }
+    }
+
   private:
     bool is_covered(const VisiblePoint& c) const {
         return cache_.irradiance(c.vertex.point.p, cache_normal(c.vertex, c.back)).covered >= kCovered;
@@ -60,9 +86,10 @@ class LevelFill {
         std::vector<IrradianceRecord> records(batch_.size());
         shared_for(records, context, [&](std::int64_t i) {
             const auto k = static_cast<std::size_t>(i);
-            records[k] = maker_.compute(batch_[k], indices_[k]);
+            records[k] = maker_.compute(batch_[k], first_, indices_[k]);
         });
         for (const IrradianceRecord& r : records) cache_.insert(r);
+        placed_.insert(placed_.end(), batch_.begin(), batch_.end());
         batch_.clear();
         indices_.clear();
     }
@@ -71,6 +98,8 @@ class LevelFill {
     const GatherRays& rays_;
     const CacheOptions& options_;
     IrradianceCache& cache_;
+    int first_;                        // rays of each record before refine()
+    std::vector<VisiblePoint> placed_; // where the cache's records are
     std::vector<VisiblePoint> batch_;
     std::vector<std::uint64_t> indices_;
 };
@@ -99,15 +128,17 @@ CacheOptions cache_options(const Settings& settings, double shrink, std::uint64_
 
 IrradianceCache fill_cache(const GatherRays& rays, const CacheOptions& options, const RunContext& context) {
     IrradianceCache cache(static_cast<float>(options.error), static_cast<float>(options.overlap));
-    context.begin("irradiance cache", 6, "levels");
+    context.begin("irradiance cache", kSteps.size() + 1, "levels");
     const BrightSpots spots(rays, options.seed, context);
     const RecordMaker maker(rays, spots, options);
-    LevelFill fill(maker, options, cache);
+    CacheFill fill(maker, options, cache);
     std::uint64_t level = 0;
-    for (const int step : {kCoarsest, kCoarsest / 2, kCoarsest / 4, kCoarsest / 8, 1, 1}) {
-        fill.run(step, level++, context);
+    for (const int step : kSteps) {
+        fill.fill_level(step, level++, context);
         context.advance(1);
     }
+    fill.refine(context);
+    context.advance(1);
     context.end();
     return cache;
 }

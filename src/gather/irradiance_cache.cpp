@@ -14,6 +14,8 @@ constexpr float kNormalReach = 0.06f;
 /// Along the normal a record is used no farther than it keeps others away.
 constexpr float kHeight2 = 16;
 
+/// Light that is fainter than this part of the mean counts as if it weren't: it doesn't show.
+constexpr double kDark = 0.1;
 /// Relative error, over the cache's, by which two records may foretell each other wrongly.
 constexpr float kDoubt = 1.0f / 3;
 
@@ -107,12 +109,52 @@ void IrradianceCache::insert(const IrradianceRecord& record) {
     update_radius(r);
     clamp_with_neighbours(r);
     // A radius held up by its lower bound would stretch the gradient beyond where it holds.
-    const float held = error_ * r.distance / r.radius;
-    if (held < 1)
-        for (Vec3& g : r.translation) g *= held;
+    r.held = std::min(1.0f, error_ * r.distance / r.radius);
+    for (Vec3& g : r.translation) g *= r.held;
     end_where_wrong(r);
     records_.push_back(r);
     index(static_cast<std::uint32_t>(records_.size() - 1));
+}
+
+std::vector<double> IrradianceCache::relative_noise() const {
+    struct Sums {
+        double variance = 0, light = 0, light2 = 0, count = 0;
+
+        void add(const Stored& r) {
+            const double y = luminance_of(r.irradiance);
+            variance += r.variance;
+            light += y;
+            light2 += y * y;
+            ++count;
+        }
+    } all;
+    for (const Stored& r : records_) all.add(r);
+    const double dark = all.count > 0 ? kDark * all.light / all.count : 0;
+    const auto noise = [dark](const Sums& s) {
+        const double least2 = s.light2 + s.count * dark * dark;
+        return least2 > 0 ? std::sqrt(s.variance / least2) : 0.0;
+    };
+    std::vector<double> found;
+    for (const Stored& r : records_) {
+        Sums around;
+        visit_near(r.position, [&](std::uint32_t i) {
+            const Stored& other = records_[i];
+            const bool near = (other.position - r.position).length2() < other.reach * other.reach;
+            if (&other != &r && near && (other.normal - r.normal).length2() < 2 * kNormalReach) around.add(other);
+        });
+        found.push_back(noise(around.count > 0 ? around : all));
+    }
+    return found;
+}
+
+void IrradianceCache::refine(std::size_t i, const HemisphereEstimate& more, double share) {
+    Stored& r = records_[i];
+    const auto s = static_cast<float>(share);
+    r.irradiance += (to_vec(more.irradiance) - r.irradiance) * s;
+    for (std::size_t c = 0; c < 3; ++c) {
+        r.rotation[c] += (more.rotation[c] - r.rotation[c]) * s;
+        r.translation[c] += (more.translation[c] * r.held - r.translation[c]) * s;
+    }
 }
 
 void IrradianceCache::update_radius(Stored& r) const {

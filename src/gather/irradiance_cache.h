@@ -34,6 +34,14 @@ class IrradianceCache {
     /// one found, by more than noise would do, both end where they would be right.
     void insert(const IrradianceRecord& record);
 
+    /// Standard error of the light around each record, relative to that light: told by the others that have a say
+    /// there. So it doesn't depend on the record's own light, which may be refined by it and stay right on average.
+    std::vector<double> relative_noise() const;
+
+    /// Takes in what more rays found at record `i`: its light becomes a mean of both, in which `more` has the weight
+    /// `share` in [0,1]. How far it is used stays as it is.
+    void refine(std::size_t i, const HemisphereEstimate& more, double share);
+
     struct Answer {
         Rgb irradiance{0.0}; ///< [W/m^2]
         bool known = false;  ///< whether any record had a say
@@ -60,6 +68,7 @@ class IrradianceCache {
         float distance;                                        ///< to surrounding surfaces, clamped by neighbours' [m]
         float border = std::numeric_limits<float>::infinity(); ///< to where it ends unless its radius is larger [m]
         float min_radius, max_radius;
+        float held = 1; ///< factor of its translation gradient
     };
     using Cell = std::vector<std::uint32_t>;
 

@@ -93,7 +93,14 @@ void warn_of_agreement(RenderStats& stats, const std::optional<Agreement>& agree
 }
 
 void add_ledger(std::vector<ProposalStats>& lines, const std::vector<ProposalStats>& more) {
+    const auto mutations = [](const std::vector<ProposalStats>& of) {
+        double sum = 0;
+        for (const ProposalStats& line : of) sum += static_cast<double>(line.proposed);
+        return sum;
+    };
+    const double added = mutations(more), all = mutations(lines) + added;
     for (std::size_t k = 0; k < more.size() && k < lines.size(); ++k) {
+        if (all > 0) lines[k].deposited += (more[k].deposited - lines[k].deposited) * added / all;
         lines[k].proposed += more[k].proposed;
         lines[k].zero += more[k].zero;
         lines[k].nan += more[k].nan;

@@ -35,12 +35,11 @@ class SpotRecords : public testing::Test {
     }
 
     Records make(const BrightSpots& spots, const VisiblePoint& at) const {
-        CacheOptions options;
-        options.rays = 400;
+        const CacheOptions options;
         const RecordMaker maker(rays_, spots, options);
         Records r;
         for (std::uint64_t i = 0; i < kRecords; ++i) {
-            const HemisphereEstimate light = maker.compute(at, i).light;
+            const HemisphereEstimate light = maker.light(at, 400, i);
             r.irradiance.add(light.irradiance.x);
             r.slope += static_cast<double>(light.translation[0].x) / kRecords;
         }

@@ -181,6 +181,47 @@ TEST(IrradianceCache, GetsFinerWhereGradientsForetellWrongly) {
     EXPECT_LT(curved, 60);
 }
 
+TEST(IrradianceCache, TakesInWhatMoreRaysFound) {
+    // One record of 3/4 and 1/4 of the rays is as good as one of their mean, also where its gradient is held back.
+    for (const double distance : {1.0, 0.01}) { // the second: its radius is held up by the bound
+        const IrradianceRecord first = record({0, 0, 0}, 4, distance, {1, 0, 0});
+        IrradianceRecord more = record({0, 0, 0}, 8, distance, {3, 2, 0}), mean = record({0, 0, 0}, 5, distance);
+        more.light.rotation[1] = {0, 4, 0};
+        mean.light.translation.fill({1.5f, 0.5f, 0});
+        mean.light.rotation[1] = {0, 1, 0};
+        IrradianceCache refined(0.2f), expected(0.2f);
+        refined.insert(first);
+        const float radius = refined.radius(0);
+        refined.refine(0, more.light, 0.25);
+        EXPECT_EQ(refined.radius(0), radius);
+        expected.insert(mean);
+        const Vec3 at(0.4f * radius, -0.5f * radius, 0), n = Vec3(0, 0.1f, 1).normalized();
+        const Rgb found = refined.irradiance(at, n).irradiance, wanted = expected.irradiance(at, n).irradiance;
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], wanted[c], 1e-5) << distance << " m, channel " << c;
+    }
+}
+
+TEST(IrradianceCache, KnowsHowNoisyItsSurroundingsAre) {
+    IrradianceCache cache(0.2f);
+    const auto insert = [&](float x, double e, double variance) {
+        IrradianceRecord r = record({x, 0, 0}, e, 1);
+        r.light.variance = variance;
+        cache.insert(r);
+    };
+    insert(0, 10, 100);
+    insert(0.15f, 10, 4);
+    insert(0.3f, 10, 16);
+    insert(5, 10, 1e9); // alone
+    insert(7, 1e-9, 1); // two that are dark
+    insert(7.2f, 1e-9, 1);
+    const std::vector<double> noise = cache.relative_noise();
+    ASSERT_EQ(noise.size(), 6u);
+    EXPECT_NEAR(noise[1], std::sqrt((100 + 16) / 200.0), 0.003) << "of both others";
+    EXPECT_NEAR(noise[0], std::sqrt((4 + 16) / 200.0), 0.003) << "not its own";
+    EXPECT_GT(noise[3], 100) << "the mean of all";
+    EXPECT_LT(noise[4], 2) << "what is dark needs no rays";
+}
+
 TEST(IrradianceCache, DoesNotTakeNoiseForLight) {
     Rng rng(2, StreamPurpose::test, 0);
     const auto finest = [&](double told) {
