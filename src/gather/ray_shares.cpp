@@ -6,20 +6,21 @@
 namespace keyhole {
 
 std::vector<int> share_rays(std::span<const double> worths, int had, double more) {
-    const double most = 64.0 * had;
-    const auto share = [&](double worth, double per_unit) {
-        return std::clamp(worth * per_unit, static_cast<double>(had), most);
+    if (worths.empty()) return {};
+    const double best = std::max(*std::max_element(worths.begin(), worths.end()), 1e-300);
+    const auto share = [&](double worth, double of_best) {
+        return std::clamp(worth / best * of_best, static_cast<double>(had), 64.0 * had);
     };
-    const auto total = [&](double per_unit) {
+    const auto total = [&](double of_best) {
         double sum = 0;
-        for (const double worth : worths) sum += share(worth, per_unit);
+        for (const double worth : worths) sum += share(worth, of_best);
         return sum;
     };
-    // Grows with the rays per unit of worth, which are found by halving their range.
+    // The total grows with what the best would get without a bound, which is found by halving its range.
     const double wanted = (had + more) * static_cast<double>(worths.size());
-    double low = 0, high = 1;
+    double low = 0, high = had;
     while (total(high) < wanted && high < 1e12) high *= 2;
-    for (int i = 0; i < 40; ++i) {
+    for (int i = 0; i < 60; ++i) {
         const double middle = (low + high) / 2;
         (total(middle) < wanted ? low : high) = middle;
     }

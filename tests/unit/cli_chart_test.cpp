@@ -41,7 +41,7 @@ TEST_F(Program, HangupWithoutAPlaceToWriteToIsNoEnd) {
 }
 
 TEST_F(Program, CpuTimeSetsSamplesAndPhotons) {
-    ASSERT_EQ(run("render scene.yaml -o a.exr --cpu-time 0.5 --method ipm --stats s.json --no-png"), 0) << read("err");
+    ASSERT_EQ(run("render scene.yaml -o a.exr --cpu-time 2 --method ipm --stats s.json --no-png"), 0) << read("err");
     const auto stats = nlohmann::json::parse(read("s.json"));
     EXPECT_THAT(stats["remarks"].dump(), HasSubstr("set by the time:"));
     EXPECT_GT(stats["values"]["effort"], 0);
@@ -49,7 +49,7 @@ TEST_F(Program, CpuTimeSetsSamplesAndPhotons) {
     const std::string settings = read_exr(scratch.path("a.exr")).metadata.at("settings");
     EXPECT_THAT(settings, testing::Not(HasSubstr("light_paths=1000000 ")));
     // What the command line names stays.
-    ASSERT_EQ(run("render scene.yaml -o b.exr --cpu-time 0.5 --method ipm --spp 3 --no-png -q"), 0) << read("err");
+    ASSERT_EQ(run("render scene.yaml -o b.exr --cpu-time 2 --method ipm --spp 3 --no-png -q"), 0) << read("err");
     EXPECT_THAT(read_exr(scratch.path("b.exr")).metadata.at("settings"), HasSubstr("spp=3 "));
 }
 
@@ -92,7 +92,7 @@ TEST_F(Program, PlanTellsWhatIsLeftOutAndWhy) {
 }
 
 TEST_F(Program, ChartGoesOnWhereItStopped) {
-    const std::string chart = "chart scene.yaml --times 0.1 --repeats 2 --reference-time 1 -j 2 -o report --methods ";
+    const std::string chart = "chart scene.yaml --times 0.3 --repeats 2 --reference-time 2 -j 2 -o report --methods ";
     ASSERT_EQ(run(chart + "path"), 0) << read("err");
     EXPECT_THAT(read("err"), HasSubstr("2 runs, 2 of them to be made"));
     ASSERT_EQ(run(chart + "path,ipm"), 0) << read("err");
