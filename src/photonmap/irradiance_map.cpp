@@ -16,7 +16,7 @@ constexpr unsigned kLevels = 8;
 /// are rare, most places have none that near, and to call them dark would take light away.
 constexpr float kFarthest = 4;
 /// Size of a cell for which one place will do, over the radius of its estimate.
-constexpr float kMostOfRadius = 0.5f;
+constexpr float kMostOfRadius = 1;
 
 /// Bit i is set if something may stand on the region of radius r / 2^i. It looks from half to three halves of the
 /// height kLift r / 2^i, where lines of sight run between places that are more than half as far from each other.
@@ -39,9 +39,7 @@ IrradianceMap::IrradianceMap(const PhotonMap& scouts, const PhotonMap& carriers,
     });
     if (options.scene != nullptr)
         grid_.emplace(options.scene->shapes(), kCellsPerPlace * estimates_.size(),
-                      [this](const Vec3& middle, const Vec3& normal, float size) {
-                          return place_for_cell(middle, normal, size);
-                      });
+                      [this](const Vec3& middle, const Vec3& normal) { return place_for_cell(middle, normal); });
     context.end();
     if (own.size() == 0) return;
     for (const Count& u : used) mean_ += u;
@@ -71,10 +69,10 @@ IrradianceMap::Count IrradianceMap::estimate(std::uint32_t i, const PhotonMap& c
     return {static_cast<double>(e.photons), squares > 0 ? sum * sum / squares : 0.0};
 }
 
-std::uint32_t IrradianceMap::place_for_cell(const Vec3& middle, const Vec3& normal, float size) const {
+PlaceGrid::Found IrradianceMap::place_for_cell(const Vec3& middle, const Vec3& normal) const {
     const auto near = scouts_.nearest_one({middle, normal}, kFarthest * max_radius_);
-    if (!near) return PlaceGrid::kNothing;
-    return size <= kMostOfRadius * estimates_[near->index].radius ? near->index : PlaceGrid::kSearch;
+    if (!near) return {PlaceGrid::kNothing, max_radius_};
+    return {near->index, kMostOfRadius * estimates_[near->index].radius};
 }
 
 IrradianceMap::Answer IrradianceMap::irradiance(const Vec3& position, const Vec3& normal) const {

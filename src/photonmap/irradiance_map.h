@@ -61,7 +61,7 @@ class IrradianceMap {
     double effective_photons() const { return mean_.effective; }
 
   private:
-    static constexpr std::size_t kCellsPerPlace = 1;
+    static constexpr std::size_t kCellsPerPlace = 2;
 
     struct Estimate {
         SharedExponentRgb irradiance;
@@ -70,7 +70,7 @@ class IrradianceMap {
     };
     /// The estimate at `place`, or another one where something hides that from the region's middle.
     Answer answer(std::uint32_t place, const SurfaceRegion& region) const;
-    std::uint32_t place_for_cell(const Vec3& middle, const Vec3& normal, float size) const;
+    PlaceGrid::Found place_for_cell(const Vec3& middle, const Vec3& normal) const;
     /// Whether something may stand between place and position.
     bool may_be_hidden(std::uint32_t place, const Vec3& position) const;
     struct Count {

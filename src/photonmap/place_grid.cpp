@@ -9,9 +9,12 @@
 namespace keyhole {
 namespace {
 
-/// Triangles of fewer have none: what leads to cells is to be the lesser part.
-constexpr double kLeastCells = 32;
-constexpr double kMostRows = 2048;
+// Shares of the memory, in cells of 8 bytes: an index of triangles, grids, cells, and parts of these of 4 bytes.
+constexpr std::size_t kIndexedPerCell = 4, kCellsPerGrid = 44, kCellsPerUndivided = 4;
+constexpr double kParts = 0.75;
+
+constexpr double kLeastRows = 2, kMostRows = 2048;
+constexpr float kMostParts = 64;
 
 /// Whether gather rays ask for places there.
 bool is_asked(const Shape& shape) {
@@ -26,79 +29,83 @@ bool has_places(const TriangleMesh& mesh, std::uint32_t triangle, bool behind, c
         for (int u = 1; u + v < kSteps; ++u) {
             const SurfacePoint at = triangle_point(mesh, triangle, static_cast<float>(u) / kSteps,
                                                    static_cast<float>(v) / kSteps, /*parametrised=*/false);
-            if (find(at.p, behind ? -at.ng : at.ng, 0) != PlaceGrid::kNothing) return true;
+            if (find(at.p, behind ? -at.ng : at.ng).place != PlaceGrid::kNothing) return true;
         }
     return false;
 }
 
 } // namespace
 
-std::uint32_t PlaceGrid::Grid::cell(const Vec3& p) const {
-    const auto step = [&](const Vec3& towards, std::uint32_t steps) {
-        return static_cast<std::uint32_t>(
-            std::clamp(static_cast<int>((p - corner).dot(towards)), 0, static_cast<int>(steps) - 1));
-    };
-    const std::uint32_t row = step(to_row, rows);
-    return before(row) + step(to_column, in_row(row));
-}
-
-Vec3 PlaceGrid::Grid::middle(std::uint32_t column, std::uint32_t row) const {
-    const float width = 1 / static_cast<float>(stretch * rows), height = 1 / static_cast<float>(rows);
-    const float x = static_cast<float>(column) * width, y = static_cast<float>(row) * height;
-    const float inside = std::max(0.0f, 1 - x - y); // the third edge cuts the last cells of a row
-    return corner + along * (x + std::min(width / 2, inside / 3)) + across * (y + std::min(height / 2, inside / 3));
-}
-
 float PlaceGrid::Grid::size() const {
     return std::max(along.length() / static_cast<float>(stretch * rows), across.length() / static_cast<float>(rows));
 }
 
-PlaceGrid::PlaceGrid(const std::vector<Shape>& shapes, std::size_t most, const Find& find) : shapes_(shapes.size()) {
-    struct Side {
+Vec3 PlaceGrid::Grid::middle(std::uint32_t column, std::uint32_t row, std::uint32_t parts, std::uint32_t part) const {
+    const float width = 1 / static_cast<float>(stretch * rows * parts), height = 1 / static_cast<float>(rows * parts);
+    const float x = static_cast<float>(column * parts + part % parts) * width;
+    const float y = static_cast<float>(row * parts + part / parts) * height;
+    const float inside = std::max(0.0f, 1 - x - y); // the third edge cuts the last cells of a row
+    return corner + along * (x + std::min(width / 2, inside / 3)) + across * (y + std::min(height / 2, inside / 3));
+}
+
+std::vector<PlaceGrid::Side> PlaceGrid::choose_sides(const std::vector<Shape>& shapes, std::size_t most,
+                                                     const Find& find) {
+    struct Triangle {
         std::uint32_t shape, triangle;
-        std::size_t side;
         double area;
     };
-    double all = 0, area = 0;
-    for (const Shape& shape : shapes)
-        if (is_asked(shape)) all += surface_area(shape);
-    std::vector<Side> sides;
+    std::vector<Triangle> triangles;
     std::size_t indexed = 0;
     for (std::uint32_t s = 0; s < shapes.size(); ++s) {
         if (!is_asked(shapes[s])) continue;
         const auto& mesh = std::get<TriangleMesh>(shapes[s].geometry);
-        if (indexed + mesh.triangles.size() > most / 4) continue; // its triangles are small, and their index is large
+        if (indexed + mesh.triangles.size() > most / kIndexedPerCell) continue; // of small triangles
         indexed += mesh.triangles.size();
-        for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-            const double own = triangle_area(mesh, t);
-            if (!(own * static_cast<double>(most) > kLeastCells * all)) continue;
-            for (const std::size_t side : {0, 1})
-                if (has_places(mesh, t, side == 1, find)) {
-                    sides.push_back({s, t, side, own});
-                    area += own;
-                }
-        }
+        for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+            if (const double area = triangle_area(mesh, t); area > 0) triangles.push_back({s, t, area});
     }
+    std::ranges::stable_sort(triangles, std::greater(), &Triangle::area);
+    triangles.resize(std::min(triangles.size(), most / kCellsPerGrid));
+    std::vector<Side> sides;
+    for (const Triangle& t : triangles)
+        for (const std::size_t side : {0, 1})
+            if (has_places(std::get<TriangleMesh>(shapes[t.shape].geometry), t.triangle, side == 1, find))
+                sides.push_back({t.shape, t.triangle, side, t.area});
+    return sides;
+}
+
+PlaceGrid::PlaceGrid(const std::vector<Shape>& shapes, std::size_t most, const Find& find) : shapes_(shapes.size()) {
+    const std::vector<Side> sides = choose_sides(shapes, most, find);
+    double area = 0;
+    for (const Side& side : sides) area += side.area;
+    const std::size_t undivided = most / kCellsPerUndivided;
     for (const Side& side : sides) {
         const auto& mesh = std::get<TriangleMesh>(shapes[side.shape].geometry);
         auto& grids = shapes_[side.shape];
         if (grids.empty()) grids.resize(mesh.triangles.size(), kNone);
-        Grid grid = make_grid(mesh, side.triangle, area / static_cast<double>(most));
+        // The other half is for small ones, which have more than their share.
+        Grid grid = make_grid(mesh, side.triangle, 2 * area / static_cast<double>(undivided));
         const std::uint32_t cells = grid.before(grid.rows);
-        if (places_.size() + cells > most) break;
+        if (cells_.size() + cells > undivided) break;
         if (grids[side.triangle] == kNone) {
             grids[side.triangle] = static_cast<std::uint32_t>(grids_.size());
             grids_.push_back(grid);
         }
-        grids_[grids[side.triangle]].first[side.side] = static_cast<std::uint32_t>(places_.size());
-        places_.resize(places_.size() + cells);
+        grids_[grids[side.triangle]].first[side.side] = static_cast<std::uint32_t>(cells_.size());
+        cells_.resize(cells_.size() + cells);
     }
     grids_.shrink_to_fit();
-    places_.shrink_to_fit();
-    parallel_for(2 * static_cast<std::int64_t>(grids_.size()), [&](std::int64_t i) {
-        const auto k = static_cast<std::size_t>(i);
-        fill(grids_[k / 2], k % 2, find);
-    });
+    cells_.shrink_to_fit();
+    const auto each_side = [&](auto&& body) {
+        parallel_for(2 * static_cast<std::int64_t>(grids_.size()), [&](std::int64_t i) {
+            const Grid& grid = grids_[static_cast<std::size_t>(i / 2)];
+            const auto side = static_cast<std::size_t>(i % 2);
+            if (grid.first[side] != kNone) body(grid, side);
+        });
+    };
+    each_side([&](const Grid& grid, std::size_t side) { fill(grid, side, find); });
+    divide(static_cast<std::size_t>(kParts * static_cast<double>(most)));
+    each_side([&](const Grid& grid, std::size_t side) { fill_parts(grid, side, find); });
 }
 
 PlaceGrid::Grid PlaceGrid::make_grid(const TriangleMesh& mesh, std::uint32_t triangle, double cell_area) {
@@ -121,7 +128,7 @@ PlaceGrid::Grid PlaceGrid::make_grid(const TriangleMesh& mesh, std::uint32_t tri
     const Imath::V3d e(grid.along), f(grid.across), n = e.cross(f);
     const double stretch = std::clamp(std::round(e.length() / f.length()), 1.0, kMostRows);
     // Half of rows^2 stretch cells lie inside, and half of those of the last ones.
-    const double rows = std::clamp(std::floor(std::sqrt(n.length() / cell_area / stretch)), 1.0, kMostRows);
+    const double rows = std::clamp(std::floor(std::sqrt(n.length() / cell_area / stretch)), kLeastRows, kMostRows);
     grid.rows = static_cast<std::uint32_t>(rows);
     grid.stretch = static_cast<std::uint32_t>(stretch);
     grid.to_column = Vec3(f.cross(n) * (rows * stretch / n.length2()));
@@ -130,24 +137,71 @@ PlaceGrid::Grid PlaceGrid::make_grid(const TriangleMesh& mesh, std::uint32_t tri
 }
 
 void PlaceGrid::fill(const Grid& grid, std::size_t side, const Find& find) {
-    if (grid.first[side] == kNone) return;
     const Vec3 normal = side == 0 ? grid.normal : -grid.normal;
     std::uint32_t at = grid.first[side];
     for (std::uint32_t row = 0; row < grid.rows; ++row)
-        for (std::uint32_t column = 0; column < grid.in_row(row); ++column)
-            places_[at++] = find(grid.middle(column, row), normal, grid.size());
+        for (std::uint32_t column = 0; column < grid.in_row(row); ++column) {
+            const Found found = find(grid.middle(column, row, 1, 0), normal);
+            const float parts = std::ceil(grid.size() / found.size);
+            cells_[at++] = {found.place, static_cast<std::uint32_t>(std::clamp(parts, 1.0f, kMostParts))};
+        }
+}
+
+void PlaceGrid::divide(std::size_t most) {
+    std::size_t parts = 0;
+    for (Cell& cell : cells_) {
+        if (cell.parts == 1) continue;
+        const std::size_t wanted = std::size_t{cell.parts} * cell.parts;
+        if (parts + wanted > most) {
+            cell = {kSearch, 1};
+        } else {
+            cell.place = static_cast<std::uint32_t>(parts);
+            parts += wanted;
+        }
+    }
+    parts_.resize(parts);
+    parts_.shrink_to_fit();
+}
+
+void PlaceGrid::fill_parts(const Grid& grid, std::size_t side, const Find& find) {
+    const Vec3 normal = side == 0 ? grid.normal : -grid.normal;
+    std::uint32_t at = grid.first[side];
+    for (std::uint32_t row = 0; row < grid.rows; ++row)
+        for (std::uint32_t column = 0; column < grid.in_row(row); ++column) {
+            const Cell& cell = cells_[at++];
+            for (std::uint32_t i = 0; cell.parts > 1 && i < cell.parts * cell.parts; ++i) {
+                const Found found = find(grid.middle(column, row, cell.parts, i), normal);
+                const bool good = grid.size() <= static_cast<float>(cell.parts) * found.size;
+                parts_[cell.place + i] = good ? found.place : kSearch;
+            }
+        }
 }
 
 std::uint32_t PlaceGrid::at(const SurfacePoint& point, const Vec3& normal) const {
     if (point.shape >= shapes_.size() || shapes_[point.shape].empty()) return kSearch;
     const std::uint32_t g = shapes_[point.shape][point.primitive];
     if (g == kNone) return kSearch;
-    const std::uint32_t first = grids_[g].first[point.ng.dot(normal) < 0 ? 1 : 0];
-    return first == kNone ? kSearch : places_[first + grids_[g].cell(point.p)];
+    const Grid& grid = grids_[g];
+    const std::uint32_t first = grid.first[point.ng.dot(normal) < 0 ? 1 : 0];
+    if (first == kNone) return kSearch;
+    // Rounding may bring points of an edge to the other side of it.
+    const auto step = [](float x, std::uint32_t steps) {
+        return static_cast<std::uint32_t>(std::clamp(static_cast<int>(x), 0, static_cast<int>(steps) - 1));
+    };
+    const Vec3 from_corner = point.p - grid.corner;
+    const float x = from_corner.dot(grid.to_column), y = from_corner.dot(grid.to_row);
+    const std::uint32_t row = step(y, grid.rows), column = step(x, grid.in_row(row));
+    const Cell& cell = cells_[first + grid.before(row) + column];
+    if (cell.parts == 1) return cell.place;
+    const auto part = [&](float of_grid, std::uint32_t of_cell) {
+        return step((of_grid - static_cast<float>(of_cell)) * static_cast<float>(cell.parts), cell.parts);
+    };
+    return parts_[cell.place + part(y, row) * cell.parts + part(x, column)];
 }
 
 std::size_t PlaceGrid::bytes() const {
-    std::size_t sum = grids_.capacity() * sizeof(Grid) + places_.capacity() * sizeof(std::uint32_t);
+    std::size_t sum =
+        grids_.capacity() * sizeof(Grid) + cells_.capacity() * sizeof(Cell) + parts_.capacity() * sizeof(std::uint32_t);
     for (const auto& shape : shapes_) sum += shape.capacity() * sizeof(std::uint32_t);
     return sum;
 }

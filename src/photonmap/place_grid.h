@@ -1,4 +1,4 @@
-// Which place of an irradiance map a point of a large triangle belongs to, without a search.
+// Which place of an irradiance map a point of a triangle belongs to, without a search.
 #pragma once
 
 #include "scene/shape.h"
@@ -12,16 +12,21 @@
 namespace keyhole {
 
 /// Cells on the triangles of a scene, each with what a search from its middle found. Gather rays ask for places far
-/// more often than there are any, so that the search for the nearest one took a third of their time. Triangles smaller
-/// than some cells, and sides without any place, have none: there one has to search. Immutable and thread-safe.
+/// more often than there are any, so that the search for the nearest one took a third of their time. Where places are
+/// close to each other cells are divided further. The smallest triangles of a large scene, and sides without any place,
+/// have none: there one has to search. Immutable and thread-safe.
 class PlaceGrid {
   public:
     static constexpr std::uint32_t kNothing = ~0u;     ///< the search finds no place
     static constexpr std::uint32_t kSearch = ~0u - 1u; ///< what it finds is not good for the whole cell
 
-    /// About `most` cells at most. `find(middle, normal, size)`: the place for a cell of that length [m] on the side of
-    /// unit `normal`, kNothing or kSearch; thread-safe.
-    using Find = std::function<std::uint32_t(const Vec3& middle, const Vec3& normal, float size)>;
+    struct Found {
+        std::uint32_t place; ///< or kNothing
+        float size;          ///< of the largest cell that this is good for [m]
+    };
+    /// What a search finds on the side of unit `normal`; thread-safe.
+    using Find = std::function<Found(const Vec3& middle, const Vec3& normal)>;
+    /// Takes the memory of `most` cells at most.
     PlaceGrid(const std::vector<Shape>& shapes, std::size_t most, const Find& find);
 
     /// The place for a point of a surface, on the side of `normal`, kNothing or kSearch.
@@ -46,17 +51,33 @@ class PlaceGrid {
         /// Cells before a row; all, for the one after the last.
         std::uint32_t before(std::uint32_t row) const { return stretch * (row * (2 * rows + 1 - row) / 2); }
         std::uint32_t in_row(std::uint32_t row) const { return stretch * (rows - row); }
-        std::uint32_t cell(const Vec3& p) const;
-        /// A place in a cell and in the triangle, not far from the middle.
-        Vec3 middle(std::uint32_t column, std::uint32_t row) const;
         float size() const;
+        /// The middle of one of `parts` x `parts` of a cell, or a place of the triangle near it.
+        Vec3 middle(std::uint32_t column, std::uint32_t row, std::uint32_t parts, std::uint32_t part) const;
     };
+    struct Cell {
+        std::uint32_t place; ///< or, if divided, index of that of its first part
+        std::uint32_t parts; ///< along each side: 1, unless divided
+    };
+    struct Side {
+        std::uint32_t shape, triangle;
+        std::size_t side;
+        double area;
+    };
+
+    std::vector<Side> choose_sides(const std::vector<Shape>& shapes, std::size_t most, const Find& find);
     static Grid make_grid(const TriangleMesh& mesh, std::uint32_t triangle, double cell_area);
+    /// Searches from the middles of one side's cells.
     void fill(const Grid& grid, std::size_t side, const Find& find);
+    /// Gives their parts to cells that want some, `most` in all.
+    void divide(std::size_t most);
+    /// Searches from the middles of these.
+    void fill_parts(const Grid& grid, std::size_t side, const Find& find);
 
     std::vector<std::vector<std::uint32_t>> shapes_; ///< by shape and triangle: index of its grid, or kNone
     std::vector<Grid> grids_;
-    std::vector<std::uint32_t> places_;
+    std::vector<Cell> cells_;
+    std::vector<std::uint32_t> parts_; ///< places of the parts of divided cells
 };
 
 } // namespace keyhole

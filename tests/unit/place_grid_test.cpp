@@ -15,18 +15,18 @@ namespace {
 /// What the search was asked; places are indices of these.
 struct Asked {
     Vec3 middle, normal;
-    float size;
 };
 
 struct Searches {
     std::vector<Asked> asked;
     std::mutex turn;
 
-    PlaceGrid::Find find() {
-        return [this](const Vec3& middle, const Vec3& normal, float size) {
+    /// Every place is good for cells of `size` [m].
+    PlaceGrid::Find find(float size) {
+        return [this, size](const Vec3& middle, const Vec3& normal) -> PlaceGrid::Found {
             const std::lock_guard lock(turn);
-            asked.push_back({middle, normal, size});
-            return static_cast<std::uint32_t>(asked.size() - 1);
+            asked.push_back({middle, normal});
+            return {static_cast<std::uint32_t>(asked.size() - 1), size};
         };
     }
 };
@@ -53,42 +53,78 @@ SurfacePoint random_point(const std::vector<Shape>& shapes, std::uint32_t triang
     return s;
 }
 
+/// Points of the first two triangles, and what the grid says of them.
+struct Lookups {
+    int all = 0, searched = 0;
+    float farthest = 0; ///< from a point to where its place was found [m]
+};
+
+Lookups look_up(const PlaceGrid& grid, const std::vector<Shape>& shapes, const Searches& searches) {
+    Rng rng(1, StreamPurpose::test, 0);
+    Lookups l;
+    for (; l.all < 4000; ++l.all) {
+        const SurfacePoint s = random_point(shapes, static_cast<std::uint32_t>(l.all % 2), rng);
+        const Vec3 side = l.all % 4 < 2 ? s.ng : -s.ng;
+        const std::uint32_t place = grid.at(s, side);
+        if (place == PlaceGrid::kSearch) {
+            ++l.searched;
+            continue;
+        }
+        const Asked& asked = searches.asked.at(place);
+        EXPECT_GT(asked.normal.dot(side), 0.999f);
+        EXPECT_LT(std::abs((asked.middle - s.p).dot(s.ng)), 1e-5f) << "on the triangle";
+        l.farthest = std::max(l.farthest, (asked.middle - s.p).length());
+    }
+    return l;
+}
+
 TEST(PlaceGrid, GivesWhatWasFoundNearbyOnTheSameSide) {
     const std::vector<Shape> shapes = triangles();
     Searches searches;
-    const PlaceGrid grid(shapes, 2000, searches.find());
-    EXPECT_GT(searches.asked.size(), 1000u);
-    EXPECT_LE(searches.asked.size(), 2100u) << "but for some that ask what sides there are";
-    EXPECT_LE(grid.bytes(), 2000 * PlaceGrid::bytes_per_cell());
-    Rng rng(1, StreamPurpose::test, 0);
-    for (int i = 0; i < 4000; ++i) {
-        const SurfacePoint s = random_point(shapes, static_cast<std::uint32_t>(i % 2), rng);
-        const Vec3 side = i % 4 < 2 ? s.ng : -s.ng;
-        const std::uint32_t place = grid.at(s, side);
-        ASSERT_LT(place, searches.asked.size());
-        const Asked& asked = searches.asked[place];
-        EXPECT_GT(asked.normal.dot(side), 0.999f);
-        EXPECT_LT((asked.middle - s.p).length(), 1.5f * asked.size) << "at " << s.p;
-        EXPECT_LT(std::abs((asked.middle - s.p).dot(s.ng)), 1e-5f) << "on the triangle";
-    }
+    const PlaceGrid grid(shapes, 2000, searches.find(5));
+    EXPECT_LE(searches.asked.size(), 600u) << "but for some that ask what sides there are";
+    const Lookups found = look_up(grid, shapes, searches);
+    EXPECT_EQ(found.searched, 0);
+    EXPECT_LT(found.farthest, 5) << "a cell's diagonal";
 }
 
-TEST(PlaceGrid, LeavesSmallTrianglesAndOtherShapesToTheSearch) {
+TEST(PlaceGrid, DividesCellsThatAreTooLargeForTheirPlaces) {
     const std::vector<Shape> shapes = triangles();
     Searches searches;
-    const PlaceGrid grid(shapes, 2000, searches.find());
+    const PlaceGrid grid(shapes, 20'000, searches.find(0.15f));
+    EXPECT_LE(grid.bytes(), 20'000 * PlaceGrid::bytes_per_cell());
+    const Lookups found = look_up(grid, shapes, searches);
+    EXPECT_EQ(found.searched, 0);
+    EXPECT_LT(found.farthest, 0.15f * std::sqrt(2.0f));
+}
+
+TEST(PlaceGrid, LeavesWhatItHasNoRoomForToTheSearch) {
+    const std::vector<Shape> shapes = triangles();
+    Searches searches;
+    const PlaceGrid grid(shapes, 2000, searches.find(0.1f));
+    EXPECT_LE(grid.bytes(), 2000 * PlaceGrid::bytes_per_cell());
+    const Lookups found = look_up(grid, shapes, searches);
+    EXPECT_GT(found.searched, 0);
+    EXPECT_LT(found.searched, found.all) << "but some cells are divided";
+    EXPECT_LT(found.farthest, 0.1f * std::sqrt(2.0f));
+}
+
+TEST(PlaceGrid, LeavesTheSmallestTrianglesAndOtherShapesToTheSearch) {
+    const std::vector<Shape> shapes = triangles();
+    Searches searches;
+    const PlaceGrid grid(shapes, 100, searches.find(5)); // two triangles' worth
     Rng rng(1, StreamPurpose::test, 0);
     SurfacePoint s = random_point(shapes, 2, rng);
     EXPECT_EQ(grid.at(s, s.ng), PlaceGrid::kSearch);
     s.shape = SurfacePoint::kNone;
     EXPECT_EQ(grid.at(s, s.ng), PlaceGrid::kSearch);
-    const PlaceGrid one_sided(shapes, 2000,
-                              [](const Vec3&, const Vec3& n, float) { return n.z > 0 ? 5 : PlaceGrid::kNothing; });
+    const PlaceGrid one_sided(shapes, 2000, [](const Vec3&, const Vec3& n) {
+        return PlaceGrid::Found{n.z > 0 ? 5 : PlaceGrid::kNothing, 9};
+    });
     s = random_point(shapes, 0, rng);
     EXPECT_EQ(one_sided.at(s, s.ng), 5u);
     EXPECT_EQ(one_sided.at(s, -s.ng), PlaceGrid::kSearch);
-    const PlaceGrid none(shapes, 4, searches.find());
-    s = random_point(shapes, 0, rng);
+    const PlaceGrid none(shapes, 4, searches.find(5));
     EXPECT_EQ(none.at(s, s.ng), PlaceGrid::kSearch) << "no room for cells";
 }
 
