@@ -9,9 +9,9 @@
 namespace keyhole {
 namespace {
 
-// Shares of the memory, in cells of 8 bytes: an index of triangles, grids, cells, and parts of these of 4 bytes.
-constexpr std::size_t kIndexedPerCell = 4, kCellsPerGrid = 44, kCellsPerUndivided = 4;
-constexpr double kParts = 0.75;
+// What is had for the memory of one cell, 8 bytes, by parts of it: 3 bytes for entries of triangles, which take 8; 1
+// for grids; 1.5 for cells, of 8; 2.5 for parts of these, of 4.
+constexpr double kTriangles = 0.25, kGrids = 1 / 96.0, kCells = 0.25, kParts = 0.75;
 
 constexpr double kLeastRows = 2, kMostRows = 2048;
 constexpr float kMostParts = 64;
@@ -34,6 +34,17 @@ bool has_places(const TriangleMesh& mesh, std::uint32_t triangle, bool behind, c
     return false;
 }
 
+/// The place for all of a triangle's side, kNothing or kSearch.
+std::uint32_t place_for_all(const TriangleMesh& mesh, std::uint32_t triangle, bool behind,
+                            const PlaceGrid::Find& find) {
+    const SurfacePoint at = triangle_point(mesh, triangle, 1 / 3.0f, 1 / 3.0f, /*parametrised=*/false);
+    const PlaceGrid::Found found = find(at.p, behind ? -at.ng : at.ng);
+    const auto corner = [&](std::size_t i) { return mesh.positions[mesh.triangles[triangle][i]]; };
+    const float longest = std::max(
+        {(corner(1) - corner(0)).length(), (corner(2) - corner(1)).length(), (corner(0) - corner(2)).length()});
+    return longest <= found.size ? found.place : PlaceGrid::kSearch;
+}
+
 } // namespace
 
 float PlaceGrid::Grid::size() const {
@@ -48,54 +59,11 @@ Vec3 PlaceGrid::Grid::middle(std::uint32_t column, std::uint32_t row, std::uint3
     return corner + along * (x + std::min(width / 2, inside / 3)) + across * (y + std::min(height / 2, inside / 3));
 }
 
-std::vector<PlaceGrid::Side> PlaceGrid::choose_sides(const std::vector<Shape>& shapes, std::size_t most,
-                                                     const Find& find) {
-    struct Triangle {
-        std::uint32_t shape, triangle;
-        double area;
-    };
-    std::vector<Triangle> triangles;
-    std::size_t indexed = 0;
-    for (std::uint32_t s = 0; s < shapes.size(); ++s) {
-        if (!is_asked(shapes[s])) continue;
-        const auto& mesh = std::get<TriangleMesh>(shapes[s].geometry);
-        if (indexed + mesh.triangles.size() > most / kIndexedPerCell) continue; // of small triangles
-        indexed += mesh.triangles.size();
-        for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
-            if (const double area = triangle_area(mesh, t); area > 0) triangles.push_back({s, t, area});
-    }
-    std::ranges::stable_sort(triangles, std::greater(), &Triangle::area);
-    triangles.resize(std::min(triangles.size(), most / kCellsPerGrid));
-    std::vector<Side> sides;
-    for (const Triangle& t : triangles)
-        for (const std::size_t side : {0, 1})
-            if (has_places(std::get<TriangleMesh>(shapes[t.shape].geometry), t.triangle, side == 1, find))
-                sides.push_back({t.shape, t.triangle, side, t.area});
-    return sides;
-}
-
-PlaceGrid::PlaceGrid(const std::vector<Shape>& shapes, std::size_t most, const Find& find) : shapes_(shapes.size()) {
-    const std::vector<Side> sides = choose_sides(shapes, most, find);
-    double area = 0;
-    for (const Side& side : sides) area += side.area;
-    const std::size_t undivided = most / kCellsPerUndivided;
-    for (const Side& side : sides) {
-        const auto& mesh = std::get<TriangleMesh>(shapes[side.shape].geometry);
-        auto& grids = shapes_[side.shape];
-        if (grids.empty()) grids.resize(mesh.triangles.size(), kNone);
-        // The other half is for small ones, which have more than their share.
-        Grid grid = make_grid(mesh, side.triangle, 2 * area / static_cast<double>(undivided));
-        const std::uint32_t cells = grid.before(grid.rows);
-        if (cells_.size() + cells > undivided) break;
-        if (grids[side.triangle] == kNone) {
-            grids[side.triangle] = static_cast<std::uint32_t>(grids_.size());
-            grids_.push_back(grid);
-        }
-        grids_[grids[side.triangle]].first[side.side] = static_cast<std::uint32_t>(cells_.size());
-        cells_.resize(cells_.size() + cells);
-    }
-    grids_.shrink_to_fit();
-    cells_.shrink_to_fit();
+PlaceGrid::PlaceGrid(const std::vector<Shape>& shapes, std::size_t most, const Find& find) : entries_(shapes.size()) {
+    const auto share = [most](double part) { return static_cast<std::size_t>(part * static_cast<double>(most)); };
+    std::vector<Triangle> large = index(shapes, share(kTriangles), find);
+    large.resize(std::min(large.size(), share(kGrids)));
+    make_grids(shapes, large, share(kCells), find);
     const auto each_side = [&](auto&& body) {
         parallel_for(2 * static_cast<std::int64_t>(grids_.size()), [&](std::int64_t i) {
             const Grid& grid = grids_[static_cast<std::size_t>(i / 2)];
@@ -104,8 +72,68 @@ PlaceGrid::PlaceGrid(const std::vector<Shape>& shapes, std::size_t most, const F
         });
     };
     each_side([&](const Grid& grid, std::size_t side) { fill(grid, side, find); });
-    divide(static_cast<std::size_t>(kParts * static_cast<double>(most)));
+    divide(share(kParts));
     each_side([&](const Grid& grid, std::size_t side) { fill_parts(grid, side, find); });
+}
+
+std::vector<PlaceGrid::Triangle> PlaceGrid::index(const std::vector<Shape>& shapes, std::size_t most,
+                                                  const Find& find) {
+    const auto mesh = [&](std::uint32_t s) -> const TriangleMesh& {
+        return std::get<TriangleMesh>(shapes[s].geometry);
+    };
+    std::vector<std::pair<double, std::uint32_t>> by_area;
+    for (std::uint32_t s = 0; s < shapes.size(); ++s)
+        if (is_asked(shapes[s]) && !mesh(s).triangles.empty())
+            by_area.emplace_back(surface_area(shapes[s]) / static_cast<double>(mesh(s).triangles.size()), s);
+    std::ranges::stable_sort(by_area, std::greater(), &std::pair<double, std::uint32_t>::first);
+    std::vector<Triangle> large;
+    for (const auto& [area, s] : by_area) {
+        const std::size_t triangles = mesh(s).triangles.size();
+        if (triangles > most) continue;
+        most -= triangles;
+        auto& entries = entries_[s];
+        entries.resize(2 * triangles);
+        parallel_for(static_cast<std::int64_t>(entries.size()), [&, s = s](std::int64_t i) {
+            entries[static_cast<std::size_t>(i)] =
+                place_for_all(mesh(s), static_cast<std::uint32_t>(i / 2), i % 2 == 1, find);
+        });
+        for (std::uint32_t t = 0; t < triangles; ++t) {
+            const bool whole = entries[2 * t] != kSearch && entries[2 * t + 1] != kSearch;
+            if (const double own = triangle_area(mesh(s), t); !whole && own > 0) large.push_back({s, t, own});
+        }
+    }
+    std::ranges::stable_sort(large, std::greater(), &Triangle::area);
+    return large;
+}
+
+void PlaceGrid::make_grids(const std::vector<Shape>& shapes, const std::vector<Triangle>& triangles, std::size_t most,
+                           const Find& find) {
+    std::vector<Side> sides;
+    double area = 0;
+    for (const Triangle& t : triangles)
+        for (const std::size_t side : {0, 1})
+            if (entries_[t.shape][2 * t.triangle + side] == kSearch &&
+                has_places(std::get<TriangleMesh>(shapes[t.shape].geometry), t.triangle, side == 1, find)) {
+                sides.push_back({t.shape, t.triangle, side, t.area});
+                area += t.area;
+            }
+    const Side* before = nullptr;
+    for (const Side& side : sides) {
+        // Half of the cells is for small triangles, which have more than their share.
+        Grid grid = make_grid(std::get<TriangleMesh>(shapes[side.shape].geometry), side.triangle,
+                              2 * area / static_cast<double>(most));
+        const std::uint32_t cells = grid.before(grid.rows);
+        if (cells_.size() + cells > most) break;
+        // The two sides of a triangle follow each other.
+        if (before == nullptr || before->shape != side.shape || before->triangle != side.triangle)
+            grids_.push_back(grid);
+        grids_.back().first[side.side] = static_cast<std::uint32_t>(cells_.size());
+        entries_[side.shape][2 * side.triangle + side.side] = kGrid + static_cast<std::uint32_t>(grids_.size() - 1);
+        cells_.resize(cells_.size() + cells);
+        before = &side;
+    }
+    grids_.shrink_to_fit();
+    cells_.shrink_to_fit();
 }
 
 PlaceGrid::Grid PlaceGrid::make_grid(const TriangleMesh& mesh, std::uint32_t triangle, double cell_area) {
@@ -178,12 +206,11 @@ void PlaceGrid::fill_parts(const Grid& grid, std::size_t side, const Find& find)
 }
 
 std::uint32_t PlaceGrid::at(const SurfacePoint& point, const Vec3& normal) const {
-    if (point.shape >= shapes_.size() || shapes_[point.shape].empty()) return kSearch;
-    const std::uint32_t g = shapes_[point.shape][point.primitive];
-    if (g == kNone) return kSearch;
-    const Grid& grid = grids_[g];
-    const std::uint32_t first = grid.first[point.ng.dot(normal) < 0 ? 1 : 0];
-    if (first == kNone) return kSearch;
+    if (point.shape >= entries_.size() || entries_[point.shape].empty()) return kSearch;
+    const std::size_t side = point.ng.dot(normal) < 0 ? 1 : 0;
+    const std::uint32_t entry = entries_[point.shape][2 * point.primitive + side];
+    if (entry < kGrid || entry >= kSearch) return entry;
+    const Grid& grid = grids_[entry - kGrid];
     // Rounding may bring points of an edge to the other side of it.
     const auto step = [](float x, std::uint32_t steps) {
         return static_cast<std::uint32_t>(std::clamp(static_cast<int>(x), 0, static_cast<int>(steps) - 1));
@@ -191,7 +218,7 @@ std::uint32_t PlaceGrid::at(const SurfacePoint& point, const Vec3& normal) const
     const Vec3 from_corner = point.p - grid.corner;
     const float x = from_corner.dot(grid.to_column), y = from_corner.dot(grid.to_row);
     const std::uint32_t row = step(y, grid.rows), column = step(x, grid.in_row(row));
-    const Cell& cell = cells_[first + grid.before(row) + column];
+    const Cell& cell = cells_[grid.first[side] + grid.before(row) + column];
     if (cell.parts == 1) return cell.place;
     const auto part = [&](float of_grid, std::uint32_t of_cell) {
         return step((of_grid - static_cast<float>(of_cell)) * static_cast<float>(cell.parts), cell.parts);
@@ -202,7 +229,7 @@ std::uint32_t PlaceGrid::at(const SurfacePoint& point, const Vec3& normal) const
 std::size_t PlaceGrid::bytes() const {
     std::size_t sum =
         grids_.capacity() * sizeof(Grid) + cells_.capacity() * sizeof(Cell) + parts_.capacity() * sizeof(std::uint32_t);
-    for (const auto& shape : shapes_) sum += shape.capacity() * sizeof(std::uint32_t);
+    for (const auto& entries : entries_) sum += entries.capacity() * sizeof(std::uint32_t);
     return sum;
 }
 

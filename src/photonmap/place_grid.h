@@ -12,9 +12,10 @@
 namespace keyhole {
 
 /// Cells on the triangles of a scene, each with what a search from its middle found. Gather rays ask for places far
-/// more often than there are any, so that the search for the nearest one took a third of their time. Where places are
-/// close to each other cells are divided further. The smallest triangles of a large scene, and sides without any place,
-/// have none: there one has to search. Immutable and thread-safe.
+/// more often than there are any, so that the search for the nearest one took a third of their time. A small triangle
+/// is a cell by itself. Where places are close to each other cells are divided further. Meshes of more triangles than
+/// there is memory for, and sides of large triangles without any place, have none: there one has to search. Immutable
+/// and thread-safe.
 class PlaceGrid {
   public:
     static constexpr std::uint32_t kNothing = ~0u;     ///< the search finds no place
@@ -38,6 +39,7 @@ class PlaceGrid {
 
   private:
     static constexpr std::uint32_t kNone = ~0u;
+    static constexpr std::uint32_t kGrid = 1u << 31;
 
     /// Steps along two edges of a triangle, `stretch` times as many along the longer one. Cells that lie inside, if
     /// only in part, follow each other row by row.
@@ -59,13 +61,22 @@ class PlaceGrid {
         std::uint32_t place; ///< or, if divided, index of that of its first part
         std::uint32_t parts; ///< along each side: 1, unless divided
     };
+    struct Triangle {
+        std::uint32_t shape, triangle;
+        double area;
+    };
     struct Side {
         std::uint32_t shape, triangle;
         std::size_t side;
         double area;
     };
 
-    std::vector<Side> choose_sides(const std::vector<Shape>& shapes, std::size_t most, const Find& find);
+    /// Makes entries for the meshes of the largest triangles, as many as there is memory for, and fills in those of
+    /// triangles for which one place will do. Returns the others, largest first.
+    std::vector<Triangle> index(const std::vector<Shape>& shapes, std::size_t most, const Find& find);
+    /// Gives grids to the largest of these, as many as there is memory for.
+    void make_grids(const std::vector<Shape>& shapes, const std::vector<Triangle>& triangles, std::size_t most,
+                    const Find& find);
     static Grid make_grid(const TriangleMesh& mesh, std::uint32_t triangle, double cell_area);
     /// Searches from the middles of one side's cells.
     void fill(const Grid& grid, std::size_t side, const Find& find);
@@ -74,7 +85,8 @@ class PlaceGrid {
     /// Searches from the middles of these.
     void fill_parts(const Grid& grid, std::size_t side, const Find& find);
 
-    std::vector<std::vector<std::uint32_t>> shapes_; ///< by shape and triangle: index of its grid, or kNone
+    /// By shape, and 2 * triangle + side: a place, kNothing or kSearch; or kGrid + the index of its grid.
+    std::vector<std::vector<std::uint32_t>> entries_;
     std::vector<Grid> grids_;
     std::vector<Cell> cells_;
     std::vector<std::uint32_t> parts_; ///< places of the parts of divided cells

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <mutex>
+#include <set>
 
 namespace keyhole {
 namespace {
@@ -109,12 +110,31 @@ TEST(PlaceGrid, LeavesWhatItHasNoRoomForToTheSearch) {
     EXPECT_LT(found.farthest, 0.1f * std::sqrt(2.0f));
 }
 
-TEST(PlaceGrid, LeavesTheSmallestTrianglesAndOtherShapesToTheSearch) {
+TEST(PlaceGrid, ASmallTriangleIsACellByItself) {
     const std::vector<Shape> shapes = triangles();
     Searches searches;
-    const PlaceGrid grid(shapes, 100, searches.find(5)); // two triangles' worth
+    const PlaceGrid grid(shapes, 2000, searches.find(0.2f));
     Rng rng(1, StreamPurpose::test, 0);
-    SurfacePoint s = random_point(shapes, 2, rng);
+    std::set<std::uint32_t> outside, inside;
+    for (int i = 0; i < 100; ++i) {
+        const SurfacePoint s = random_point(shapes, 2, rng);
+        outside.insert(grid.at(s, s.ng));
+        inside.insert(grid.at(s, -s.ng));
+    }
+    ASSERT_EQ(outside.size(), 1u);
+    ASSERT_EQ(inside.size(), 1u);
+    EXPECT_NE(outside, inside);
+    const Asked& asked = searches.asked.at(*outside.begin());
+    EXPECT_NEAR((asked.middle - Vec3(0.1f / 3, 0.1f / 3, 9)).length(), 0, 1e-5f);
+    EXPECT_GT(asked.normal.z, 0.999f);
+}
+
+TEST(PlaceGrid, LeavesOtherShapesAndEmptySidesToTheSearch) {
+    const std::vector<Shape> shapes = triangles();
+    Searches searches;
+    const PlaceGrid grid(shapes, 100, searches.find(5)); // the largest triangle's worth
+    Rng rng(1, StreamPurpose::test, 0);
+    SurfacePoint s = random_point(shapes, 0, rng);
     EXPECT_EQ(grid.at(s, s.ng), PlaceGrid::kSearch);
     s.shape = SurfacePoint::kNone;
     EXPECT_EQ(grid.at(s, s.ng), PlaceGrid::kSearch);
