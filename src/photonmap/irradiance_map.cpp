@@ -38,7 +38,7 @@ IrradianceMap::IrradianceMap(const PhotonMap& scouts, const PhotonMap& carriers,
         used[static_cast<std::size_t>(b)] += estimate(static_cast<std::uint32_t>(i), carriers, options);
     });
     if (options.scene != nullptr)
-        grid_.emplace(options.scene->shapes(), kCellsPerPlace * estimates_.size(),
+        grid_.emplace(options.scene->shapes(), kGridBytesPerPlace * estimates_.size(),
                       [this](const Vec3& middle, const Vec3& normal) { return place_for_cell(middle, normal); });
     context.end();
     if (own.size() == 0) return;
@@ -64,15 +64,15 @@ IrradianceMap::Count IrradianceMap::estimate(std::uint32_t i, const PhotonMap& c
                                                                              *options.patches, one)
                                                  : estimate_density(carriers, query.region, r, options.patches, one);
     e.value /= share_in_reach(options.reach, query.region, r);
-    estimates_[i] = {SharedExponentRgb(e.value),
-                     e.obstructed ? obstructed_levels(*options.patches, query.region, r) : std::uint8_t{0}, r};
+    estimates_[i] =
+        Estimate(e.value, r, e.obstructed ? obstructed_levels(*options.patches, query.region, r) : std::uint8_t{0});
     return {static_cast<double>(e.photons), squares > 0 ? sum * sum / squares : 0.0};
 }
 
 PlaceGrid::Found IrradianceMap::place_for_cell(const Vec3& middle, const Vec3& normal) const {
     const auto near = scouts_.nearest_one({middle, normal}, kFarthest * max_radius_);
     if (!near) return {PlaceGrid::kNothing, max_radius_};
-    return {near->index, kMostOfRadius * estimates_[near->index].radius};
+    return {near->index, kMostOfRadius * radius(near->index)};
 }
 
 IrradianceMap::Answer IrradianceMap::irradiance(const Vec3& position, const Vec3& normal) const {
@@ -97,17 +97,17 @@ IrradianceMap::Answer IrradianceMap::answer(std::uint32_t place, const SurfaceRe
         if (!other) return {};
         place = other->index;
     }
-    return {estimates_[place].irradiance.decode(), true, place};
+    return {estimates_[place].irradiance(), true, place};
 }
 
 bool IrradianceMap::may_be_hidden(std::uint32_t place, const Vec3& position) const {
     if (scene_ == nullptr) return false;
     const Estimate& e = estimates_[place];
     const float distance2 = (scouts_[place].position() - position).length2();
-    float reach2 = e.radius * e.radius;
+    float reach2 = e.radius() * e.radius();
     // Nothing is known of what stands beyond the region of the estimate.
     if (distance2 > reach2) return true;
-    for (unsigned levels = e.obstructed; levels != 0; levels >>= 1, reach2 /= 4)
+    for (unsigned levels = e.obstructed(); levels != 0; levels >>= 1, reach2 /= 4)
         if (distance2 > reach2 / 4) return (levels & 1) != 0;
     return false;
 }

@@ -7,6 +7,7 @@
 #include "sampling/reach.h"
 #include "scene/scene.h"
 
+#include <bit>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -46,14 +47,12 @@ class IrradianceMap {
     /// Where irradiance was estimated.
     std::span<const Photon> places() const { return scouts_.photons(); }
     /// Radius of the estimate at place i [m].
-    float radius(std::uint32_t i) const { return estimates_[i].radius; }
+    float radius(std::uint32_t i) const { return estimates_[i].radius(); }
 
     /// Memory without that of the scouts [bytes].
     std::size_t bytes() const { return estimates_.capacity() * sizeof(Estimate) + (grid_ ? grid_->bytes() : 0); }
     /// Of it, for one scout [bytes].
-    static constexpr std::size_t bytes_per_place() {
-        return sizeof(Estimate) + kCellsPerPlace * PlaceGrid::bytes_per_cell();
-    }
+    static constexpr std::size_t bytes_per_place() { return sizeof(Estimate) + kGridBytesPerPlace; }
     /// Number of photons that went into an estimate, on average over those that this process made.
     double mean_photons() const { return mean_.photons; }
     /// How many equal ones would be as good, on average over estimates: squared sum of power over sum of squares
@@ -61,12 +60,25 @@ class IrradianceMap {
     double effective_photons() const { return mean_.effective; }
 
   private:
-    static constexpr std::size_t kCellsPerPlace = 2;
+    static constexpr std::size_t kGridBytesPerPlace = 6;
 
-    struct Estimate {
-        SharedExponentRgb irradiance;
-        std::uint8_t obstructed; ///< bit i: something may stand on the region of radius / 2^i
-        float radius;
+    class Estimate {
+      public:
+        Estimate() = default;
+        /// `obstructed`, bit i: something may stand on the region of radius / 2^i.
+        Estimate(const Rgb& e, float radius, std::uint8_t obstructed)
+            : irradiance_(e), obstructed_(obstructed),
+              radius_(static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(radius) >> 16)) {}
+
+        Rgb irradiance() const { return irradiance_.decode(); }
+        unsigned obstructed() const { return obstructed_; }
+        /// At most the one given, and at least 127/128 of it [m].
+        float radius() const { return std::bit_cast<float>(std::uint32_t{radius_} << 16); }
+
+      private:
+        SharedExponentRgb irradiance_;
+        std::uint8_t obstructed_ = 0;
+        std::uint16_t radius_ = 0; ///< the upper half of a float
     };
     /// The estimate at `place`, or another one where something hides that from the region's middle.
     Answer answer(std::uint32_t place, const SurfaceRegion& region) const;

@@ -9,9 +9,8 @@
 namespace keyhole {
 namespace {
 
-// What is had for the memory of one cell, 8 bytes, by parts of it: 3 bytes for entries of triangles, which take 8; 1
-// for grids; 1.5 for cells, of 8; 2.5 for parts of these, of 4.
-constexpr double kTriangles = 0.25, kGrids = 1 / 96.0, kCells = 0.25, kParts = 0.75;
+// Shares of the memory: entries of triangles, grids and cells have so much at most, and parts of cells the rest.
+constexpr double kEntries = 0.25, kGrids = 0.125, kCells = 0.1875;
 
 constexpr double kLeastRows = 2, kMostRows = 2048;
 constexpr float kMostParts = 64;
@@ -60,10 +59,12 @@ Vec3 PlaceGrid::Grid::middle(std::uint32_t column, std::uint32_t row, std::uint3
 }
 
 PlaceGrid::PlaceGrid(const std::vector<Shape>& shapes, std::size_t most, const Find& find) : entries_(shapes.size()) {
-    const auto share = [most](double part) { return static_cast<std::size_t>(part * static_cast<double>(most)); };
-    std::vector<Triangle> large = index(shapes, share(kTriangles), find);
-    large.resize(std::min(large.size(), share(kGrids)));
-    make_grids(shapes, large, share(kCells), find);
+    const auto number = [most](double share, std::size_t size) {
+        return static_cast<std::size_t>(share * static_cast<double>(most)) / size;
+    };
+    std::vector<Triangle> large = index(shapes, number(kEntries, 2 * sizeof(std::uint32_t)), find);
+    large.resize(std::min(large.size(), number(kGrids, sizeof(Grid))));
+    make_grids(shapes, large, number(kCells, sizeof(Cell)), find);
     const auto each_side = [&](auto&& body) {
         parallel_for(2 * static_cast<std::int64_t>(grids_.size()), [&](std::int64_t i) {
             const Grid& grid = grids_[static_cast<std::size_t>(i / 2)];
@@ -72,7 +73,7 @@ PlaceGrid::PlaceGrid(const std::vector<Shape>& shapes, std::size_t most, const F
         });
     };
     each_side([&](const Grid& grid, std::size_t side) { fill(grid, side, find); });
-    divide(share(kParts));
+    divide((most - std::min(most, bytes())) / sizeof(std::uint32_t));
     each_side([&](const Grid& grid, std::size_t side) { fill_parts(grid, side, find); });
 }
 

@@ -27,15 +27,13 @@ class PlaceGrid {
     };
     /// What a search finds on the side of unit `normal`; thread-safe.
     using Find = std::function<Found(const Vec3& middle, const Vec3& normal)>;
-    /// Takes the memory of `most` cells at most.
+    /// Takes `most` bytes at most.
     PlaceGrid(const std::vector<Shape>& shapes, std::size_t most, const Find& find);
 
     /// The place for a point of a surface, on the side of `normal`, kNothing or kSearch.
     std::uint32_t at(const SurfacePoint& point, const Vec3& normal) const;
 
     std::size_t bytes() const;
-    /// For one of the `most` cells, at most [bytes]: itself, and its part of what leads to it.
-    static constexpr std::size_t bytes_per_cell() { return 8; }
 
   private:
     static constexpr std::uint32_t kNone = ~0u;
