@@ -13,12 +13,12 @@ from common import render
 # Settings meant to use about so many CPU seconds; what they do use is printed. The Box lives by its photons (caustics
 # seen in mirrors), the others by the rays of their irradiance records. filter=box is what the references have.
 COMMON = "method=ipm filter=box"
-BUDGETS = {"box": {5: "spp=3 light_samples=8 light_paths=500k photons=200k cache_rays=600",
-                   15: "spp=8 light_paths=2M photons=400k cache_rays=1200",
-                   45: "spp=24 light_paths=7M photons=1M cache_rays=3000"},
+BUDGETS = {"box": {5: "spp=3 light_samples=8 light_paths=450k photons=200k cache_rays=500",
+                   15: "spp=8 light_paths=2400k photons=500k cache_rays=1200",
+                   45: "spp=24 light_paths=8M photons=1M cache_rays=3000"},
            "rooms": {5: "spp=3 light_samples=8 light_paths=450k photons=150k cache_rays=2000",
-                     15: "spp=6 light_samples=16 light_paths=1800k photons=600k cache_rays=5500",
-                     45: "spp=12 light_samples=24 light_paths=5M photons=1500k cache_rays=14000"},
+                     15: "spp=6 light_samples=16 light_paths=2100k photons=700k cache_rays=5500",
+                     45: "spp=12 light_samples=24 light_paths=8M photons=2500k cache_rays=16000"},
            "lantern": {5: "spp=2 light_samples=16 light_paths=400k photons=100k cache_rays=3200",
                        15: "spp=6 light_samples=24 light_paths=1200k photons=300k cache_rays=8500",
                        45: "spp=10 light_samples=32 light_paths=3M photons=600k cache_rays=25000"}}
