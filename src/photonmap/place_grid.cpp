@@ -52,8 +52,9 @@ float PlaceGrid::Grid::size() const {
 
 Vec3 PlaceGrid::Grid::middle(std::uint32_t column, std::uint32_t row, std::uint32_t parts, std::uint32_t part) const {
     const float width = 1 / static_cast<float>(stretch * rows * parts), height = 1 / static_cast<float>(rows * parts);
-    const float x = static_cast<float>(column * parts + part % parts) * width;
-    const float y = static_cast<float>(row * parts + part / parts) * height;
+    const std::uint32_t right = part % parts, up = part / parts;
+    const float x = static_cast<float>(column * parts + right) * width;
+    const float y = static_cast<float>(row * parts + up) * height;
     const float inside = std::max(0.0f, 1 - x - y); // the third edge cuts the last cells of a row
     return corner + along * (x + std::min(width / 2, inside / 3)) + across * (y + std::min(height / 2, inside / 3));
 }
@@ -99,7 +100,7 @@ std::vector<PlaceGrid::Triangle> PlaceGrid::index(const std::vector<Shape>& shap
                 place_for_all(mesh(s), static_cast<std::uint32_t>(i / 2), i % 2 == 1, find);
         });
         for (std::uint32_t t = 0; t < triangles; ++t) {
-            const bool whole = entries[2 * t] != kSearch && entries[2 * t + 1] != kSearch;
+            const bool whole = entries[entry_of(t, 0)] != kSearch && entries[entry_of(t, 1)] != kSearch;
             if (const double own = triangle_area(mesh(s), t); !whole && own > 0) large.push_back({s, t, own});
         }
     }
@@ -113,7 +114,7 @@ void PlaceGrid::make_grids(const std::vector<Shape>& shapes, const std::vector<T
     double area = 0;
     for (const Triangle& t : triangles)
         for (const std::size_t side : {0, 1})
-            if (entries_[t.shape][2 * t.triangle + side] == kSearch &&
+            if (entries_[t.shape][entry_of(t.triangle, side)] == kSearch &&
                 has_places(std::get<TriangleMesh>(shapes[t.shape].geometry), t.triangle, side == 1, find)) {
                 sides.push_back({t.shape, t.triangle, side, t.area});
                 area += t.area;
@@ -129,7 +130,8 @@ void PlaceGrid::make_grids(const std::vector<Shape>& shapes, const std::vector<T
         if (before == nullptr || before->shape != side.shape || before->triangle != side.triangle)
             grids_.push_back(grid);
         grids_.back().first[side.side] = static_cast<std::uint32_t>(cells_.size());
-        entries_[side.shape][2 * side.triangle + side.side] = kGrid + static_cast<std::uint32_t>(grids_.size() - 1);
+        entries_[side.shape][entry_of(side.triangle, side.side)] =
+            kGrid + static_cast<std::uint32_t>(grids_.size() - 1);
         cells_.resize(cells_.size() + cells);
         before = &side;
     }
@@ -209,7 +211,7 @@ void PlaceGrid::fill_parts(const Grid& grid, std::size_t side, const Find& find)
 std::uint32_t PlaceGrid::at(const SurfacePoint& point, const Vec3& normal) const {
     if (point.shape >= entries_.size() || entries_[point.shape].empty()) return kSearch;
     const std::size_t side = point.ng.dot(normal) < 0 ? 1 : 0;
-    const std::uint32_t entry = entries_[point.shape][2 * point.primitive + side];
+    const std::uint32_t entry = entries_[point.shape][entry_of(point.primitive, side)];
     if (entry < kGrid || entry >= kSearch) return entry;
     const Grid& grid = grids_[entry - kGrid];
     // Rounding may bring points of an edge to the other side of it.

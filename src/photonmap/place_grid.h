@@ -76,6 +76,7 @@ class PlaceGrid {
     void make_grids(const std::vector<Shape>& shapes, const std::vector<Triangle>& triangles, std::size_t most,
                     const Find& find);
     static Grid make_grid(const TriangleMesh& mesh, std::uint32_t triangle, double cell_area);
+    static std::size_t entry_of(std::uint32_t triangle, std::size_t side) { return 2 * std::size_t{triangle} + side; }
     /// Searches from the middles of one side's cells.
     void fill(const Grid& grid, std::size_t side, const Find& find);
     /// Gives their parts to cells that want some, `most` in all.
@@ -83,7 +84,7 @@ class PlaceGrid {
     /// Searches from the middles of these.
     void fill_parts(const Grid& grid, std::size_t side, const Find& find);
 
-    /// By shape, and 2 * triangle + side: a place, kNothing or kSearch; or kGrid + the index of its grid.
+    /// By shape and entry_of() triangle and side: a place, kNothing or kSearch; or kGrid + the index of its grid.
     std::vector<std::vector<std::uint32_t>> entries_;
     std::vector<Grid> grids_;
     std::vector<Cell> cells_;

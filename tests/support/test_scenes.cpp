@@ -28,14 +28,14 @@ SceneMaker& SceneMaker::sphere(const Vec3& center, float radius, const MaterialP
     return *this;
 }
 
-SceneMaker& SceneMaker::room(const Vec3& lo, const Vec3& hi, const MaterialPtr& m, const Rgb& radiance) {
-    const Vec3 e = hi - lo, x(e.x, 0, 0), y(0, e.y, 0), z(0, 0, e.z);
-    rectangle(lo, z, x, m, radiance);            // floor, faces up
-    rectangle(lo + y, x, z, m, radiance);        // ceiling
-    rectangle(lo, x, y, m, radiance);            // back, faces +z
-    rectangle(lo + z, y, x, m, radiance);        // front
-    rectangle(lo, y, z, m, radiance);            // left, faces +x
-    return rectangle(lo + x, z, y, m, radiance); // right
+SceneMaker& SceneMaker::room(const Vec3& lower, const Vec3& upper, const MaterialPtr& m, const Rgb& radiance) {
+    const Vec3 e = upper - lower, x(e.x, 0, 0), y(0, e.y, 0), z(0, 0, e.z);
+    rectangle(lower, z, x, m, radiance);            // floor, faces up
+    rectangle(lower + y, x, z, m, radiance);        // ceiling
+    rectangle(lower, x, y, m, radiance);            // back, faces +z
+    rectangle(lower + z, y, x, m, radiance);        // front
+    rectangle(lower, y, z, m, radiance);            // left, faces +x
+    return rectangle(lower + x, z, y, m, radiance); // right
 }
 
 SceneMaker& SceneMaker::media(std::shared_ptr<const Medium> inside, std::shared_ptr<const Medium> outside) {

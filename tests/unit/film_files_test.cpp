@@ -105,6 +105,7 @@ TEST(Exr, ThreadsMayWriteAtTheSameTime) {
     const ScratchDirectory scratch;
     const std::string content(100'000, 'x');
     std::vector<std::thread> threads;
+    threads.reserve(4);
     for (int t = 0; t < 4; ++t)
         threads.emplace_back([&, t] {
             for (int i = 0; i < 8; ++i)

@@ -92,7 +92,8 @@ TEST(Ply, ImpossibleCountsAreErrors) {
     const std::string xyz = "property float x\nproperty float y\nproperty float z\n";
     const std::string ascii = "ply\nformat ascii 1.0\n";
     for (const std::string& text :
-         {ascii + "element vertex 4000000000\n" + xyz + "end_header\n", ascii + "element vertex -1\n" + xyz,
+         {(ascii + "element vertex 4000000000\n").append(xyz).append("end_header\n"),
+          (ascii + "element vertex -1\n").append(xyz),
           ascii + "element face 1\nproperty list uchar int vertex_indices\nend_header\n4000000000 1 2",
           ascii + "element face 1\nproperty list char int vertex_indices\nend_header\n-3 1 2 3",
           ascii + "element face 9\nend_header\n0 0 0 0 0 0 0", "ply\nformat ascii 1.0\nproperty float x\n" + xyz,

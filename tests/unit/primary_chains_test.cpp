@@ -48,16 +48,16 @@ TEST(PrimaryChains, ChangeTechniquesOnlyWhereTheWayBackIsThere) {
                  {"spot", test::spot_scene()},
                  {"distant", test::distant_light_scene()},
                  {"sky", test::sky_box()}};
-    for (const auto& [light, scene] : cases) {
-        const EmitterInverse inverses(*scene);
+    for (const auto& c : cases) {
+        const EmitterInverse inverses(*c.scene);
         PrimaryStart start =
-            PrimaryStart::by_length({scene.get(), 8}, &inverses, {.samples = 20'000, .seed = 1}, RunContext{});
+            PrimaryStart::by_length({c.scene.get(), 8}, &inverses, {.samples = 20'000, .seed = 1}, RunContext{});
         with_threads(1, [&] {
             PrimaryChains chains(start.choose_seeds(30, 0), 1, false);
             chains.advance({Failures::reject, 0.3}, 2000, {}, [](const Splat&, double) {});
             const ChangeCounts counts = chains.changes();
-            EXPECT_GE(counts.accepted, std::string_view(light) == "area" ? 100u : 0u) << light;
-            EXPECT_LE(counts.drifted * 200, counts.accepted) << light;
+            EXPECT_GE(counts.accepted, std::string_view(c.light) == "area" ? 100u : 0u) << c.light;
+            EXPECT_LE(counts.drifted * 200, counts.accepted) << c.light;
         });
     }
 }

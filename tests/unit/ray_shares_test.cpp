@@ -12,8 +12,8 @@ namespace {
 
 TEST(RayShares, SpendWhatThereIsInProportion) {
     Rng rng(1, StreamPurpose::test, 0);
-    std::vector<double> worths;
-    for (int i = 0; i < 1000; ++i) worths.push_back(std::exp(4 * rng.next()));
+    std::vector<double> worths(1000);
+    for (double& worth : worths) worth = std::exp(4 * rng.next());
     const std::vector<int> rays = share_rays(worths, 20, 180);
     ASSERT_EQ(rays.size(), worths.size());
     EXPECT_NEAR(std::accumulate(rays.begin(), rays.end(), 0.0), 200.0 * 1000, 500) << "a half for each, by rounding";

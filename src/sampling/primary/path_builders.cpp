@@ -33,7 +33,7 @@ bool is_whole(const TracedSubPath& walk, int n) {
 /// Traces s vertices from the light and t from the eye. False, and at least one of the two not to be used, if they make
 /// no path. The shorter one comes first: where it fails, less was in vain.
 bool trace_subpaths(const Scene& scene, const Vec2& image, int s, int t, PrimarySources sources, SubPathPair& room) {
-    auto& [eye, light] = room;
+    TracedSubPath &eye = room.eye, &light = room.light;
     const auto trace_light = [&] {
         trace_light_subpath(scene, s, sources.light, nullptr, light);
         return is_whole(light, s);
