@@ -32,7 +32,7 @@ Settings with_effort(const Settings& settings, double effort, std::int64_t pixel
     };
     // Small pictures get more samples a pixel, large ones fewer, so that photons and pixels share the time alike.
     const double spp = 12 * std::sqrt(effort * kPixels / static_cast<double>(pixels));
-    const double photons = 80e3 * std::pow(effort, 0.6);
+    const double photons = 100e3 * std::pow(effort, 0.7);
     const double passes = given.contains("passes") || !keeps_photons(s.method)
                               ? 1
                               : std::min(static_cast<double>(passes_for(static_cast<std::int64_t>(photons), s)),
@@ -53,7 +53,7 @@ Settings with_effort(const Settings& settings, double effort, std::int64_t pixel
     // Where there is time for few rays, they are better spent on few records than on poor ones.
     if (!given.contains("cache_error"))
         s.cache_error = Settings().cache_error * std::clamp(std::pow(effort, -0.3), 1.0, 2.0);
-    set("cache_rays", &Settings::cache_rays, 1000 * std::pow(effort, 0.7) / std::sqrt(passes), 64, 1 << 20);
+    set("cache_rays", &Settings::cache_rays, 1500 * std::pow(effort, 0.7) / std::sqrt(passes), 64, 1 << 20);
     return s;
 }
 
