@@ -116,25 +116,36 @@ void IrradianceCache::insert(const IrradianceRecord& record) {
     index(static_cast<std::uint32_t>(records_.size() - 1));
 }
 
-std::vector<double> IrradianceCache::relative_noise() const {
-    struct Sums {
-        double variance = 0, light = 0, light2 = 0, count = 0;
+struct IrradianceCache::Sums {
+    double variance = 0, light = 0, light2 = 0, count = 0;
 
-        void add(const Stored& r) {
-            const double y = luminance_of(r.irradiance);
-            variance += r.variance;
-            light += y;
-            light2 += y * y;
-            ++count;
-        }
-    } all;
+    void add(const Stored& r) {
+        const double y = luminance_of(r.irradiance);
+        variance += r.variance;
+        light += y;
+        light2 += y * y;
+        ++count;
+    }
+    /// Standard error over the light, as a whole, which is taken to be `dark` in each at least.
+    double noise(double dark) const {
+        const double least2 = light2 + count * dark * dark;
+        return least2 > 0 ? std::sqrt(variance / least2) : 0.0;
+    }
+};
+
+IrradianceCache::Sums IrradianceCache::sum_of_all() const {
+    Sums all;
     for (const Stored& r : records_) all.add(r);
+    return all;
+}
+
+double IrradianceCache::noise() const { return sum_of_all().noise(0); }
+
+std::vector<double> IrradianceCache::relative_noise() const {
+    const Sums all = sum_of_all();
     const double dark = all.count > 0 ? kDark * all.light / all.count : 0;
-    const auto noise = [dark](const Sums& s) {
-        const double least2 = s.light2 + s.count * dark * dark;
-        return least2 > 0 ? std::sqrt(s.variance / least2) : 0.0;
-    };
     std::vector<double> found;
+    found.reserve(records_.size());
     for (const Stored& r : records_) {
         Sums around;
         visit_near(r.position, [&](std::uint32_t i) {
@@ -142,7 +153,7 @@ std::vector<double> IrradianceCache::relative_noise() const {
             const bool near = (other.position - r.position).length2() < other.reach * other.reach;
             if (&other != &r && near && (other.normal - r.normal).length2() < 2 * kNormalReach) around.add(other);
         });
-        found.push_back(noise(around.count > 0 ? around : all));
+        found.push_back((around.count > 0 ? around : all).noise(dark));
     }
     return found;
 }

@@ -37,6 +37,9 @@ class IrradianceCache {
     /// Standard error of the light around each record, relative to that light: told by the others that have a say
     /// there. So it doesn't depend on the record's own light, which may be refined by it and stay right on average.
     std::vector<double> relative_noise() const;
+    /// The same of all records together: a few percent, unless what lights them is so small that few of their rays meet
+    /// it.
+    double noise() const;
 
     /// Takes in what more rays found at record `i`: its light becomes a mean of both, in which `more` has the weight
     /// `share` in [0,1]. How far it is used stays as it is.
@@ -72,6 +75,8 @@ class IrradianceCache {
     };
     using Cell = std::vector<std::uint32_t>;
 
+    struct Sums;
+    Sums sum_of_all() const;
     void update_radius(Stored& r) const;
     void clamp_with_neighbours(Stored& r);
     void end_where_wrong(Stored& r);

@@ -59,14 +59,13 @@ PassGather::PassGather(const SamplerContext& c, const RenderPlan& plan, std::int
     if (plan.cache)
         cache_ = fill_cache(*rays_, cache_options(s, static_cast<double>(radii.shrink), seed),
                             context.with_reserve(kForSamples));
-    if (cache_) stats.values["cached irradiances"] = static_cast<double>(cache_->size());
     gather_.emplace(*rays_, cache_ ? &*cache_ : nullptr,
                     GatherSamples{.light = static_cast<int>(s.light_samples),
                                   .rays = plan.gather ? static_cast<int>(s.gather_rays) : 1});
 }
 
 void PassGather::report(RenderStats& stats) const {
-    if (cache_) report_starving(gather_->starving(), stats);
+    if (cache_) report_cache(*cache_, gather_->starving(), stats);
 }
 
 } // namespace keyhole

@@ -176,7 +176,7 @@ RenderResult render_photons(const Scene& scene, const Settings& settings, const 
     if (!settings.save_map.empty() && !passes.has_saved_photons())
         stats.warnings.emplace_back("no photons were saved: those of the first pass were not made here");
     sampler->finish(stats);
-    warn_of_photons(stats);
+    warn_of_photons(stats, work.passes());
     report_eye_samples(passes.luminance(), scene, stats);
     result.picture = work.finish(stats);
     return result;

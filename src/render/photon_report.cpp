@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <numeric>
 
@@ -14,6 +15,7 @@ namespace {
 constexpr const char* kBrightest = "photon power, share of the brightest 0.1 %";
 constexpr const char* kFound = "photons per lookup";
 constexpr const char* kEffective = "photons per lookup, effective";
+constexpr const char* kNoise = "cached irradiances, noise of one pass";
 constexpr const char* kStarving = "cached irradiances, share of points without";
 constexpr const char* kShare = "photons per lookup, share of those asked for";
 
@@ -22,6 +24,7 @@ constexpr double kMostOfPower = 0.25;
 constexpr double kLeastEffective = 0.5; ///< of those found; where that is known
 constexpr double kLeastFound = 0.25;
 constexpr double kMostStarving = 0.1;
+constexpr double kMostNoise = 0.3; ///< of irradiance records, where passes don't make it less
 
 double share_of_brightest(const std::vector<Photon>& photons) {
     if (photons.empty()) return 0;
@@ -49,9 +52,13 @@ void report_lookups(const IrradianceMap& map, double asked, RenderStats& stats) 
     stats.values[kShare] = map.mean_photons() / asked;
 }
 
-void report_starving(double share, RenderStats& stats) { stats.values[kStarving] = share; }
+void report_cache(const IrradianceCache& cache, double starving, RenderStats& stats) {
+    stats.values["cached irradiances"] = static_cast<double>(cache.size());
+    stats.values[kNoise] = cache.noise();
+    stats.values[kStarving] = starving;
+}
 
-void warn_of_photons(RenderStats& stats) {
+void warn_of_photons(RenderStats& stats, std::int64_t passes) {
     const auto value = [&](const char* name, double otherwise) {
         const auto v = stats.values.find(name);
         return v == stats.values.end() ? otherwise : v->second;
@@ -70,6 +77,13 @@ void warn_of_photons(RenderStats& stats) {
         stats.warnings.push_back(fmt::format("the photon map is too sparse where it is asked: {:.1f} photons within "
                                              "reach of a lookup, {:.0f} % of those asked for. Try more photons",
                                              value(kFound, 0), 100 * value(kShare, 1)));
+    if (const double noise = value(kNoise, 0) / std::sqrt(std::max(1.0, static_cast<double>(passes)));
+        noise > kMostNoise)
+        stats.warnings.push_back(
+            fmt::format("so few gather rays find light that it is known to {:.0f} % only where the "
+                        "irradiance cache estimates it (standard error): expect blotches. Try more "
+                        "cache_rays, user paths, or another method",
+                        100 * noise));
     if (value(kStarving, 0) > kMostStarving)
         stats.warnings.push_back(fmt::format("the irradiance cache has no record for {:.0f} % of what is seen: a few "
                                              "gather rays of each sample have to do, "

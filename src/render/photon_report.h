@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/render_stats.h"
+#include "gather/irradiance_cache.h"
 #include "photonmap/irradiance_map.h"
 #include "photonmap/photons.h"
 
@@ -15,11 +16,12 @@ void report_photons(const Photons& photons, RenderStats& stats);
 /// share of `asked` was found.
 void report_lookups(const IrradianceMap& map, double asked, RenderStats& stats);
 
-/// Puts into `stats` for what share of the visible points the irradiance cache had no record.
-void report_starving(double share, RenderStats& stats);
+/// Puts into `stats` how many records there are, how noisy their light is, and for what share of the visible points
+/// there was none.
+void report_cache(const IrradianceCache& cache, double starving, RenderStats& stats);
 
-/// Warns by what the last pass left in `stats`: few photons with most of the power, maps too sparse where they are
-/// asked, an irradiance cache without answers, no photons at all.
-void warn_of_photons(RenderStats& stats);
+/// Warns by what the last of `passes` left in `stats`: few photons with most of the power, maps too sparse where they
+/// are asked, an irradiance cache that is noisy or without answers, no photons at all.
+void warn_of_photons(RenderStats& stats, std::int64_t passes);
 
 } // namespace keyhole

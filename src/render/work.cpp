@@ -134,10 +134,9 @@ Picture Work::finish(RenderStats& stats) {
     old_warnings_.clear();
     // With a time or an error to go for, there is no number of passes that would be all of them.
     const bool open = settings_.passes == 0 || settings_.target_error > 0;
-    const std::int64_t passes = done_.size() / per_pass_;
-    stats.complete = open ? passes > 0 : done_.missing(0, begin_) >= end_;
-    stats.values["passes"] = static_cast<double>(passes);
-    if (passes > 1 && settings_.passes != 1 && knows_error_) stats.values["relative error"] = error_.relative();
+    stats.complete = open ? passes() > 0 : done_.missing(0, begin_) >= end_;
+    stats.values["passes"] = static_cast<double>(passes());
+    if (passes() > 1 && settings_.passes != 1 && knows_error_) stats.values["relative error"] = error_.relative();
     if (share_.save && done_.size() > 0) share_.save(snapshot(stats)); // nothing is not worth an older checkpoint
     if (pending_ && !share_.keep_sums) total_.merge(*pending_);
     if (total_.film) total_.film->report(stats);

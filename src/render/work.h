@@ -45,6 +45,8 @@ class Work {
     std::int64_t left() const;
     /// Whether no unit is whole yet: one that is cut short is better than nothing then.
     bool is_first() const { return done_.empty(); }
+    /// Whole ones that are done.
+    std::int64_t passes() const { return done_.size() / per_pass_; }
 
     /// The picture. Puts "passes", "relative error", "empty pixels", dropped samples and whether all of the share was
     /// done into `stats`, and the warnings of the part that was done before.

@@ -144,6 +144,29 @@ TEST(Gallery, ACacheThatKnowsLittleOfWhatIsSeenSaysSo) {
     EXPECT_FALSE(warned(0));
 }
 
+TEST(Gallery, GatherRaysThatHardlyFindLightSaySo) {
+    // Two rooms, a lamp in one and the eye in the other, and a door between them: wide, or a crack.
+    const auto warned = [](float door) {
+        test::SceneMaker m;
+        const auto white = make_diffuse(Rgb(0.7));
+        m.room({-2, 0, -1}, {2, 2, 1}, white);
+        m.rectangle({0, 0, -1}, {0, 2, 0}, {0, 0, 1 - door / 2}, white);
+        m.rectangle({0, 0, door / 2}, {0, 2, 0}, {0, 0, 1 - door / 2}, white);
+        m.rectangle({-1.5f, 1.95f, 0.4f}, {0.4f, 0, 0}, {0, 0, 0.4f}, make_diffuse(Rgb(0.0)), Rgb(20.0));
+        m.camera({0.3f, 1, -0.8f}, {2, 1, 0.3f}, 60).window(24, 16);
+        const auto scene = m.build();
+        Settings settings = small_settings();
+        settings.reach = "off";
+        settings.light_paths = 100'000;
+        const RenderStats stats = render(*scene, settings, {}).stats;
+        return std::any_of(stats.warnings.begin(), stats.warnings.end(), [](const std::string& w) {
+            return w.find("so few gather rays find light") != std::string::npos;
+        });
+    };
+    EXPECT_TRUE(warned(0.002f));
+    EXPECT_FALSE(warned(0.8f));
+}
+
 /// A point light over a floor and a mirror beside it, seen from above: what it throws on the floor has sharp edges, and
 /// is known in closed form from the light's mirror image.
 class CausticEdges : public testing::TestWithParam<const char*> {

@@ -222,6 +222,17 @@ TEST(IrradianceCache, KnowsHowNoisyItsSurroundingsAre) {
     EXPECT_LT(noise[4], 2) << "what is dark needs no rays";
 }
 
+TEST(IrradianceCache, KnowsItsNoiseAsAWhole) {
+    IrradianceCache cache(0.2f);
+    EXPECT_EQ(cache.noise(), 0);
+    for (int i = 0; i < 4; ++i) {
+        IrradianceRecord r = record({static_cast<float>(i), 0, 0}, i, 1);
+        r.light.variance = i == 3 ? 12 : 0.5;
+        cache.insert(r);
+    }
+    EXPECT_NEAR(cache.noise(), std::sqrt((3 * 0.5 + 12) / (1 + 4 + 9)), 1e-6);
+}
+
 TEST(IrradianceCache, DoesNotTakeNoiseForLight) {
     Rng rng(2, StreamPurpose::test, 0);
     const auto finest = [&](double told) {
