@@ -24,7 +24,7 @@ constexpr double kMostOfPower = 0.25;
 constexpr double kLeastEffective = 0.5; ///< of those found; where that is known
 constexpr double kLeastFound = 0.25;
 constexpr double kMostStarving = 0.1;
-constexpr double kMostNoise = 0.3; ///< of irradiance records, where passes don't make it less
+constexpr double kMostNoise = 0.2; ///< of irradiance records, where passes don't make it less
 
 double share_of_brightest(const std::vector<Photon>& photons) {
     if (photons.empty()) return 0;
