@@ -20,7 +20,7 @@ TEST_F(Program, RenderWritesPicturesWithTheirHistory) {
     const Picture p = read_exr(scratch.path("scene.exr"));
     EXPECT_EQ(p.width, 20);
     EXPECT_EQ(p.height, 10);
-    EXPECT_EQ(p.layers.size(), 8u);
+    EXPECT_EQ(p.layers.size(), 7u);
     EXPECT_EQ(p.metadata.at("command"), "keyhole render scene.yaml -D seed=5 --resolution 20x10 --stats s.json");
     EXPECT_EQ(p.metadata.at("seed"), "5");
     EXPECT_EQ(p.metadata.at("scene"), "scene.yaml");
