@@ -113,6 +113,11 @@ echo "rank 2 cut off: both sides end"
 
 # Again, with mpirun told to look after its hosts.
 switch link set port3 up
+# It takes a moment until packets come through; who asks before is told that there is no way.
+answers() {
+    { ip netns exec "${id}n3" timeout 1 bash -c 'exec 3<>/dev/tcp/10.97.0.254/9' 2>&1 || true; } | grep -q refused
+}
+wait_for 30 answers || fail "host 3 doesn't come back"
 export OMPI_MCA_oob_tcp_keepalive_time=2 OMPI_MCA_oob_tcp_keepalive_intvl=1 OMPI_MCA_oob_tcp_keepalive_probes=2
 rm -f err.*
 touch start
