@@ -42,7 +42,7 @@ class CacheFill {
 
     void fill_level(int step, std::uint64_t level, const RunContext& context) {
         const ImageWindow& window = rays_.scene().camera().window();
-        const auto pixels = static_cast<std::uint64_t>(window.width) * static_cast<std::uint64_t>(window.height);
+        const std::uint64_t pixels = this->pixels();
         for (const int pixel : level_pixels(window, step)) {
             if (context.stopped()) return;
             Rng rng(options_.seed, StreamPurpose::cache, (2 * level + 1) * pixels + static_cast<std::uint64_t>(pixel));
@@ -63,8 +63,7 @@ class CacheFill {
         std::vector<double> worths = cache_.relative_noise();
         for (std::size_t i = 0; i < worths.size(); ++i) worths[i] *= cache_.radius(i) / placed_[i].pixel;
         const std::vector<int> rays = share_rays(worths, first_, options_.rays - first_);
-        const ImageWindow& window = rays_.scene().camera().window();
-        const auto streams = 2 * kSteps.size() * static_cast<std::size_t>(window.width * window.height);
+        const std::uint64_t streams = 2 * kSteps.size() * pixels(); // that fill_level() uses
         for (std::size_t begin = 0; begin < placed_.size() && !context.stopped(); begin += kBatch) {
             std::vector<HemisphereEstimate> found(std::min(kBatch, placed_.size() - begin));
             const auto more = [&](std::size_t i) { return rays[begin + i] - first_; };
@@ -79,6 +78,10 @@ class CacheFill {
     }
 
   private:
+    std::uint64_t pixels() const {
+        const ImageWindow& window = rays_.scene().camera().window();
+        return static_cast<std::uint64_t>(window.width) * static_cast<std::uint64_t>(window.height);
+    }
     bool is_covered(const VisiblePoint& c) const {
         return cache_.irradiance(c.vertex.point.p, cache_normal(c.vertex, c.back)).covered >= kCovered;
     }

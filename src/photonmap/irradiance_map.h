@@ -40,8 +40,8 @@ class IrradianceMap {
 
     /// Irradiance on the side of unit `normal`.
     Answer irradiance(const Vec3& position, const Vec3& normal) const;
-    /// The same at a point of the scene. On large triangles it takes a fraction of the time: they are divided into
-    /// cells, and all points of a cell are answered by the place nearest to its middle.
+    /// The same at a point of the scene. On triangles it takes a fraction of the time: all points of a cell are
+    /// answered by the place nearest to its middle (PlaceGrid).
     Answer irradiance(const SurfacePoint& point, const Vec3& normal) const;
 
     /// Where irradiance was estimated.

@@ -65,7 +65,7 @@ PlaceGrid::PlaceGrid(const std::vector<Shape>& shapes, std::size_t most, const F
     };
     std::vector<Triangle> large = index(shapes, number(kEntries, 2 * sizeof(std::uint32_t)), find);
     large.resize(std::min(large.size(), number(kGrids, sizeof(Grid))));
-    make_grids(shapes, large, number(kCells, sizeof(Cell)), find);
+    make_grids(shapes, std::move(large), number(kCells, sizeof(Cell)), find);
     const auto each_side = [&](auto&& body) {
         parallel_for(2 * static_cast<std::int64_t>(grids_.size()), [&](std::int64_t i) {
             const Grid& grid = grids_[static_cast<std::size_t>(i / 2)];
@@ -101,39 +101,39 @@ std::vector<PlaceGrid::Triangle> PlaceGrid::index(const std::vector<Shape>& shap
         });
         for (std::uint32_t t = 0; t < triangles; ++t) {
             const bool whole = entries[entry_of(t, 0)] != kSearch && entries[entry_of(t, 1)] != kSearch;
-            if (const double own = triangle_area(mesh(s), t); !whole && own > 0) large.push_back({s, t, own});
+            if (const double own = triangle_area(mesh(s), t); !whole && own > 0) large.push_back({s, t, own, {}});
         }
     }
     std::ranges::stable_sort(large, std::greater(), &Triangle::area);
     return large;
 }
 
-void PlaceGrid::make_grids(const std::vector<Shape>& shapes, const std::vector<Triangle>& triangles, std::size_t most,
+void PlaceGrid::make_grids(const std::vector<Shape>& shapes, std::vector<Triangle> triangles, std::size_t most,
                            const Find& find) {
-    std::vector<Side> sides;
+    const auto mesh = [&](const Triangle& t) -> const TriangleMesh& {
+        return std::get<TriangleMesh>(shapes[t.shape].geometry);
+    };
     double area = 0;
-    for (const Triangle& t : triangles)
-        for (const std::size_t side : {0, 1})
-            if (entries_[t.shape][entry_of(t.triangle, side)] == kSearch &&
-                has_places(std::get<TriangleMesh>(shapes[t.shape].geometry), t.triangle, side == 1, find)) {
-                sides.push_back({t.shape, t.triangle, side, t.area});
-                area += t.area;
-            }
-    const Side* before = nullptr;
-    for (const Side& side : sides) {
+    for (Triangle& t : triangles)
+        for (const std::size_t side : {0, 1}) {
+            if (entries_[t.shape][entry_of(t.triangle, side)] != kSearch ||
+                !has_places(mesh(t), t.triangle, side == 1, find))
+                continue;
+            t.sides.push_back(side);
+            area += t.area;
+        }
+    for (const Triangle& t : triangles) {
+        if (t.sides.empty()) continue;
         // Half of the cells is for small triangles, which have more than their share.
-        Grid grid = make_grid(std::get<TriangleMesh>(shapes[side.shape].geometry), side.triangle,
-                              2 * area / static_cast<double>(most));
+        Grid grid = make_grid(mesh(t), t.triangle, 2 * area / static_cast<double>(most));
         const std::uint32_t cells = grid.before(grid.rows);
-        if (cells_.size() + cells > most) break;
-        // The two sides of a triangle follow each other.
-        if (before == nullptr || before->shape != side.shape || before->triangle != side.triangle)
-            grids_.push_back(grid);
-        grids_.back().first[side.side] = static_cast<std::uint32_t>(cells_.size());
-        entries_[side.shape][entry_of(side.triangle, side.side)] =
-            kGrid + static_cast<std::uint32_t>(grids_.size() - 1);
-        cells_.resize(cells_.size() + cells);
-        before = &side;
+        if (cells_.size() + t.sides.size() * cells > most) break;
+        for (const std::size_t side : t.sides) {
+            grid.first[side] = static_cast<std::uint32_t>(cells_.size());
+            entries_[t.shape][entry_of(t.triangle, side)] = kGrid + static_cast<std::uint32_t>(grids_.size());
+            cells_.resize(cells_.size() + cells);
+        }
+        grids_.push_back(grid);
     }
     grids_.shrink_to_fit();
     cells_.shrink_to_fit();

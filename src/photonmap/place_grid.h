@@ -1,6 +1,7 @@
 // Which place of an irradiance map a point of a triangle belongs to, without a search.
 #pragma once
 
+#include "core/inline_vector.h"
 #include "scene/shape.h"
 #include "scene/surface_point.h"
 
@@ -62,18 +63,14 @@ class PlaceGrid {
     struct Triangle {
         std::uint32_t shape, triangle;
         double area;
-    };
-    struct Side {
-        std::uint32_t shape, triangle;
-        std::size_t side;
-        double area;
+        InlineVector<std::size_t, 2> sides; ///< that are to have cells
     };
 
     /// Makes entries for the meshes of the largest triangles, as many as there is memory for, and fills in those of
     /// triangles for which one place will do. Returns the others, largest first.
     std::vector<Triangle> index(const std::vector<Shape>& shapes, std::size_t most, const Find& find);
     /// Gives grids to the largest of these, as many as there is memory for.
-    void make_grids(const std::vector<Shape>& shapes, const std::vector<Triangle>& triangles, std::size_t most,
+    void make_grids(const std::vector<Shape>& shapes, std::vector<Triangle> triangles, std::size_t most,
                     const Find& find);
     static Grid make_grid(const TriangleMesh& mesh, std::uint32_t triangle, double cell_area);
     static std::size_t entry_of(std::uint32_t triangle, std::size_t side) { return 2 * std::size_t{triangle} + side; }

@@ -20,6 +20,11 @@ Settings small_settings() {
     return s;
 }
 
+bool warns(Scene& scene, const Settings& settings, const std::string& of) {
+    const std::vector<std::string> warnings = render(scene, settings, {}).stats.warnings;
+    return std::ranges::any_of(warnings, [&](const std::string& w) { return w.find(of) != std::string::npos; });
+}
+
 /// Luminance of one layer.
 struct Grey {
     int width, height;
@@ -135,10 +140,7 @@ TEST(Gallery, ACacheThatKnowsLittleOfWhatIsSeenSaysSo) {
         }
         m.camera({0, 1, 2}, {0, 1, -1}, 50).window(24, 24);
         const auto scene = m.build();
-        const RenderStats stats = render(*scene, small_settings(), {}).stats;
-        return std::any_of(stats.warnings.begin(), stats.warnings.end(), [](const std::string& w) {
-            return w.find("irradiance cache has no record") != std::string::npos;
-        });
+        return warns(*scene, small_settings(), "irradiance cache has no record");
     };
     EXPECT_TRUE(warned(8000));
     EXPECT_FALSE(warned(0));
@@ -158,10 +160,7 @@ TEST(Gallery, GatherRaysThatHardlyFindLightSaySo) {
         Settings settings = small_settings();
         settings.reach = "off";
         settings.light_paths = 100'000;
-        const RenderStats stats = render(*scene, settings, {}).stats;
-        return std::any_of(stats.warnings.begin(), stats.warnings.end(), [](const std::string& w) {
-            return w.find("so few gather rays find light") != std::string::npos;
-        });
+        return warns(*scene, settings, "so few gather rays find light");
     };
     EXPECT_TRUE(warned(0.002f));
     EXPECT_FALSE(warned(0.8f));
