@@ -7,7 +7,7 @@ usage: bench/sweep.py [--keyhole build/keyhole] [--scenes box,rooms,lantern] [--
 
 The settings that were chosen are read from a render; errors come from keyhole chart, which goes on where it was interrupted. Prints for
 each scene and time the error of the choice, the best of the sweep and the ratio of the two. The best of many noisy figures is a little
-too good, so the ratio errs against the choice.
+too good, so the ratio errs against the choice. References are shared by the times of a scene.
 """
 import argparse
 import csv
@@ -56,11 +56,12 @@ def main():
         scene = str(ROOT / "scenes" / f"{name}.yaml")
         for seconds in args.times.split(","):
             methods = ["auto", *variants(chosen(args, scene, seconds))]
-            folder = pathlib.Path(args.out) / f"{name}-{seconds}"
+            folder = pathlib.Path(args.out) / name
             subprocess.run([args.keyhole, "chart", scene, "--methods", ",".join(methods), "--times", seconds, "--repeats", args.repeats,
                             "--resolution", args.resolution, "--reference-time", args.reference_time, "-o", folder], check=True)
             with open(folder / "points.csv", newline="") as file:
-                errors = {r["method"]: float(r["error"]) for r in csv.DictReader(file)}
+                errors = {r["method"]: float(r["error"]) for r in csv.DictReader(file)
+                          if r["method"] in methods and float(r["seconds"]) == float(seconds)}
             best = min(errors, key=errors.get)
             print(f"| {name} | {seconds} | {errors['auto']:.4f} | {errors[best]:.4f} | `{best}` | {errors['auto'] / errors[best]:.2f} |",
                   flush=True)

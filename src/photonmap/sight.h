@@ -12,11 +12,8 @@ namespace keyhole {
 /// Whether the middle of a region and `p`, a place of the same surface, see each other `lift` [m] above it. What is
 /// lower than that doesn't part them.
 inline bool in_sight(const Scene& scene, const SurfaceRegion& region, float lift, const Vec3& p) {
-    SurfacePoint a, b;
-    a.site = b.site = Site::point;
-    a.p = region.position + region.normal * lift;
-    b.p = p + region.normal * lift;
-    return (b.p - a.p).length2() == 0 || scene.visible(a, b);
+    const Vec3 above = region.normal * lift;
+    return p == region.position || scene.visible(region.position + above, p + above);
 }
 
 /// The share of the region of radius `r` of which `holds(place)` says that something holds there, among those of 16
@@ -42,11 +39,7 @@ double share_of_region(const SurfaceRegion& region, float r, const Counts& count
 /// at an edge, there is nothing to be seen, and nothing is hidden.
 inline double share_in_sight(const Scene& scene, const SurfaceRegion& region, float r, float lift) {
     const auto on_surface = [&](const Vec3& p) {
-        SurfacePoint above, below;
-        above.site = below.site = Site::point;
-        above.p = p + region.normal * lift;
-        below.p = p - region.normal * lift;
-        return !scene.visible(above, below);
+        return !scene.visible(p + region.normal * lift, p - region.normal * lift);
     };
     return share_of_region(region, r, on_surface, [&](const Vec3& p) { return in_sight(scene, region, lift, p); });
 }

@@ -22,6 +22,8 @@ constexpr double kLeast = 1.0 / 32;
 
 constexpr float kFinest = 0.01f, kCoarsest = 0.08f; // cells, in parts of the scene's size
 constexpr int kBits = 20;                           // of a cell's coordinate
+constexpr float kLift = 0.05f;                      // of places above their surface, in cells
+constexpr int kWitnesses = 8;                       // of a cell, at most
 
 /// Where a gather ray asks.
 struct Place {
@@ -47,98 +49,162 @@ std::vector<Place> trace_places(const Scene& scene, int max_scatterings, std::in
     return all;
 }
 
-std::uint64_t key(const std::array<std::int64_t, 3>& c, std::uint64_t facet) {
+std::uint64_t key_of(const std::array<std::int64_t, 3>& c, std::uint64_t facet) {
     std::uint64_t key = facet;
     for (const std::int64_t i : c)
         key = key << kBits | static_cast<std::uint64_t>(std::clamp<std::int64_t>(i, 0, (1 << kBits) - 1));
     return key;
 }
 
+/// visit(key) for a cell and those around it that face alike.
+template <class Visit>
+void visit_around(std::uint64_t key, const Visit& visit) {
+    constexpr std::uint64_t mask = (1 << kBits) - 1;
+    const auto x = static_cast<std::int64_t>(key >> 2 * kBits & mask),
+               y = static_cast<std::int64_t>(key >> kBits & mask), z = static_cast<std::int64_t>(key & mask);
+    for (std::int64_t i = x - 1; i <= x + 1; ++i)
+        for (std::int64_t j = y - 1; j <= y + 1; ++j)
+            for (std::int64_t k = z - 1; k <= z + 1; ++k) visit(key_of({i, j, k}, key >> 3 * kBits));
+}
+
 struct Count {
     std::uint64_t cell;
     int rays;
+    std::size_t first = 0; ///< of the rays that end in the cell, if it is one cell that is counted
 };
 
-/// Adds up what is said of the same cell; sorts by cell.
-void merge(std::vector<Count>& counts) {
-    std::sort(counts.begin(), counts.end(), [](const Count& a, const Count& b) { return a.cell < b.cell; });
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < counts.size(); ++i) {
-        if (kept > 0 && counts[kept - 1].cell == counts[i].cell)
-            counts[kept - 1].rays += counts[i].rays;
-        else
-            counts[kept++] = counts[i];
+/// The item of that cell; null if there is none.
+const Count* find(const std::vector<Count>& counts, std::uint64_t cell) {
+    const auto at = std::ranges::lower_bound(counts, cell, {}, &Count::cell);
+    return at != counts.end() && at->cell == cell ? &*at : nullptr;
+}
+
+/// The rays that end in each cell, given the cells of all of them in order.
+std::vector<Count> count_in(const std::vector<std::uint64_t>& cells) {
+    std::vector<Count> counts;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        if (counts.empty() || counts.back().cell != cells[i]) counts.push_back({cells[i], 0, i});
+        ++counts.back().rays;
     }
-    counts.resize(kept);
+    return counts;
 }
 
 /// For each cell, the rays that come to it and to those around it.
 std::vector<Count> count_around(const std::vector<Count>& in_cells) {
-    constexpr std::uint64_t mask = (1 << kBits) - 1;
     std::vector<Count> around;
     around.reserve(27 * in_cells.size());
-    for (const Count& c : in_cells) {
-        const auto x = static_cast<std::int64_t>(c.cell >> 2 * kBits & mask),
-                   y = static_cast<std::int64_t>(c.cell >> kBits & mask), z = static_cast<std::int64_t>(c.cell & mask);
-        for (std::int64_t i = x - 1; i <= x + 1; ++i)
-            for (std::int64_t j = y - 1; j <= y + 1; ++j)
-                for (std::int64_t k = z - 1; k <= z + 1; ++k)
-                    around.push_back({key({i, j, k}, c.cell >> 3 * kBits), c.rays});
+    for (const Count& c : in_cells)
+        visit_around(c.cell, [&](std::uint64_t cell) { around.push_back({cell, c.rays}); });
+    std::ranges::sort(around, {}, &Count::cell);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < around.size(); ++i) {
+        if (kept > 0 && around[kept - 1].cell == around[i].cell)
+            around[kept - 1].rays += around[i].rays;
+        else
+            around[kept++] = around[i];
     }
-    merge(around);
+    around.resize(kept);
     return around;
-}
-
-int find(const std::vector<Count>& counts, std::uint64_t cell) {
-    const auto at = std::lower_bound(counts.begin(), counts.end(), cell,
-                                     [](const Count& c, std::uint64_t wanted) { return c.cell < wanted; });
-    return at != counts.end() && at->cell == cell ? at->rays : 0;
 }
 
 /// Rays around the median ray's end.
 int typical_count(const std::vector<Count>& in_cells, const std::vector<Count>& around) {
-    std::vector<Count> ends;
+    std::vector<std::pair<int, int>> ends; // rays around, rays
     std::int64_t rays = 0;
     for (const Count& c : in_cells) {
-        ends.push_back({static_cast<std::uint64_t>(find(around, c.cell)), c.rays});
+        ends.emplace_back(find(around, c.cell)->rays, c.rays);
         rays += c.rays;
     }
-    std::sort(ends.begin(), ends.end(), [](const Count& a, const Count& b) { return a.cell < b.cell; });
-    for (std::int64_t before = 0; const Count& e : ends)
-        if ((before += e.rays) >= rays / 2) return static_cast<int>(e.cell);
+    std::ranges::sort(ends);
+    std::int64_t before = 0;
+    for (const auto& [near, here] : ends)
+        if ((before += here) >= rays / 2) return near;
     return 0;
+}
+
+/// Up to kWitnesses of the rays that end in a cell and around it, evenly spread over them: their numbers.
+std::vector<std::size_t> choose_witnesses(const std::vector<Count>& in_cells, const Count& around) {
+    const int chosen = std::min(kWitnesses, around.rays);
+    std::vector<std::size_t> witnesses;
+    int before = 0;
+    visit_around(around.cell, [&](std::uint64_t cell) {
+        const Count* c = find(in_cells, cell);
+        if (c == nullptr) return;
+        for (auto next = witnesses.size(); next < static_cast<std::size_t>(chosen); next = witnesses.size()) {
+            const int rank = (2 * static_cast<int>(next) + 1) * around.rays / (2 * chosen);
+            if (rank >= before + c->rays) break;
+            witnesses.push_back(c->first + static_cast<std::size_t>(rank - before));
+        }
+        before += c->rays;
+    });
+    return witnesses;
 }
 
 } // namespace
 
-Reach::Reach(const Scene& scene, int max_scatterings, std::int64_t paths) : origin_(scene.lower()) {
-    const std::vector<Place> places = trace_places(scene, max_scatterings, paths);
+Reach::Reach(const Scene& scene, int max_scatterings, std::int64_t paths) : scene_(&scene), origin_(scene.lower()) {
+    std::vector<Place> places = trace_places(scene, max_scatterings, paths);
     const float extent = (scene.upper() - scene.lower()).length();
+    std::vector<Count> in_cells, around;
+    int typical = 0;
     for (size_ = kFinest * extent; size_ > 0; size_ *= 2) {
-        std::vector<Count> counts;
-        counts.reserve(places.size());
-        for (const Place& place : places) counts.push_back({cell(place.p, place.n), 1});
-        merge(counts);
-        const std::vector<Count> around = count_around(counts);
-        const int typical = typical_count(counts, around);
-        if (typical < kTypical && 2 * size_ <= kCoarsest * extent) continue;
-        for (const Count& c : around)
-            if (c.rays >= kLeast * typical) cells_.push_back(c.cell);
-        break;
+        std::ranges::stable_sort(places, {}, [&](const Place& place) { return key(place.p, place.n); });
+        std::vector<std::uint64_t> keys;
+        keys.reserve(places.size());
+        for (const Place& place : places) keys.push_back(key(place.p, place.n));
+        in_cells = count_in(keys);
+        around = count_around(in_cells);
+        typical = typical_count(in_cells, around);
+        if (typical >= kTypical || 2 * size_ > kCoarsest * extent) break;
+    }
+    const double least = kLeast * typical;
+    for (const Count& c : around)
+        if (c.rays >= least) cells_.push_back({c.cell});
+    for (Cell& cell : cells_) {
+        const Count& c = *find(around, cell.key);
+        const std::vector<std::size_t> witnesses = choose_witnesses(in_cells, c);
+        if (std::ranges::none_of(witnesses, [&](std::size_t i) { return obstructed(places[i].p, places[i].n); })) continue;
+        cell.first = static_cast<std::uint32_t>(witnesses_.size());
+        cell.witnesses = static_cast<std::uint8_t>(witnesses.size());
+        const double each = static_cast<double>(c.rays) / static_cast<double>(witnesses.size());
+        cell.least = static_cast<std::uint8_t>(std::clamp(std::ceil(least / each), 1.0, static_cast<double>(witnesses.size())));
+        for (const std::size_t i : witnesses) witnesses_.push_back(above(places[i].p, places[i].n));
     }
     cells_.shrink_to_fit();
+    witnesses_.shrink_to_fit();
 }
 
-std::uint64_t Reach::cell(const Vec3& p, const Vec3& n) const {
+std::uint64_t Reach::key(const Vec3& p, const Vec3& n) const {
     const Vec3 at = (p - origin_) / size_;
     // One free cell all around, so that no neighbour falls off the edge.
-    return key(
+    return key_of(
         {static_cast<std::int64_t>(at.x) + 1, static_cast<std::int64_t>(at.y) + 1, static_cast<std::int64_t>(at.z) + 1},
         facet_of(n));
 }
 
+/// So far that what is low parts nothing.
+Vec3 Reach::above(const Vec3& p, const Vec3& n) const { return p + n * (kLift * size_); }
+
+/// Whether something stands so near a place of the surface that it may hide others of the same cell.
+bool Reach::obstructed(const Vec3& p, const Vec3& n) const {
+    constexpr float kFar = 3; // cells: the place may be one cell off
+    const Frame frame(n);
+    const Vec3 from = above(p, n);
+    for (const Vec3& w : {frame.s, frame.t})
+        for (const float far : {-kFar, kFar})
+            if (!scene_->visible(from, from + w * (far * size_))) return true;
+    return false;
+}
+
 bool Reach::comes_to(const Vec3& p, const Vec3& n) const {
-    return std::binary_search(cells_.begin(), cells_.end(), cell(p, n));
+    const auto cell = std::ranges::lower_bound(cells_, key(p, n), {}, &Cell::key);
+    if (cell == cells_.end() || cell->key != key(p, n)) return false;
+    if (cell->witnesses == 0) return true;
+    const Vec3 place = above(p, n);
+    int seen = 0;
+    for (int i = 0; i < cell->witnesses && seen < cell->least; ++i)
+        seen += scene_->visible(witnesses_[cell->first + static_cast<std::size_t>(i)], place) ? 1 : 0;
+    return seen >= cell->least;
 }
 
 double light_beyond_reach(const Scene& scene, const Reach& reach, int max_scatterings, std::int64_t paths) {

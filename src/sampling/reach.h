@@ -14,10 +14,12 @@ class Scene;
 /// Sides of surfaces that gather rays from visible points meet. What lies behind a narrow door is met by so few of them
 /// that the light it sends is noise in a final gather; paths of such light are stored where they are seen instead, and
 /// gather rays don't count it. Either way a path counts once, wherever the border lies. Immutable and thread-safe;
-/// the same whatever the seed of a render.
+/// the same whatever the seed of a render. A cell that a wall without thickness goes through has two sides, and light
+/// in plenty beside the wall on that of the lamp: there places count as met where the ends of rays see them.
 class Reach {
   public:
     /// Traces `paths` eye paths to where a gather ray would ask.
+    /// @param scene must outlive the reach.
     /// @param max_scatterings as everywhere, of a whole path.
     Reach(const Scene& scene, int max_scatterings, std::int64_t paths = 1 << 16);
 
@@ -25,11 +27,23 @@ class Reach {
     bool comes_to(const Vec3& p, const Vec3& n) const;
 
   private:
-    std::uint64_t cell(const Vec3& p, const Vec3& n) const;
+    /// Around which rays end often enough.
+    struct Cell {
+        std::uint64_t key;
+        std::uint32_t first = 0; ///< of its witnesses
+        std::uint8_t witnesses = 0; ///< 0: nothing stands there that could hide a place from them
+        std::uint8_t least = 1;     ///< so many of them have to see a place
+    };
 
+    std::uint64_t key(const Vec3& p, const Vec3& n) const;
+    Vec3 above(const Vec3& p, const Vec3& n) const;
+    bool obstructed(const Vec3& p, const Vec3& n) const;
+
+    const Scene* scene_;
     Vec3 origin_;
-    float size_ = 0;                   // of a cell [m]
-    std::vector<std::uint64_t> cells_; // those that rays come to, sorted
+    float size_ = 0;              // of a cell [m]
+    std::vector<Cell> cells_;     // by key
+    std::vector<Vec3> witnesses_; // above() the ends of rays in a cell and those around it
 };
 
 /// The share of the light on `paths` light paths, by the luminance of its power at each vertex after the first, that

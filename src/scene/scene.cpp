@@ -150,6 +150,11 @@ bool Scene::visible(const SurfacePoint& a, const SurfacePoint& b, const Vec3& a_
     return !accelerator_.occluded(o, to.ray_origin(-w) - o, kEdgeEnd);
 }
 
+bool Scene::visible(const Vec3& a, const Vec3& b) const {
+    count_ray();
+    return !accelerator_.occluded(a, b - a, kEdgeEnd);
+}
+
 std::size_t Scene::triangle_count() const {
     std::size_t n = 0;
     for (const Shape& s : shapes_)

@@ -43,6 +43,8 @@ class Scene {
     bool visible(const SurfacePoint& a, const SurfacePoint& b) const { return visible(a, b, direction(a, b)); }
     /// The same; `a_to_b` is the direction from `a` to `b`, for callers that know it.
     bool visible(const SurfacePoint& a, const SurfacePoint& b, const Vec3& a_to_b) const;
+    /// Whether nothing lies between two places in space [m], which are on no surface.
+    bool visible(const Vec3& a, const Vec3& b) const;
 
     /// Share of light that absorption leaves along the edge between two points, as far as media go: 1 without them.
     Rgb transmittance(const SurfacePoint& a, const SurfacePoint& b) const {

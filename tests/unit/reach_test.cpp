@@ -47,6 +47,23 @@ TEST(Reach, KnowsTheSidesOfAThinWall) {
     EXPECT_FALSE(reach.comes_to({0, 1, -0.1f}, kBack));
 }
 
+TEST(Reach, EndsAtAWallWithoutThickness) {
+    const auto scene = test::two_rooms(0.01f, true);
+    constexpr float kWall = -0.0625f, kSlit = 1.2f;
+    for (const std::int64_t paths : {1 << 12, 1 << 16}) { // few paths make coarse cells
+        const Reach reach(*scene, kDepth, paths);
+        int missed = 0, beyond = 0;
+        for (float x = -1.9f; x < 1.95f; x += 0.1f)
+            for (const float distance : {0.03f, 0.1f, 0.3f}) {
+                if (std::abs(x - kSlit) < 0.3f) continue;
+                missed += reach.comes_to({x, 0, kWall + distance}, kUp) ? 0 : 1;
+                beyond += reach.comes_to({x, 0, kWall - distance}, kUp) ? 1 : 0;
+            }
+        EXPECT_LE(missed, 5) << paths;
+        EXPECT_EQ(beyond, 0) << paths;
+    }
+}
+
 TEST(Reach, IsEverywhereInARoom) {
     const auto scene = test::diffuse_box();
     const Reach reach(*scene, kDepth);
