@@ -12,7 +12,6 @@
 namespace keyhole {
 namespace {
 
-constexpr std::int64_t kRays = 65'536;
 constexpr int kDepth = 8;            // of the tree: cells are at least 1/256 of the scene's width
 constexpr double kEnough = 10;       // bright rays that tell how light is spread over a cell's children
 constexpr double kFew = 8;           // bright rays that don't tell where in the cell it ends
@@ -47,16 +46,18 @@ BrightSpots::Cell BrightSpots::Cell::child(std::size_t octant) const {
     return {centre + Vec3(side(1), side(2), side(4)), width / 2};
 }
 
-BrightSpots::BrightSpots(const GatherRays& rays, std::uint64_t seed, const RunContext& context) : nodes_(1) {
+BrightSpots::BrightSpots(const GatherRays& rays, std::int64_t count, std::uint64_t seed, const RunContext& context)
+    : nodes_(1) {
     const Vec3 lower = rays.scene().lower(), extent = rays.scene().upper() - lower;
     root_ = {lower + extent / 2, std::max({extent.x, extent.y, extent.z})};
 
-    std::vector<Finding> findings(kRays);
-    context.begin("bright spots", kRays, "rays");
-    parallel_for(kRays / 64, [&](std::int64_t b) {
-        for (std::int64_t i = b * 64; i < (b + 1) * 64; ++i)
-            findings[static_cast<std::size_t>(i)] = find(rays, seed, i);
-        context.advance(64);
+    constexpr std::int64_t kBlock = 64;
+    std::vector<Finding> findings(static_cast<std::size_t>(count));
+    context.begin("bright spots", static_cast<std::uint64_t>(count), "rays");
+    parallel_for((count + kBlock - 1) / kBlock, [&](std::int64_t b) {
+        const std::int64_t end = std::min(count, (b + 1) * kBlock);
+        for (std::int64_t i = b * kBlock; i < end; ++i) findings[static_cast<std::size_t>(i)] = find(rays, seed, i);
+        context.advance(static_cast<std::uint64_t>(end - b * kBlock));
     });
     context.end();
 

@@ -20,15 +20,16 @@ struct SpotCone {
     double solid_angle() const { return 2 * kPi * (1 - cos_half_angle); }
 };
 
-/// Cells of an octree from which gather rays brought far more than their share, found by tens of thousands of rays from
-/// what the eye sees. A cell is as small as the findings in it can tell: a lampshade behind slits, of which few rays
-/// see anything, is one cell; the patch of sun that many see is several. Only where rays go depends on them, so that a
-/// spot which was missed costs noise, and no light. Immutable and thread-safe.
+/// Cells of an octree from which gather rays brought far more than their share, found by thousands of rays from what
+/// the eye sees. A cell is as small as the findings in it can tell: a lampshade behind slits, of which few rays see
+/// anything, is one cell; the patch of sun that many see is several. Only where rays go depends on them, so that a spot
+/// which was missed costs noise, and no light. Immutable and thread-safe.
 class BrightSpots {
   public:
     /// None.
     BrightSpots() = default;
-    BrightSpots(const GatherRays& rays, std::uint64_t seed, const RunContext& context);
+    /// Looks for them with `count` rays.
+    BrightSpots(const GatherRays& rays, std::int64_t count, std::uint64_t seed, const RunContext& context);
 
     /// The spot that a place belongs to; -1: none.
     int spot_at(const Vec3& place) const;

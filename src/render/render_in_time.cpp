@@ -69,6 +69,8 @@ Experience experience(const Settings& settings, double effort, double pixels, co
 
 /// Effort of the trial, as a share of what should fill the time, and at most.
 constexpr double kTrial = 0.02, kTrialAtMost = 0.1;
+/// What traces importance costs is told by so many walks.
+constexpr std::int64_t kTrialImportons = 4000;
 /// A trial's picture is smaller by so much in width and height: it is to show what effort costs, nothing else.
 constexpr int kTrialScale = 4;
 /// Of the time that is left, so that a render that costs a little more than was foreseen is done in time.
@@ -229,6 +231,7 @@ class RenderInTime {
         const double effort = std::min(kTrial * start / kSecondsOfEffort, kTrialAtMost);
         Settings chosen = with_effort(settings_, effort, static_cast<std::int64_t>(pixels_of(small)), {},
                                       balance_); // what is given may be much
+        chosen.importons = std::min(chosen.importons, kTrialImportons);
         chosen.save_map.clear();
         chosen.seed = seed_of_render(settings_, renders_++);
         scene_.set_window(small);

@@ -57,8 +57,7 @@ std::uint64_t key_of(const std::array<std::int64_t, 3>& c, std::uint64_t facet) 
 }
 
 /// visit(key) for a cell and those around it that face alike.
-template <class Visit>
-void visit_around(std::uint64_t key, const Visit& visit) {
+template <class Visit> void visit_around(std::uint64_t key, const Visit& visit) {
     constexpr std::uint64_t mask = (1 << kBits) - 1;
     const auto x = static_cast<std::int64_t>(key >> 2 * kBits & mask),
                y = static_cast<std::int64_t>(key >> kBits & mask), z = static_cast<std::int64_t>(key & mask);
@@ -93,8 +92,7 @@ std::vector<Count> count_in(const std::vector<std::uint64_t>& cells) {
 std::vector<Count> count_around(const std::vector<Count>& in_cells) {
     std::vector<Count> around;
     around.reserve(27 * in_cells.size());
-    for (const Count& c : in_cells)
-        visit_around(c.cell, [&](std::uint64_t cell) { around.push_back({cell, c.rays}); });
+    for (const Count& c : in_cells) visit_around(c.cell, [&](std::uint64_t cell) { around.push_back({cell, c.rays}); });
     std::ranges::sort(around, {}, &Count::cell);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < around.size(); ++i) {
@@ -163,11 +161,13 @@ Reach::Reach(const Scene& scene, int max_scatterings, std::int64_t paths) : scen
     for (Cell& cell : cells_) {
         const Count& c = *find(around, cell.key);
         const std::vector<std::size_t> witnesses = choose_witnesses(in_cells, c);
-        if (std::ranges::none_of(witnesses, [&](std::size_t i) { return obstructed(places[i].p, places[i].n); })) continue;
+        if (std::ranges::none_of(witnesses, [&](std::size_t i) { return obstructed(places[i].p, places[i].n); }))
+            continue;
         cell.first = static_cast<std::uint32_t>(witnesses_.size());
         cell.witnesses = static_cast<std::uint8_t>(witnesses.size());
         const double each = static_cast<double>(c.rays) / static_cast<double>(witnesses.size());
-        cell.least = static_cast<std::uint8_t>(std::clamp(std::ceil(least / each), 1.0, static_cast<double>(witnesses.size())));
+        cell.least =
+            static_cast<std::uint8_t>(std::clamp(std::ceil(least / each), 1.0, static_cast<double>(witnesses.size())));
         for (const std::size_t i : witnesses) witnesses_.push_back(above(places[i].p, places[i].n));
     }
     cells_.shrink_to_fit();

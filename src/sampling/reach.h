@@ -30,7 +30,7 @@ class Reach {
     /// Around which rays end often enough.
     struct Cell {
         std::uint64_t key;
-        std::uint32_t first = 0; ///< of its witnesses
+        std::uint32_t first = 0;    ///< of its witnesses
         std::uint8_t witnesses = 0; ///< 0: nothing stands there that could hide a place from them
         std::uint8_t least = 1;     ///< so many of them have to see a place
     };

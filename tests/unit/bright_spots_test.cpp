@@ -50,7 +50,7 @@ class SpotRecords : public testing::Test {
     GatherRays rays_{*scene_, {}, {.max_radius = 0.1f, .caustic_radius = 0.1f}, 24};
     Rng rng_{1, StreamPurpose::test, 0};
     VisiblePoint from_;
-    BrightSpots spots_{rays_, 1, {}};
+    BrightSpots spots_{rays_, 1 << 16, 1, {}};
 };
 
 TEST_F(SpotRecords, FindWhatIsBrightAndSmall) {
@@ -80,7 +80,7 @@ TEST_F(SpotRecords, HaveTheSlopeThatTheirNeighboursShow) {
 TEST(BrightSpots, AreNoneWhereLightIsEven) {
     const auto scene = test::furnace(0.5);
     const GatherRays rays(*scene, {}, {.max_radius = 0.1f, .caustic_radius = 0.1f}, 24);
-    EXPECT_EQ(BrightSpots(rays, 1, {}).size(), 0u);
+    EXPECT_EQ(BrightSpots(rays, 1 << 16, 1, {}).size(), 0u);
 }
 
 } // namespace
