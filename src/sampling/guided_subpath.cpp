@@ -5,8 +5,8 @@
 namespace keyhole {
 namespace {
 
-/// How often a portal is crossed by a line drawn there.
-constexpr double kByLine = 0.5;
+/// Bounces that light is followed back from a portal, at most.
+constexpr int kMostBack = 3;
 
 /// Unit direction from a vertex towards a user's point.
 Vec3 axis(const Vertex& from, const UserVertex& to) { return (to.p - from.point.p).normalized(); }
@@ -21,6 +21,7 @@ GuidedSubPath::GuidedSubPath(const Scene& scene, const UserPath& path) : scene_(
     }
     for (int i = 2; i < vertices() && crossed_ == 0; ++i)
         if (user_vertex(i).portal && user_vertex(i - 1).bounce && !is_specular(user_vertex(i).event)) crossed_ = i;
+    for (int i = crossed_ - 1; i > 0 && user_vertex(i).bounce && most_back_ < kMostBack; --i) ++most_back_;
 }
 
 /// Towards user vertex i.
@@ -42,7 +43,11 @@ bool GuidedSubPath::bounce(SubPath& light, Rng& rng, Failure& why) const {
     return light.back().bsdf.traits().finite || (why = Failure::signature, false);
 }
 
-bool GuidedSubPath::cross(SubPath& light, Rng& rng, Failure& why) const {
+double GuidedSubPath::probability_of_back(int back) const {
+    return most_back_ < 0 ? 1.0 : back < 0 ? 0.5 : 0.5 / (most_back_ + 1);
+}
+
+bool GuidedSubPath::cross(SubPath& light, int back, Rng& rng, Failure& why) const {
     const Portal& portal = *user_vertex(crossed_).portal;
     const SurfacePoint &lamp = light[0].point, &before = light.back().point;
     const Portal::Line line = portal.sample_line(lamp.p, rng);
@@ -59,9 +64,21 @@ bool GuidedSubPath::cross(SubPath& light, Rng& rng, Failure& why) const {
     const auto far = next_vertex(*scene_, *near, direction(near->point, middle));
     if (!scatters(far)) return false;
     if (!(portal.line_density(lamp.p, near->point.p, far->point.p) > 0)) return why = Failure::signature, false;
-    if (!scene_->visible(before, near->point)) return why = Failure::blocked, false;
-    for (const auto& v : {near, far}) {
-        light.push_back(*v);
+    InlineVector<Vertex, kMostBack + 2> found; // from beyond the portal back
+    found.push_back(*far);
+    found.push_back(*near);
+    for (int i = 0; i < back; ++i) {
+        const Vertex& from = found.back();
+        const auto next = continue_walk(from, direction(from.point, found[found.size() - 2].point), From::eye, rng);
+        if (!next) return why = Failure::absorbed, false;
+        if (is_specular(next->event)) return why = Failure::signature, false;
+        const auto v = next_vertex(*scene_, from, next->w);
+        if (!scatters(v)) return false;
+        found.push_back(*v);
+    }
+    if (!scene_->visible(before, found.back().point)) return why = Failure::blocked, false;
+    for (std::size_t i = found.size(); i-- > 0;) {
+        light.push_back(found[i]);
         light.back().event = Event::finite;
     }
     return true;
@@ -72,21 +89,31 @@ bool GuidedSubPath::through_portal(const Vertex& from, const Vertex& to, int i) 
     return !portal || portal->separates(from.point.p, to.point.p);
 }
 
-/// Of the line's two vertices, per area each.
-double GuidedSubPath::cross_density(const Path& y) const {
-    const auto far = static_cast<std::size_t>(crossed_);
-    const SurfacePoint &b = y.x[far - 1].point, &c = y.x[far].point;
-    const double line = user_vertex(crossed_).portal->line_density(y.x[0].point.p, b.p, c.p);
-    return line > 0 ? line * geometry_term(b, c) : 0.0;
+double GuidedSubPath::cross_density(const Path& y, int back) const {
+    const auto i = static_cast<std::size_t>(crossed_);
+    const SurfacePoint &near = y.x[i - 1].point, &far = y.x[i].point;
+    const double line = user_vertex(crossed_).portal->line_density(y.x[0].point.p, near.p, far.p);
+    double density = line > 0 ? line * geometry_term(near, far) : 0.0;
+    for (std::size_t k = i - 1; k + static_cast<std::size_t>(back) > i - 1 && density > 0; --k) {
+        const Vertex& v = y.x[k];
+        const SurfacePoint &before = y.x[k - 1].point, &after = y.x[k + 1].point;
+        const ScatterValue s =
+            scatter(v.point, v.bsdf, Event::finite, direction(v.point, before), direction(v.point, after));
+        density *= solid_angle_to_area(s.pdf_to_light, v.point, before);
+    }
+    return density;
 }
 
 bool GuidedSubPath::trace(SubPath& light, Rng& rng, Failure& why) const {
     light.push_back(make_vertex(path_.patch.sample(rng)));
     const int last = vertices() - 1;
-    const bool by_line = crossed_ > 0 && rng.next() < kByLine;
+    int back = -1;
+    if (most_back_ >= 0)
+        for (double u = rng.next(); back < most_back_ && u >= probability_of_back(back);)
+            u -= probability_of_back(back++);
     for (int i = 0; i < last;) {
-        if (by_line && i + 2 == crossed_) {
-            if (!cross(light, rng, why)) return false;
+        if (back >= 0 && i + 2 + back == crossed_) {
+            if (!cross(light, back, rng, why)) return false;
             i = crossed_;
             continue;
         }
@@ -114,7 +141,8 @@ double GuidedSubPath::density(const Path& y) const {
     }
     double density = path_.patch.pdf(y.x[0].point), by_line = 0;
     for (int i = 0; i < last && density + by_line > 0;) {
-        if (i + 2 == crossed_) by_line = density * cross_density(y);
+        for (int back = 0; back <= most_back_; ++back)
+            if (i + 2 + back == crossed_) by_line += probability_of_back(back) * density * cross_density(y, back);
         const int next = next_finite(events_, i, +1);
         const Vertex &from = y.x[static_cast<std::size_t>(i)], &to = y.x[static_cast<std::size_t>(i) + 1];
         if (user_vertex(i + 1).bounce) {
@@ -125,7 +153,7 @@ double GuidedSubPath::density(const Path& y) const {
         }
         i = next;
         if (i == crossed_) {
-            density = std::lerp(density, by_line, kByLine);
+            density = probability_of_back(-1) * density + by_line;
             by_line = 0;
         }
     }

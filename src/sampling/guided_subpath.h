@@ -13,7 +13,8 @@ namespace keyhole {
 ///
 /// Light that was scattered anywhere seldom was so where a portal is seen large, and what comes from there carries much
 /// more than the rest. So half of the sub-paths whose portal is behind a bounce cross it along lines that are drawn
-/// there, and join the bounce to the vertex before.
+/// there, and are joined to the vertex before. In a corner beside a door that vertex is near as well, and so on: where
+/// there are more bounces, light is followed back by up to three of them before it is joined.
 class GuidedSubPath {
   public:
     GuidedSubPath(const Scene& scene, const UserPath& path);
@@ -28,9 +29,12 @@ class GuidedSubPath {
 
   private:
     const UserVertex& user_vertex(int i) const { return path_.vertices[static_cast<std::size_t>(i) - 1]; }
-    /// Adds the two vertices of a line through the portal.
-    bool cross(SubPath& light, Rng& rng, Failure& why) const;
-    double cross_density(const Path& y) const;
+    /// Probability that light is followed back from the portal by so many bounces; -1: it comes there from the light.
+    double probability_of_back(int back) const;
+    /// Adds the two vertices of a line through the portal, and before them those that it is followed back to.
+    bool cross(SubPath& light, int back, Rng& rng, Failure& why) const;
+    /// Of these vertices, per area each.
+    double cross_density(const Path& y, int back) const;
     /// False where vertex i ought to lie beyond a portal and does not.
     bool through_portal(const Vertex& from, const Vertex& to, int i) const;
     bool bounce(SubPath& light, Rng& rng, Failure& why) const;
@@ -39,8 +43,9 @@ class GuidedSubPath {
 
     const Scene* scene_;
     UserPath path_;
-    int crossed_ = 0; ///< the vertex behind a portal that is behind a bounce, where there is one
-    Path events_;     ///< only the events of its vertices count; x0 and those of path_
+    int crossed_ = 0;    ///< the vertex behind a portal that is behind a bounce, where there is one
+    int most_back_ = -1; ///< bounces that light is followed back from there at most; -1: there is no such vertex
+    Path events_;        ///< only the events of its vertices count; x0 and those of path_
 };
 
 } // namespace keyhole

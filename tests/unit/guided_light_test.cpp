@@ -142,5 +142,30 @@ TEST(ThroughASlit, UserPathsFindLightThatIsHardToFind) {
     EXPECT_LT(std::abs(z(led, free)), 4);
 }
 
+/// Light that creeps along the wall into the door's corners carries no more than other light.
+TEST(ThroughASlit, NoPhotonIsMuchBrighterThanOthers) {
+    constexpr float kSlit = 0.003f;
+    const auto scene = test::two_rooms(kSlit, true);
+    const UserPaths paths = test::bounces_through(*scene, kSlit, kDepth - 1);
+    const LightGuides light(*scene, paths);
+    struct {
+        double power = 0;
+        bool arrival(const Vertex& v, const Vec3&, const Rgb& carried, const LightPast& past) {
+            const bool beyond = v.point.p.z > -0.06f;
+            if (beyond && past.scatterings > 0) power = luminance(carried); // straight from the lamp no user path leads
+            return !beyond;
+        }
+    } sink;
+    double sum = 0, squares = 0;
+    for (std::uint64_t i = 0; i < 400'000; ++i) {
+        Rng rng(7, StreamPurpose::test, i);
+        sink.power = 0;
+        trace_guided_light_path(*scene, light, kDepth, rng, sink);
+        sum += sink.power;
+        squares += sink.power * sink.power;
+    }
+    EXPECT_GT(sum * sum / squares, 80'000); // photons of equal power that would be as good a sample
+}
+
 } // namespace
 } // namespace keyhole
