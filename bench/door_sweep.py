@@ -43,7 +43,7 @@ paths:
   - name: door
     points:
       - [-2.5, 2.39, 1.1]
-      - bounces: [1, 16]
+      - bounces: [1, 22]
       - through: {{corner: [0, 0, -{half}], u: [0, 2.4, 0], v: [0, 0, {width}]}}
       - [3, 1, 0]
 """
