@@ -111,7 +111,7 @@ constexpr double kFewestRays = 64; // that tell how far a record is good for
 
 /// Rays to look for bright spots by: not many where those that spots would help are few.
 std::int64_t spot_rays(const CacheOptions& options) {
-    return std::clamp<std::int64_t>(256 * options.rays, 1 << 13, 1 << 16);
+    return std::clamp<std::int64_t>(std::int64_t{256} * options.rays, 1 << 13, 1 << 16);
 }
 
 /// A sum over o^2 times as many records has o^-2 times the variance, which falls with the number of rays as well, and a

@@ -90,13 +90,13 @@ bool GuidedSubPath::through_portal(const Vertex& from, const Vertex& to, int i) 
 }
 
 double GuidedSubPath::cross_density(const Path& y, int back) const {
-    const auto i = static_cast<std::size_t>(crossed_);
-    const SurfacePoint &near = y.x[i - 1].point, &far = y.x[i].point;
-    const double line = user_vertex(crossed_).portal->line_density(y.x[0].point.p, near.p, far.p);
+    const auto point = [&](int i) -> const SurfacePoint& { return y.x[static_cast<std::size_t>(i)].point; };
+    const SurfacePoint &near = point(crossed_ - 1), &far = point(crossed_);
+    const double line = user_vertex(crossed_).portal->line_density(point(0).p, near.p, far.p);
     double density = line > 0 ? line * geometry_term(near, far) : 0.0;
-    for (std::size_t k = i - 1; k + static_cast<std::size_t>(back) > i - 1 && density > 0; --k) {
-        const Vertex& v = y.x[k];
-        const SurfacePoint &before = y.x[k - 1].point, &after = y.x[k + 1].point;
+    for (int i = crossed_ - 1; i > crossed_ - 1 - back && density > 0; --i) {
+        const Vertex& v = y.x[static_cast<std::size_t>(i)];
+        const SurfacePoint &before = point(i - 1), &after = point(i + 1);
         const ScatterValue s =
             scatter(v.point, v.bsdf, Event::finite, direction(v.point, before), direction(v.point, after));
         density *= solid_angle_to_area(s.pdf_to_light, v.point, before);
