@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/bytes.h"
+#include "core/interruptible.h"
 #include "core/parallel.h"
 #include "core/progress.h"
 
@@ -48,10 +49,10 @@ inline std::int64_t blocks_of(Range own) { return (own.size() + kBlockOfItems - 
 
 /// shared_for() for items that take little time each: body(b, i) fills in items[i], which is one of block b of
 /// own_part(). A block is done by one thread, in order. Tells `context` of the own items that are done, between begin()
-/// and end(). @throws TeamLost as shared_for().
+/// and end(). @throws TeamLost as shared_for(), and Interrupted.
 template <class T, class Body> void shared_blocks(std::vector<T>& items, const RunContext& context, Body&& body) {
     const Range own = own_part(static_cast<std::int64_t>(items.size()), context);
-    parallel_for(blocks_of(own), [&](std::int64_t b) {
+    parallel_for(blocks_of(own), context, [&](std::int64_t b) {
         const Range block{own.begin + b * kBlockOfItems, std::min(own.end, own.begin + (b + 1) * kBlockOfItems)};
         for (std::int64_t i = block.begin; i < block.end; ++i) body(b, i);
         context.advance(static_cast<std::uint64_t>(block.size()));

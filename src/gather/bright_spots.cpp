@@ -1,6 +1,6 @@
 #include "gather/bright_spots.h"
 
-#include "core/parallel.h"
+#include "core/interruptible.h"
 #include "gather/visible_point.h"
 #include "sampling/image_lattice.h"
 #include "scene/warp.h"
@@ -54,7 +54,7 @@ BrightSpots::BrightSpots(const GatherRays& rays, std::int64_t count, std::uint64
     constexpr std::int64_t kBlock = 64;
     std::vector<Finding> findings(static_cast<std::size_t>(count));
     context.begin("bright spots", static_cast<std::uint64_t>(count), "rays");
-    parallel_for((count + kBlock - 1) / kBlock, [&](std::int64_t b) {
+    parallel_for((count + kBlock - 1) / kBlock, context, [&](std::int64_t b) {
         const std::int64_t end = std::min(count, (b + 1) * kBlock);
         for (std::int64_t i = b * kBlock; i < end; ++i) findings[static_cast<std::size_t>(i)] = find(rays, seed, i);
         context.advance(static_cast<std::uint64_t>(end - b * kBlock));

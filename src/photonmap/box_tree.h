@@ -30,10 +30,10 @@ class BoxTree {
   public:
     explicit BoxTree(const std::vector<Bounds>& boxes);
 
-    /// Calls visit(i) for every box i that may overlap `region`; it comes close, but the leaves aren't tested one by
-    /// one.
-    template <class Visit> void overlapping(const Bounds& region, Visit&& visit) const {
-        if (nodes_.empty()) return;
+    /// Calls visit(i) for every box i that may overlap `region`, until one call returns false; then this does, too. It
+    /// comes close, but the leaves aren't tested one by one.
+    template <class Visit> bool overlapping(const Bounds& region, Visit&& visit) const {
+        if (nodes_.empty()) return true;
         std::uint32_t stack[kMaxDepth];
         int top = 0;
         stack[top++] = 0;
@@ -41,12 +41,14 @@ class BoxTree {
             const Node& node = nodes_[stack[--top]];
             if (!node.bounds.overlaps(region)) continue;
             if (node.count > 0) {
-                for (std::uint32_t i = 0; i < node.count; ++i) visit(items_[node.first + i]);
+                for (std::uint32_t i = 0; i < node.count; ++i)
+                    if (!visit(items_[node.first + i])) return false;
             } else {
                 stack[top++] = node.first + 1;
                 stack[top++] = node.first;
             }
         }
+        return true;
     }
 
   private:

@@ -40,6 +40,7 @@ Importons trace_importance(const Scene& scene, const ImportanceTracing& options,
     context.begin("importance", static_cast<std::uint64_t>(options.samples), "paths");
     for (std::int64_t begin = 0; begin < options.samples; begin += kBlock * kBlocks) {
         shared_for(parts, context, [&](std::int64_t b) {
+            check_stop(context);
             const std::int64_t first = begin + b * kBlock, end = std::min(options.samples, first + kBlock);
             for (std::int64_t i = first; i < end; ++i) {
                 Rng rng(options.seed, StreamPurpose::importance, static_cast<std::uint64_t>(i));

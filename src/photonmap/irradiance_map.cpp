@@ -38,8 +38,9 @@ IrradianceMap::IrradianceMap(const PhotonMap& scouts, const PhotonMap& carriers,
         used[static_cast<std::size_t>(b)] += estimate(static_cast<std::uint32_t>(i), carriers, options);
     });
     if (options.scene != nullptr)
-        grid_.emplace(options.scene->shapes(), kGridBytesPerPlace * estimates_.size(),
-                      [this](const Vec3& middle, const Vec3& normal) { return place_for_cell(middle, normal); });
+        grid_.emplace(
+            options.scene->shapes(), kGridBytesPerPlace * estimates_.size(),
+            [this](const Vec3& middle, const Vec3& normal) { return place_for_cell(middle, normal); }, context);
     context.end();
     if (own.size() == 0) return;
     for (const Count& u : used) mean_ += u;

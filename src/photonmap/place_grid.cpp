@@ -1,6 +1,6 @@
 #include "photonmap/place_grid.h"
 
-#include "core/parallel.h"
+#include "core/interruptible.h"
 #include "scene/geometry.h"
 
 #include <algorithm>
@@ -12,6 +12,7 @@ namespace {
 // Shares of the memory: entries of triangles, grids and cells have so much at most, and parts of cells the rest.
 constexpr double kEntries = 0.25, kGrids = 0.125, kCells = 0.1875;
 
+constexpr std::int64_t kBlock = 256; // sides of triangles between two looks at the clock
 constexpr double kLeastRows = 2, kMostRows = 2048;
 constexpr float kMostParts = 64;
 
@@ -59,15 +60,16 @@ Vec3 PlaceGrid::Grid::middle(std::uint32_t column, std::uint32_t row, std::uint3
     return corner + along * (x + std::min(width / 2, inside / 3)) + across * (y + std::min(height / 2, inside / 3));
 }
 
-PlaceGrid::PlaceGrid(const std::vector<Shape>& shapes, std::size_t most, const Find& find) : entries_(shapes.size()) {
+PlaceGrid::PlaceGrid(const std::vector<Shape>& shapes, std::size_t most, const Find& find, const RunContext& context)
+    : entries_(shapes.size()) {
     const auto number = [most](double share, std::size_t size) {
         return static_cast<std::size_t>(share * static_cast<double>(most)) / size;
     };
-    std::vector<Triangle> large = index(shapes, number(kEntries, 2 * sizeof(std::uint32_t)), find);
+    std::vector<Triangle> large = index(shapes, number(kEntries, 2 * sizeof(std::uint32_t)), find, context);
     large.resize(std::min(large.size(), number(kGrids, sizeof(Grid))));
-    make_grids(shapes, std::move(large), number(kCells, sizeof(Cell)), find);
+    make_grids(shapes, std::move(large), number(kCells, sizeof(Cell)), find, context);
     const auto each_side = [&](auto&& body) {
-        parallel_for(2 * static_cast<std::int64_t>(grids_.size()), [&](std::int64_t i) {
+        parallel_for(2 * static_cast<std::int64_t>(grids_.size()), context, [&](std::int64_t i) {
             const Grid& grid = grids_[static_cast<std::size_t>(i / 2)];
             const auto side = static_cast<std::size_t>(i % 2);
             if (grid.first[side] != kNone) body(grid, side);
@@ -78,8 +80,8 @@ PlaceGrid::PlaceGrid(const std::vector<Shape>& shapes, std::size_t most, const F
     each_side([&](const Grid& grid, std::size_t side) { fill_parts(grid, side, find); });
 }
 
-std::vector<PlaceGrid::Triangle> PlaceGrid::index(const std::vector<Shape>& shapes, std::size_t most,
-                                                  const Find& find) {
+std::vector<PlaceGrid::Triangle> PlaceGrid::index(const std::vector<Shape>& shapes, std::size_t most, const Find& find,
+                                                  const RunContext& context) {
     const auto mesh = [&](std::uint32_t s) -> const TriangleMesh& {
         return std::get<TriangleMesh>(shapes[s].geometry);
     };
@@ -95,7 +97,7 @@ std::vector<PlaceGrid::Triangle> PlaceGrid::index(const std::vector<Shape>& shap
         most -= triangles;
         auto& entries = entries_[s];
         entries.resize(2 * triangles);
-        parallel_for(static_cast<std::int64_t>(entries.size()), [&, s = s](std::int64_t i) {
+        parallel_blocks(static_cast<std::int64_t>(entries.size()), kBlock, context, [&, s = s](std::int64_t i) {
             entries[static_cast<std::size_t>(i)] =
                 place_for_all(mesh(s), static_cast<std::uint32_t>(i / 2), i % 2 == 1, find);
         });
@@ -109,13 +111,14 @@ std::vector<PlaceGrid::Triangle> PlaceGrid::index(const std::vector<Shape>& shap
 }
 
 void PlaceGrid::make_grids(const std::vector<Shape>& shapes, std::vector<Triangle> triangles, std::size_t most,
-                           const Find& find) {
+                           const Find& find, const RunContext& context) {
     const auto mesh = [&](const Triangle& t) -> const TriangleMesh& {
         return std::get<TriangleMesh>(shapes[t.shape].geometry);
     };
     double area = 0;
     for (Triangle& t : triangles)
         for (const std::size_t side : {0, 1}) {
+            check_stop(context);
             if (entries_[t.shape][entry_of(t.triangle, side)] != kSearch ||
                 !has_places(mesh(t), t.triangle, side == 1, find))
                 continue;

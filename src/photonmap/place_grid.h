@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/inline_vector.h"
+#include "core/progress.h"
 #include "scene/shape.h"
 #include "scene/surface_point.h"
 
@@ -28,8 +29,8 @@ class PlaceGrid {
     };
     /// What a search finds on the side of unit `normal`; thread-safe.
     using Find = std::function<Found(const Vec3& middle, const Vec3& normal)>;
-    /// Takes `most` bytes at most.
-    PlaceGrid(const std::vector<Shape>& shapes, std::size_t most, const Find& find);
+    /// Takes `most` bytes at most. @throws Interrupted
+    PlaceGrid(const std::vector<Shape>& shapes, std::size_t most, const Find& find, const RunContext& context);
 
     /// The place for a point of a surface, on the side of `normal`, kNothing or kSearch.
     std::uint32_t at(const SurfacePoint& point, const Vec3& normal) const;
@@ -68,10 +69,11 @@ class PlaceGrid {
 
     /// Makes entries for the meshes of the largest triangles, as many as there is memory for, and fills in those of
     /// triangles for which one place will do. Returns the others, largest first.
-    std::vector<Triangle> index(const std::vector<Shape>& shapes, std::size_t most, const Find& find);
+    std::vector<Triangle> index(const std::vector<Shape>& shapes, std::size_t most, const Find& find,
+                                const RunContext& context);
     /// Gives grids to the largest of these, as many as there is memory for.
     void make_grids(const std::vector<Shape>& shapes, std::vector<Triangle> triangles, std::size_t most,
-                    const Find& find);
+                    const Find& find, const RunContext& context);
     static Grid make_grid(const TriangleMesh& mesh, std::uint32_t triangle, double cell_area);
     static std::size_t entry_of(std::uint32_t triangle, std::size_t side) { return 2 * std::size_t{triangle} + side; }
     /// Searches from the middles of one side's cells.

@@ -24,7 +24,7 @@ double share_of_region(const SurfaceRegion& region, float r, const Counts& count
     constexpr int kPlaces = 16;
     int counted = 0, held = 0;
     for (int i = 0; i < kPlaces; ++i) {
-        const double distance = r * std::sqrt((i + 0.5) / kPlaces), angle = 2.399963229728653 * i; // sunflower
+        const double distance = r * std::sqrt((i + 0.5) / kPlaces), angle = kGoldenAngle * i;
         const Vec3 offset = frame.s * static_cast<float>(distance * std::cos(angle)) +
                             frame.t * static_cast<float>(distance * std::sin(angle));
         const Vec3 place = region.position + offset;

@@ -6,6 +6,9 @@
 
 namespace keyhole {
 
+/// Places (r sqrt((i + 1/2) / n), i times this angle), i < n, are spread evenly over a disc (Vogel 1979).
+constexpr double kGoldenAngle = 2.399963229728653;
+
 /// A place on a surface, and the region around it: an ellipsoid of radius r in the tangent plane and r / kFlattening
 /// along the normal, in which only normals within about 26 degrees of its own count. Photons of another wall, of the
 /// other side of a sheet or of the next step of a stair lie outside.

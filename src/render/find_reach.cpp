@@ -1,6 +1,6 @@
 #include "render/find_reach.h"
 
-#include "core/parallel.h"
+#include "core/interruptible.h"
 #include "core/statistics.h"
 #include "sampling/image_lattice.h"
 #include "sampling/path_tracer.h"
@@ -21,7 +21,11 @@ constexpr double kBearable = 40;
 
 constexpr std::uint64_t kSeed = 1; // as Reach: the choice doesn't change with the seed
 /// Gather rays to find out by. Fewer miss what few of them find, and take it for little.
-constexpr std::int64_t kRays = 1 << 15;
+constexpr std::int64_t kRays = 1 << 15, kBlock = 256;
+/// So many are enough where they leave no doubt: where as many as that find light beyond reach, by their effective
+/// number, and its variance is a quarter of what is bearable.
+constexpr std::int64_t kFirst = 1 << 12;
+constexpr double kSure = 100, kSurelyBearable = kBearable / 4;
 /// What so many of them find may be chance. Where many others, by their effective number, find light as well, these
 /// tell of the noise.
 constexpr std::int64_t kChance = 3;
@@ -58,15 +62,30 @@ double effective_rays(std::span<const GatheredLight> rays) {
     return squares > 0 ? sum * sum / squares : 0;
 }
 
+bool surely_bearable(std::span<const GatheredLight> rays) {
+    RunningStats all, beyond;
+    for (const GatheredLight& ray : rays) {
+        all.add(ray.near + ray.beyond);
+        beyond.add(ray.beyond);
+    }
+    return effective_rays(rays) > kSure && beyond.variance() < kSurelyBearable * all.mean() * all.mean();
+}
+
 /// Whether a final gather would be too noisy, or find nothing at all, of the light beyond reach.
-bool too_noisy(const Scene& scene, const Reach& reach, int max_scatterings) {
+bool too_noisy(const Scene& scene, const Reach& reach, int max_scatterings, const RunContext& context) {
     const PathSet set{.reach = &reach};
     std::vector<GatheredLight> rays(kRays, GatheredLight{&set});
-    parallel_for(kRays, [&](std::int64_t i) {
-        Rng rng(kSeed, StreamPurpose::reach_trial, static_cast<std::uint64_t>(i));
-        trace_path(scene, lattice_image_point(kSeed, StreamPurpose::reach_trial, i), max_scatterings, rng,
-                   rays[static_cast<std::size_t>(i)]);
-    });
+    const auto trace = [&](Range range) {
+        parallel_blocks(range.size(), kBlock, context, [&](std::int64_t k) {
+            const std::int64_t i = range.begin + k;
+            Rng rng(kSeed, StreamPurpose::reach_trial, static_cast<std::uint64_t>(i));
+            trace_path(scene, lattice_image_point(kSeed, StreamPurpose::reach_trial, i), max_scatterings, rng,
+                       rays[static_cast<std::size_t>(i)]);
+        });
+    };
+    trace({0, kFirst});
+    if (surely_bearable(std::span(rays).first(kFirst))) return false;
+    trace({kFirst, kRays});
     if (effective_rays(rays) == 0) return true;
     if (!too_noisy(rays)) return false;
     std::ranges::nth_element(rays, rays.end() - kChance, {}, &GatheredLight::beyond);
@@ -80,16 +99,17 @@ std::int64_t reach_paths(const Settings& settings) {
     return std::clamp<std::int64_t>(settings.importons / 8, 1 << 12, 1 << 16);
 }
 
-ReachFound find_reach(const Scene& scene, const Settings& settings) {
+ReachFound find_reach(const Scene& scene, const Settings& settings, const RunContext& context) {
     ReachFound found;
     // Standard photon mapping knows nothing of where photons are worth having: few would be where light is seen.
     if (settings.reach == "off" || settings.method == "pm") return found;
     const auto depth = static_cast<int>(settings.max_depth);
     const std::int64_t paths = reach_paths(settings);
-    Reach reach(scene, depth, paths);
-    found.beyond = light_beyond_reach(scene, reach, depth, paths / 8);
+    Reach reach(scene, depth, paths, context);
+    found.beyond = light_beyond_reach(scene, reach, depth, paths / 8, context);
     const bool always = settings.plan == "all";
-    if (always || (found.beyond > kLeastLight && too_noisy(scene, reach, depth))) found.reach = std::move(reach);
+    if (always || (found.beyond > kLeastLight && too_noisy(scene, reach, depth, context)))
+        found.reach = std::move(reach);
     return found;
 }
 

@@ -1,6 +1,7 @@
 // Whether a scene has light that final gather would not find.
 #pragma once
 
+#include "core/progress.h"
 #include "core/settings.h"
 #include "sampling/reach.h"
 
@@ -17,7 +18,7 @@ struct ReachFound {
 std::int64_t reach_paths(const Settings& settings);
 
 /// Follows from the scene, reach_paths() and the settings `reach`, `plan` and `max_depth` alone, so that passes, their
-/// shares on other machines and saved maps agree.
-ReachFound find_reach(const Scene& scene, const Settings& settings);
+/// shares on other machines and saved maps agree. @throws Interrupted
+ReachFound find_reach(const Scene& scene, const Settings& settings, const RunContext& context = {});
 
 } // namespace keyhole

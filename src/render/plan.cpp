@@ -63,7 +63,7 @@ RenderPlan plan_render(const SamplerContext& c, const RunContext& run, std::int6
     const Settings& s = c.settings;
     RenderPlan plan;
     plan.survey =
-        survey_scene(c.scene, survey_samples, static_cast<int>(s.max_depth), static_cast<std::uint64_t>(s.seed));
+        survey_scene(c.scene, survey_samples, static_cast<int>(s.max_depth), static_cast<std::uint64_t>(s.seed), run);
     const auto add = [&](PlanItem item) {
         if (!item.on && s.plan == "all") item = {item.name, true, item.why + ", but the setting plan asks for all"};
         plan.items.push_back(std::move(item));
@@ -73,7 +73,7 @@ RenderPlan plan_render(const SamplerContext& c, const RunContext& run, std::int6
     plan.caustics =
         add(plan.photons ? plan_caustics(c.scene) : PlanItem{"caustic map and proposals", false, "no photon maps"});
     ReachFound found;
-    if (plan.photons) found = find_reach(c.scene, s);
+    if (plan.photons) found = find_reach(c.scene, s, run);
     add(plan_reach(s, plan.photons, found));
     plan.reach = std::move(found.reach);
     plan.gather = add(plan_gather(plan.photons, plan.survey));

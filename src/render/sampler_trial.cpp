@@ -1,6 +1,6 @@
 #include "render/sampler_trial.h"
 
-#include "core/parallel.h"
+#include "core/interruptible.h"
 #include "core/statistics.h"
 #include "photonmap/importance_guide.h"
 #include "photonmap/importance_tracing.h"
@@ -21,6 +21,7 @@ namespace keyhole {
 namespace {
 
 constexpr std::int64_t kSteps = 128; // of a chain
+constexpr std::int64_t kBlock = 64;  // light paths
 
 /// How much is tried: less where the render itself will be short.
 struct Extent {
@@ -101,7 +102,7 @@ double try_emission(const SamplerContext& c, const Scene* walls, const RunContex
     const LightGuides user_paths(c.scene, c.user_paths);
     const std::uint64_t before = rays_traced();
     std::vector<Shares> samples(static_cast<std::size_t>(extent.light_paths));
-    parallel_for(extent.light_paths, [&](std::int64_t i) {
+    parallel_blocks(extent.light_paths, kBlock, run, [&](std::int64_t i) {
         Rng rng(seed, StreamPurpose::emission, static_cast<std::uint64_t>(i));
         VisiblePower sink{c.scene, global, caustic, c.storage()};
         trace_light_path(c.scene, user_paths, depth, rng, sink);
@@ -132,7 +133,7 @@ double try_metropolis(const SamplerContext& c, const RunContext& run) {
     const Mixture<Path> mixture = make_mixture({&c.scene, first.set, static_cast<int>(s.max_depth)}, s, c.user_paths);
     const std::uint64_t before = rays_traced();
     std::vector<Shares> samples(seeds.size(), Shares{});
-    parallel_for(static_cast<std::int64_t>(seeds.size()), [&](std::int64_t i) {
+    parallel_for(static_cast<std::int64_t>(seeds.size()), run, [&](std::int64_t i) {
         const auto k = static_cast<std::size_t>(i);
         Chain<Path> chain(seeds[k], mixture, Rng(first.seed, StreamPurpose::chain, static_cast<std::uint64_t>(i)));
         for (std::int64_t step = 0; step < kSteps; ++step)

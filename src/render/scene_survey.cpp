@@ -1,6 +1,6 @@
 #include "render/scene_survey.h"
 
-#include "core/parallel.h"
+#include "core/interruptible.h"
 #include "sampling/image_lattice.h"
 #include "sampling/path_tracer.h"
 
@@ -46,9 +46,10 @@ double SceneSurvey::total() const {
     return sum;
 }
 
-SceneSurvey survey_scene(const Scene& scene, std::int64_t samples, int max_scatterings, std::uint64_t seed) {
+SceneSurvey survey_scene(const Scene& scene, std::int64_t samples, int max_scatterings, std::uint64_t seed,
+                         const RunContext& context) {
     std::vector<SurveySink> sinks(kBlocks);
-    parallel_for(kBlocks, [&](std::int64_t b) {
+    parallel_for(kBlocks, context, [&](std::int64_t b) {
         SurveySink& sink = sinks[static_cast<std::size_t>(b)];
         sink.survey.by_emitter.assign(scene.emitters().size(), 0.0);
         const Range range = split(samples, kBlocks, b);

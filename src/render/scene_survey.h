@@ -28,7 +28,8 @@ struct SceneSurvey {
     double stored() const { return of(LightClass::caustic).mean() + of(LightClass::indirect).mean(); }
 };
 
-/// Traces `samples` paths from the eye with next-event estimation.
-SceneSurvey survey_scene(const Scene& scene, std::int64_t samples, int max_scatterings, std::uint64_t seed);
+/// Traces `samples` paths from the eye with next-event estimation. @throws Interrupted
+SceneSurvey survey_scene(const Scene& scene, std::int64_t samples, int max_scatterings, std::uint64_t seed,
+                         const RunContext& context = {});
 
 } // namespace keyhole

@@ -1,5 +1,6 @@
 #include "sampling/brightness.h"
 
+#include "core/interruptible.h"
 #include "core/leading_blocks.h"
 #include "sampling/image_lattice.h"
 #include "scene/ray_counter.h"
@@ -111,11 +112,12 @@ struct Trial {
 };
 
 /// A trial of a technique takes no more than what follows.
-Trial try_technique(const Scene& scene, const StageOneSettings& settings, Technique technique) {
+Trial try_technique(const Scene& scene, const StageOneSettings& settings, Technique technique,
+                    const RunContext& context) {
     const std::int64_t blocks = std::clamp<std::int64_t>(settings.samples / kBlock / 2, 1, 16);
     std::vector<RunningStats> parts(static_cast<std::size_t>(blocks));
     const std::uint64_t rays = rays_traced();
-    parallel_for(blocks, [&](std::int64_t b) {
+    parallel_for(blocks, context, [&](std::int64_t b) {
         parts[static_cast<std::size_t>(b)] =
             run_block(scene, settings, technique, {kTrial + b * kBlock, kTrial + (b + 1) * kBlock}).brightness;
     });
@@ -176,11 +178,11 @@ StageOne run_stage_one(const Scene& scene, const StageOneSettings& settings, con
     const bool choice = !needs_light_paths(scene, settings);
     Trial bidirectional{};
     if (choice || settings.error > 0) { // else there is nothing to find out
-        bidirectional = try_technique(scene, settings, Technique::bidirectional);
+        bidirectional = try_technique(scene, settings, Technique::bidirectional, context);
         stage.wanted = enough_samples(settings, bidirectional.brightness);
     }
     if (choice) {
-        const Trial path = try_technique(scene, settings, Technique::path);
+        const Trial path = try_technique(scene, settings, Technique::path, context);
         stage.technique = choose_technique(path, bidirectional);
         if (stage.technique == Technique::path) stage.wanted = enough_samples(settings, path.brightness);
     }

@@ -1,6 +1,6 @@
 #include "sampling/image_weight.h"
 
-#include "core/parallel.h"
+#include "core/interruptible.h"
 #include "sampling/image_lattice.h"
 #include "sampling/path_tracer.h"
 
@@ -64,7 +64,7 @@ ImageWeight measure_image_weight(const Scene& scene, int max_scatterings, std::u
     constexpr std::int64_t kSamples = kSamplesOfCell * kCells * kCells, kBlocks = 64, kBlock = kSamples / kBlocks;
     std::vector<ImageWeight::Cells> parts(kBlocks, ImageWeight::Cells{});
     context.begin("brightness of pixels", kSamples, "paths");
-    parallel_for(kBlocks, [&](std::int64_t b) {
+    parallel_for(kBlocks, context, [&](std::int64_t b) {
         for (std::int64_t i = b * kBlock; i < (b + 1) * kBlock; ++i) {
             Rng rng(seed, StreamPurpose::image_weight, static_cast<std::uint64_t>(i));
             const Vec2 image = lattice_image_point(seed, StreamPurpose::image_weight, i);

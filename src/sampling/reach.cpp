@@ -1,7 +1,7 @@
 #include "sampling/reach.h"
 
 #include "core/facet.h"
-#include "core/parallel.h"
+#include "core/interruptible.h"
 #include "sampling/eye_path_head.h"
 #include "sampling/image_lattice.h"
 #include "sampling/light_tracer.h"
@@ -30,9 +30,10 @@ struct Place {
     Vec3 p, n;
 };
 
-std::vector<Place> trace_places(const Scene& scene, int max_scatterings, std::int64_t paths) {
+std::vector<Place> trace_places(const Scene& scene, int max_scatterings, std::int64_t paths,
+                                const RunContext& context) {
     std::vector<std::vector<Place>> parts(kBlocks);
-    parallel_for(kBlocks, [&](std::int64_t b) {
+    parallel_for(kBlocks, context, [&](std::int64_t b) {
         const Range range = split(paths, kBlocks, b);
         for (std::int64_t i = range.begin; i < range.end; ++i) {
             Rng rng(kSeed, StreamPurpose::reach, static_cast<std::uint64_t>(i));
@@ -140,8 +141,9 @@ std::vector<std::size_t> choose_witnesses(const std::vector<Count>& in_cells, co
 
 } // namespace
 
-Reach::Reach(const Scene& scene, int max_scatterings, std::int64_t paths) : scene_(&scene), origin_(scene.lower()) {
-    std::vector<Place> places = trace_places(scene, max_scatterings, paths);
+Reach::Reach(const Scene& scene, int max_scatterings, std::int64_t paths, const RunContext& context)
+    : scene_(&scene), origin_(scene.lower()) {
+    std::vector<Place> places = trace_places(scene, max_scatterings, paths, context);
     const float extent = (scene.upper() - scene.lower()).length();
     std::vector<Count> in_cells, around;
     int typical = 0;
@@ -207,7 +209,8 @@ bool Reach::comes_to(const Vec3& p, const Vec3& n) const {
     return seen >= cell->least;
 }
 
-double light_beyond_reach(const Scene& scene, const Reach& reach, int max_scatterings, std::int64_t paths) {
+double light_beyond_reach(const Scene& scene, const Reach& reach, int max_scatterings, std::int64_t paths,
+                          const RunContext& context) {
     struct Sink {
         const Reach& reach;
         double all = 0, beyond = 0;
@@ -220,7 +223,7 @@ double light_beyond_reach(const Scene& scene, const Reach& reach, int max_scatte
         }
     };
     std::vector<Sink> sinks(kBlocks, Sink{reach});
-    parallel_for(kBlocks, [&](std::int64_t b) {
+    parallel_for(kBlocks, context, [&](std::int64_t b) {
         const Range range = split(paths, kBlocks, b);
         for (std::int64_t i = range.begin; i < range.end; ++i) {
             Rng rng(kSeed, StreamPurpose::reach_light, static_cast<std::uint64_t>(i));

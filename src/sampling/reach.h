@@ -1,6 +1,7 @@
 // Where gather rays come often enough to be relied on.
 #pragma once
 
+#include "core/progress.h"
 #include "core/vec.h"
 
 #include <cstddef>
@@ -21,7 +22,8 @@ class Reach {
     /// Traces `paths` eye paths to where a gather ray would ask.
     /// @param scene must outlive the reach.
     /// @param max_scatterings as everywhere, of a whole path.
-    Reach(const Scene& scene, int max_scatterings, std::int64_t paths = 1 << 16);
+    /// @throws Interrupted
+    Reach(const Scene& scene, int max_scatterings, std::int64_t paths = 1 << 16, const RunContext& context = {});
 
     /// Whether rays come near `p` on the side of the unit geometric normal `n`.
     bool comes_to(const Vec3& p, const Vec3& n) const;
@@ -47,7 +49,8 @@ class Reach {
 };
 
 /// The share of the light on `paths` light paths, by the luminance of its power at each vertex after the first, that
-/// arrives beyond reach. 0: final gather can do all.
-double light_beyond_reach(const Scene& scene, const Reach& reach, int max_scatterings, std::int64_t paths = 1 << 13);
+/// arrives beyond reach. 0: final gather can do all. @throws Interrupted
+double light_beyond_reach(const Scene& scene, const Reach& reach, int max_scatterings, std::int64_t paths = 1 << 13,
+                          const RunContext& context = {});
 
 } // namespace keyhole

@@ -85,7 +85,7 @@ class BiasSink {
 };
 
 Bias measure_bias(const Scene& scene, std::int64_t importons) {
-    const SurfacePatches patches(scene.shapes());
+    const SurfacePatches patches(scene);
     Importons traced =
         trace_importance(scene, {.samples = importons, .at_d1 = false, .max_scatterings = kDepth, .seed = 5}, {});
     const ImportanceMap map(std::move(traced.second), {.max_radius = 0.5f, .patches = &patches});

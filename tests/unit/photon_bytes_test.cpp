@@ -28,7 +28,7 @@ TEST_P(PhotonBytes, AreAtMost32WithIndexIrradianceAndSites) {
 #endif
     const std::size_t n = GetParam();
     const auto scene = test::mirror_glass_box(); // photons of many normals, and both maps
-    const SurfacePatches patches(scene->shapes());
+    const SurfacePatches patches(*scene);
     // What TBB and the threads keep for themselves is not a photon's.
     IrradianceMap(PhotonMap({}), PhotonMap({}), {.max_radius = 0.1f, .patches = &patches}, {});
     const double before = allocated();

@@ -134,7 +134,7 @@ Guides make_guides(const Scene& scene, const Rule& rule, std::uint64_t seed, con
 
 /// Several independent runs of emission, thinned to a ceiling well below what arrives.
 Energy by_emission(const Scene& scene, const Rule& rule, bool guided, int runs) {
-    const SurfacePatches patches(scene.shapes());
+    const SurfacePatches patches(scene);
     Energy e;
     for (int run = 0; run < runs; ++run) {
         const auto seed = static_cast<std::uint64_t>(100 + run);
@@ -150,7 +150,7 @@ Energy by_emission(const Scene& scene, const Rule& rule, bool guided, int runs) 
 
 /// Several independent runs of chains over light sub-paths, thinned likewise.
 Energy by_light_chains(const Scene& scene, const Rule& rule, int runs, float guide_radius) {
-    const SurfacePatches patches(scene.shapes());
+    const SurfacePatches patches(scene);
     Energy e;
     for (int run = 0; run < runs; ++run) {
         const auto seed = static_cast<std::uint64_t>(100 + run);
@@ -177,7 +177,7 @@ using EnergyByRule = std::map<PowerRule, Energy>;
 EnergyByRule by_chains(const Scene& scene, const Rule& rule, int runs, const std::vector<PowerRule>& powers) {
     const int depth = rule.depth;
     const PathSet set{.reach = rule.reach, .weight = rule.weight};
-    const SurfacePatches patches(scene.shapes());
+    const SurfacePatches patches(scene);
     const Mixture<Path> mixture = make_mixture({&scene, set, depth}, Settings{});
     EnergyByRule e;
     for (int run = 0; run < runs; ++run) {

@@ -118,7 +118,7 @@ RunningStats importance_by_walks(const Scene& scene, const Vertex& d2, const Vec
 
 TEST(ImportanceMap, AgreesWithTheIntegralOverEyeSides) {
     const auto scene = test::diffuse_box();
-    const SurfacePatches patches(scene->shapes());
+    const SurfacePatches patches(*scene);
     Rng rng = make_rng(0);
     const ImportanceMap map(importons_of_walks(*scene, 800'000, rng),
                             {.k = 600, .max_radius = 0.4f, .patches = &patches});

@@ -2,6 +2,7 @@
 #include "photon_support.h"
 #include "photonmap/disc_area.h"
 #include "photonmap/surface_patches.h"
+#include "scene/ray_counter.h"
 #include "scene/warp.h"
 
 #include <gtest/gtest.h>
@@ -115,6 +116,61 @@ TEST(SurfacePatches, LeavesOutWhatHoldsNoPhotons) {
     shapes.push_back(shape_of(kUnitSquare));
     shapes[0].material = make_mirror(Rgb(1.0));
     EXPECT_EQ(SurfacePatches(shapes).area({Vec3(0.5f, 0.5f, 0), kUp}, 0.3), 0);
+}
+
+/// The unit square, cut so finely that exact sums would take thousands of triangles.
+std::unique_ptr<Scene> fine_square() {
+    SceneDescription d;
+    d.shapes.push_back(shape_of(kUnitSquare, 150));
+    d.shapes.back().material = make_diffuse(Rgb(0.5));
+    d.camera.position = Vec3(0.5f, 0.5f, 3);
+    d.window.width = d.window.height = 8;
+    return std::make_unique<Scene>(std::move(d));
+}
+
+TEST(SurfacePatches, MeasuresFineMeshesByRays) {
+    const auto scene = fine_square();
+    const SurfacePatches patches(*scene);
+    ASSERT_EQ(patches.area({Vec3(0.5f, 0.43f, 0), kUp}, 0.3), kPi * 0.09) << "away from edges the area is the disc's";
+    const double disc = kPi * 0.09;
+    EXPECT_NEAR(patches.area({Vec3(0, 0.5f, 0), kUp}, 0.3), disc / 2, 0.04 * disc);
+    EXPECT_NEAR(patches.area({Vec3(0, 0, 0), -kUp}, 0.3), disc / 4, 0.04 * disc);
+    EXPECT_EQ(patches.area({Vec3(0.5f, 0.5f, 0.5f), kUp}, 0.3), 0);
+    EXPECT_EQ(patches.area({Vec3(0.5f, 0.5f, 0), Vec3(1, 0, 0)}, 0.3), 0);
+    // On the mean over places near an edge the error of single regions is gone.
+    std::vector<Shape> coarse;
+    coarse.push_back(shape_of(kUnitSquare));
+    const SurfacePatches exact(coarse);
+    Rng rng = make_rng(0);
+    RunningStats error;
+    for (int i = 0; i < 2000; ++i) {
+        const double x = 0.1 * rng.next(), y = rng.next();
+        const SurfaceRegion region{kUnitSquare.at(x, y), kUp};
+        error.add((patches.area(region, 0.1) - exact.area(region, 0.1)) / (kPi * 0.01));
+    }
+    EXPECT_LT(std::abs(error.mean()), 0.01);
+    EXPECT_LT(std::sqrt(error.variance()), 0.04);
+}
+
+TEST(SurfacePatches, CostsTheSameHoweverFineTheMeshIs) {
+    const auto scene = fine_square();
+    const SurfacePatches patches(*scene);
+    const std::uint64_t before = rays_traced();
+    for (int i = 0; i < 100; ++i) patches.area({Vec3(0.5f, 0.01f * static_cast<float>(i), 0), kUp}, 0.3);
+    EXPECT_GT(rays_traced(), before) << "thousands of triangles were added up one by one";
+    EXPECT_LE(rays_traced(), before + 100 * 40);
+}
+
+TEST(SurfacePatches, SeesAWallOnAFineFloor) {
+    SceneDescription d;
+    d.shapes.push_back(shape_of(kUnitSquare, 150));
+    d.shapes.push_back(shape_of({{0.5f, 0, 0}, {0, 1, 0}, {0, 0, 1}}, 150));
+    for (Shape& shape : d.shapes) shape.material = make_diffuse(Rgb(0.5));
+    d.window.width = d.window.height = 8;
+    const Scene scene(std::move(d));
+    const SurfacePatches patches(scene);
+    EXPECT_TRUE(patches.obstructed({Vec3(0.4f, 0.5f, 0), kUp}, 0.2));
+    EXPECT_FALSE(patches.obstructed({Vec3(0.2f, 0.5f, 0), kUp}, 0.2));
 }
 
 } // namespace

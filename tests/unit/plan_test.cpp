@@ -104,7 +104,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, PlanOfPhotons, testing::Values("mps", "ipm", "
 TEST(Plan, LightThroughASlitIsNotGivenUp) {
     const auto scene = test::two_rooms(0.003f);
     const Settings settings = small_settings("auto");
-    const SurfacePatches patches(scene->shapes());
+    const SurfacePatches patches(*scene);
     EXPECT_TRUE(plan_render({*scene, settings, patches, {}}, {}).photons);
 }
 

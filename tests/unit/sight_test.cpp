@@ -28,7 +28,7 @@ double one(const Photon&) { return 1; }
 /// Estimates at `position` of the density of photons that a floor with a wall at `wall` holds: 300 on its unit square,
 /// and ten times as many beyond the wall.
 RunningStats estimates(const Scene& scene, float wall, const Vec3& position) {
-    const SurfacePatches patches(scene.shapes());
+    const SurfacePatches patches(scene);
     RunningStats stats;
     for (std::uint64_t i = 0; i < 3000; ++i) {
         Rng rng = make_rng(i);
@@ -66,7 +66,7 @@ TEST(Sight, TakesNoAnswerFromBeyondAWall) {
     // Close behind a wall photons are dense, and regions so small that the wall stands in none of them; before it they
     // are rare. The nearest estimate is one of the other side.
     const auto scene = floor_with_wall(0.5f);
-    const SurfacePatches patches(scene->shapes());
+    const SurfacePatches patches(*scene);
     Rng rng = make_rng(7);
     const Rectangle behind{{0.44f, 0, 0}, {0, 0, 1}, {0.04f, 0, 0}}, before{{0.56f, 0, 0}, {0, 0, 1}, {0.4f, 0, 0}};
     const auto both = [&](int dense, int rare) {
@@ -88,7 +88,7 @@ TEST(Sight, TakesNoAnswerFromBeyondAWallCloseBy) {
     // Dense places on both sides of a wall that stands in the regions of all of them. The nearest place is often one of
     // the other side, at a small part of its region's radius.
     const auto scene = floor_with_wall(0.5f);
-    const SurfacePatches patches(scene->shapes());
+    const SurfacePatches patches(*scene);
     Rng rng = make_rng(8);
     const Rectangle dim{{0.5f, 0, 0}, {0, 0, 1}, {0.5f, 0, 0}}, bright{{0, 0, 0}, {0, 0, 1}, {0.5f, 0, 0}};
     std::vector<Photon> places = throw_photons(dim, 4000, rng), carriers = throw_photons(dim, 500, rng);
