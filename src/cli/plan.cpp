@@ -59,7 +59,7 @@ Json plan_json(const PlanCommand& o) {
     Scene scene(std::move(loaded.description));
     set_window_margin(scene, loaded.settings);
     const UserPaths paths = bind_user_paths(scene, loaded.user_paths);
-    const SurfacePatches patches(scene.shapes());
+    const SurfacePatches patches(scene);
     const RenderPlan plan = plan_render({scene, loaded.settings, patches, paths}, {}, 1 << 16);
     const ExpectedCost cost = expect_cost(scene, loaded.settings, {}, loaded.user_paths);
     Json choices = Json::array(), stages = Json::object();

@@ -15,6 +15,7 @@
 #include "core/parallel.h"
 #include "film/atomic_file.h"
 #include "render/effort.h"
+#include "render/first_look.h"
 #include "render/methods.h"
 #include "render/render_in_time.h"
 #include "sampling/scene_hash.h"
@@ -46,6 +47,7 @@ struct RenderOptions {
     std::optional<double> timeout, cpu_time; ///< [s]
     std::string quality, display_server;
     Team* team = nullptr; ///< null: this process is alone
+    StopToken::Clock::time_point begun = StopToken::Clock::now();
 
     bool writes() const { return team == nullptr || team->rank() == 0; }
     bool in_time() const { return timeout || cpu_time; }
@@ -59,19 +61,6 @@ std::unique_ptr<TerminalProgress> make_progress(bool quiet) {
     winsize size{};
     const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
     return std::make_unique<TerminalProgress>(stderr, terminal, known ? size.ws_col : 80);
-}
-
-/// Whether at least one pixel has a sample, or a share at least one unit of work. A stop before that leaves nothing
-/// worth a file, least of all one that replaces an earlier picture.
-bool has_picture(const RenderResult& result) {
-    if (result.picture.layers.empty()) return false; // no unit of a team's
-    if (!result.picture.sums.empty()) return result.stats.samples > 0;
-    if (!result.stats.complete && !(result.stats.samples > 0) && result.stats.proposals.empty() &&
-        !result.stats.values.contains("empty pixels"))
-        return false; // chains that had no time for a step
-    const auto empty = result.stats.values.find("empty pixels");
-    return empty == result.stats.values.end() ||
-           empty->second < static_cast<double>(result.picture.width) * static_cast<double>(result.picture.height);
 }
 
 /// Settings that the command line names.
@@ -120,12 +109,23 @@ void write_unfinished(const Picture& picture, const RenderOptions& options) {
     options.outputs.write(copy, "{\n  \"complete\": false\n}\n");
 }
 
+/// From here on time counts that somebody has set: that a scene takes long to read is not the render's affair.
+void start_clock(const RenderOptions& options, StopToken& stop) {
+    if (options.timeout)
+        stop.set_deadline(StopToken::Clock::now() + std::chrono::duration_cast<StopToken::Clock::duration>(
+                                                        std::chrono::duration<double>(*options.timeout)));
+    if (options.cpu_time) stop.set_cpu_limit(cpu_seconds() + *options.cpu_time);
+}
+
 RenderResult render_scene(LoadedScene& loaded, RenderOptions& options, StopToken& stop) {
     RenderResult result;
     LiveView view(options.writes() ? options.display_server : "", options.outputs.exr,
                   [&](const Picture& picture) { write_unfinished(picture, options); });
     with_threads(options.threads, [&] {
         Scene scene(std::move(loaded.description));
+        const std::chrono::duration<double> wall = StopToken::Clock::now() - options.begun;
+        const StageStats loading{"loading", wall.count(), cpu_seconds(), 0};
+        start_clock(options, stop);
         const ImageWindow& window = scene.camera().window();
         const std::uint64_t hash = scene_hash(scene);
         const Picture expected{window.width, window.height, {}, render_identity(loaded.settings, hash), {}};
@@ -141,6 +141,7 @@ RenderResult render_scene(LoadedScene& loaded, RenderOptions& options, StopToken
                      ? render_in_time(scene, loaded.settings, named_settings(options.overrides), context,
                                       loaded.user_paths, share)
                      : render(scene, loaded.settings, context, loaded.user_paths, share);
+        result.stats.stages.insert(result.stats.stages.begin(), loading);
         const auto identity = render_identity(result.settings, hash);
         result.picture.metadata.insert(identity.begin(), identity.end());
         if (options.keeping.resume && share.done == nullptr)
@@ -154,10 +155,6 @@ RenderResult render_scene(LoadedScene& loaded, RenderOptions& options, StopToken
 int run(RenderOptions options) {
     StopToken stop;
     if (!options.writes()) options.quiet = true;
-    if (options.timeout)
-        stop.set_deadline(StopToken::Clock::now() + std::chrono::duration_cast<StopToken::Clock::duration>(
-                                                        std::chrono::duration<double>(*options.timeout)));
-    if (options.cpu_time) stop.set_cpu_limit(*options.cpu_time);
     if (options.outputs.exr.empty()) options.outputs.exr = default_exr(options.scene);
     if (options.no_png)
         options.outputs.png.clear();
@@ -195,7 +192,7 @@ int run(RenderOptions options) {
     if (!options.quiet) print_warnings(result.stats);
     if (!has_picture(result)) {
         if (!stop.requested()) throw InputError("the time was up before the first pixel: nothing was written");
-        fmt::print(stderr, "keyhole: stopped before the first pixel: nothing was written\n");
+        fmt::print(stderr, "keyhole: stopped before there was a unit of work to keep: nothing was written\n");
         return kInterrupted;
     }
     result.picture.metadata.merge(picture_metadata(options.command_line, options.scene, result.stats));

@@ -1,6 +1,7 @@
 // The methods behind render(), one file each.
 #pragma once
 
+#include "render/findings.h"
 #include "render/render.h"
 #include "sampling/user_paths.h"
 
@@ -16,14 +17,24 @@ inline bool keeps_photons(std::string_view method) {
     return std::ranges::find(methods, method) != methods.end();
 }
 
+/// The method that settings.method names, without render()'s care for renders that are stopped before they have a
+/// picture. The scene's window margin has to be set.
+/// @throws Interrupted, and InputError as render()
+RenderResult render_by_method(const Scene& scene, const Settings& settings, const UserPaths& paths,
+                              const RunContext& context, const Share& share, Findings& findings);
+
 /// Everything that renders from photon maps; the method is the sampler that fills them: mps, ipm, pm
 /// or pss, or the better of the first two by trial.
 RenderResult render_photons(const Scene& scene, const Settings& settings, const UserPaths& paths,
-                            const RunContext& context, const Share& share);
+                            const RunContext& context, const Share& share, Findings& findings);
+
+/// Finds out what render_photons() has to know, all methods but pm. @throws Interrupted
+void plan_photons(const Scene& scene, const Settings& settings, const UserPaths& paths, const RunContext& context,
+                  Findings& findings);
 
 /// Metropolis light transport (Veach and Guibas 1997): the chains of Metropolis photon sampling, drawn directly.
 RenderResult render_mlt(const Scene& scene, const Settings& settings, const UserPaths& paths, const RunContext& context,
-                        const Share& share);
+                        const Share& share, Findings& findings);
 
 /// Path tracing with next-event estimation, the reference.
 RenderResult render_path(const Scene& scene, const Settings& settings, const RunContext& context, const Share& share);

@@ -100,15 +100,16 @@ bool draw_chains(const Scene& scene, const Settings& settings, const UserPaths& 
 } // namespace
 
 RenderResult render_mlt(const Scene& scene, const Settings& settings, const UserPaths& paths, const RunContext& context,
-                        const Share& share) {
+                        const Share& share, Findings& findings) {
     RenderResult result;
     RenderStats& stats = result.stats;
     const std::int64_t groups = chain_groups(settings);
     Work work(settings, scene.camera().window(), Exposure::Parts::both, share, groups, Work::PassStart::costly);
     ChainReports reports;
     RunningStats luminance; // of direct light
-    const ReachFound found = find_reach(scene, settings);
-    const PathSet set{.reach = found.reach ? &*found.reach : nullptr};
+    if (!findings.plan && !findings.reach) findings.reach = find_reach(scene, settings, context);
+    const std::optional<Reach>& reach = findings.plan ? findings.plan->reach : findings.reach->reach;
+    const PathSet set{.reach = reach ? &*reach : nullptr};
     const GuidedPaths guides(scene, paths, set, static_cast<int>(settings.max_depth));
     PassStart start;
     while (const auto unit = work.take(context)) {

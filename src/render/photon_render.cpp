@@ -1,4 +1,5 @@
 // The methods that render from photon maps: pass by pass a sampler, the maps, the gather.
+#include "core/interruptible.h"
 #include "render/methods.h"
 #include "render/pass_gather.h"
 #include "render/pass_seed.h"
@@ -39,13 +40,6 @@ class NoPhotons final : public PhotonSampler {
     }
 };
 
-RenderPlan make_plan(const SamplerContext& c, RenderStats& stats, const RunContext& context) {
-    const StageClock clock(stats, "plan");
-    RenderPlan plan = plan_render(c, context);
-    if (!plan.photons) stats.remarks.push_back("stopped before the photons: " + plan.items.front().why);
-    return plan;
-}
-
 std::unique_ptr<PhotonSampler> make_sampler(const SamplerContext& c, const RenderPlan& plan, RenderStats& stats,
                                             const RunContext& context) {
     if (!c.settings.load_map.empty()) return make_file_sampler(c);
@@ -69,13 +63,20 @@ std::optional<ImageWeight> weigh_pixels(const SamplerContext& c, const RenderPla
 /// Renders one pass after the other.
 class Passes {
   public:
-    Passes(const SamplerContext& c, const RenderPlan& plan, PhotonSampler& sampler, Work& work, RenderStats& stats)
-        : c_(c), plan_(plan), sampler_(sampler), work_(work), stats_(stats) {}
+    /// `for_gather`: as Share's.
+    Passes(const SamplerContext& c, const RenderPlan& plan, PhotonSampler& sampler, Work& work, double for_gather,
+           RenderStats& stats)
+        : c_(c), plan_(plan), sampler_(sampler), work_(work), for_gather_(for_gather), stats_(stats) {}
 
     /// All passes that there are units of.
+    /// @throws Interrupted if there is nothing to show.
     void run(const RunContext& context) {
         next_ = work_.take(context);
-        while (next_ && run_pass(work_.pass_of(*next_), context)) {
+        try {
+            while (next_ && run_pass(work_.pass_of(*next_), context)) {
+            }
+        } catch (const Interrupted&) {
+            if (work_.is_first()) throw; // what the pass before left is a picture
         }
     }
     /// The same by a crew: each helps with every pass, whether or not it gets to sample pixels from it.
@@ -96,20 +97,21 @@ class Passes {
     /// Returns whether to go on.
     bool run_pass(std::int64_t pass, const RunContext& context) {
         const std::uint64_t seed = seed_of_pass(c_.settings, pass);
-        Photons photons = sampler_.sample(seed, stats_, context);
+        RunContext early = context;
+        early.reserve += for_gather_;
+        Photons photons = sampler_.sample(seed, stats_, early);
         if (pass == 0) save(photons, context);
         // The photons of a pass that was cut short are good for a first picture, not for one that is there.
-        if (context.stopped() && (context.crew != nullptr || !work_.is_first())) return false;
+        if (early.stopped() && (context.crew != nullptr || !work_.is_first())) return false;
         report_photons(photons, stats_);
-        const RunContext all_time = context.with_reserve(0);
         std::optional<PassGather> gather;
         {
             const StageClock clock(stats_, "cache");
-            gather.emplace(c_, plan_, pass, seed, std::move(photons), stats_, all_time);
+            gather.emplace(c_, plan_, pass, seed, std::move(photons), stats_, context);
         }
         if (context.crew != nullptr && context.stopped()) return false;
         const StageClock clock(stats_, "gather");
-        const bool whole = sample_rounds(*gather, pass, all_time.alone());
+        const bool whole = sample_rounds(*gather, pass, context.alone());
         gather->report(stats_);
         return whole || context.crew != nullptr; // a crew ends where all can agree on it: in the next pass
     }
@@ -142,6 +144,7 @@ class Passes {
     const RenderPlan& plan_;
     PhotonSampler& sampler_;
     Work& work_;
+    double for_gather_;
     RenderStats& stats_;
     RunningStats luminance_;
     bool saved_ = false;
@@ -150,16 +153,30 @@ class Passes {
 
 } // namespace
 
+void plan_photons(const Scene& scene, const Settings& settings, const UserPaths& paths, const RunContext& context,
+                  Findings& findings) {
+    if (!findings.patches) findings.patches.emplace(scene);
+    if (!findings.plan) findings.plan = plan_render({scene, settings, *findings.patches, paths}, context);
+}
+
 RenderResult render_photons(const Scene& scene, const Settings& settings, const UserPaths& paths,
-                            const RunContext& context, const Share& share) {
+                            const RunContext& context, const Share& share, Findings& findings) {
     RenderResult result;
     RenderStats& stats = result.stats;
-    const SurfacePatches patches(scene.shapes());
-    SamplerContext c{scene, settings, patches, paths};
+    if (!findings.patches) findings.patches.emplace(scene);
+    SamplerContext c{scene, settings, *findings.patches, paths};
     // A crew has to come to one plan: who is stopped in the middle of a trial would make another.
     RunContext deciding = context;
     if (share.crew != nullptr) deciding.stop = nullptr;
-    const RenderPlan plan = make_plan(c, stats, deciding);
+    // Standard photon mapping plans otherwise.
+    Findings own;
+    Findings& planned = settings.method == "pm" ? own : findings;
+    if (!planned.plan) {
+        const StageClock clock(stats, "plan");
+        planned.plan = plan_render(c, deciding);
+    }
+    const RenderPlan& plan = *planned.plan;
+    if (!plan.photons) stats.remarks.push_back("no photon maps: " + plan.items.front().why);
     c.reach = plan.reach ? &*plan.reach : nullptr;
     c.caustics = plan.caustics || c.reach != nullptr;
     if (plan.photons && settings.reach != "off")
@@ -168,7 +185,7 @@ RenderResult render_photons(const Scene& scene, const Settings& settings, const 
     c.weight = weight ? &*weight : nullptr;
     const auto sampler = make_sampler(c, plan, stats, deciding);
     Work work(settings, scene.camera().window(), Exposure::Parts::film, share, settings.spp, Work::PassStart::costly);
-    Passes passes(c, plan, *sampler, work, stats);
+    Passes passes(c, plan, *sampler, work, share.for_gather, stats);
     if (work.crew() == nullptr)
         passes.run(context);
     else

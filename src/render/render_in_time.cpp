@@ -1,23 +1,40 @@
 #include "render/render_in_time.h"
 
-#include "film/blend.h"
-#include "render/effort.h"
+#include "core/error.h"
+#include "core/interruptible.h"
+#include "render/affordable.h"
+#include "render/first_look.h"
+#include "render/mean_render.h"
+#include "render/method_trials.h"
 #include "render/methods.h"
 #include "render/pass_seed.h"
-#include "render/stage_work.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 
 namespace keyhole {
 namespace {
 
-constexpr double kSecondsOfEffort = 5;               // CPU time of a unit, on scenes/ at 320x240
-constexpr const char* kChoice = "trial of samplers"; // the stage that chooses a method: once
+/// Two methods are close if the one promises less than so many times the error of the other.
+constexpr double kClose = 1.8;
+/// The other takes over where the error of the first turns out so many times as large as what that promises.
+constexpr double kWorse = 1.3;
+/// Parts of the time that are spent before each look at what errors turned out to be.
+constexpr double kPart = 0.125;
+constexpr int kPartsOfALook = 2, kLooks = 2;
+
+/// Of the time for a render with photons or chains that its foreseen cost is to fill. What is left then goes into more
+/// samples of pixels, or more mutations.
+constexpr double kUse = 0.92, kMoreMutations = 1.5;
+/// Less than this share of all time is not worth a render with photons.
+constexpr double kLeast = 0.05;
+/// The trial of a method by name: of the time, what it is to take and what it may take.
+constexpr double kTrial = 0.02, kLongestTrial = 0.6, kTrialSeconds = 0.5;
+
+bool samples_pixels(const std::string& method) { return method == "path" || method == "bdpt"; }
 
 /// " key=value" for each setting of `b` that `a` has otherwise.
 std::string differences(const Settings& a, const Settings& b) {
@@ -35,276 +52,161 @@ std::string differences(const Settings& a, const Settings& b) {
     return text;
 }
 
-/// What a render cost.
-struct Experience {
-    Settings settings; ///< with the method that was run
-    double effort, pixels;
-    std::vector<std::pair<std::string, double>> stages; ///< name, seconds
-
-    /// What some stages, all if none is named, of a render with other settings would take [s].
-    double foresee(const Settings& other, double its_pixels, std::initializer_list<std::string_view> names = {}) const {
-        double sum = 0;
-        for (const auto& [name, time] : stages)
-            if (names.size() == 0 || std::ranges::find(names, name) != names.end())
-                sum += time * stage_work(name, other, its_pixels) / stage_work(name, settings, pixels);
-        return sum;
-    }
-};
-
-/// @param seconds that the render took, of the kind that is limited: by the clock, or of CPU time.
-Experience experience(const Settings& settings, double effort, double pixels, const RenderStats& stats,
-                      double seconds) {
-    double wall = 0, cpu = 0;
-    for (const StageStats& stage : stats.stages) {
-        wall += stage.wall_seconds;
-        cpu += stage.cpu_seconds;
-    }
-    const bool by_cpu = std::abs(seconds - cpu) < std::abs(seconds - wall);
-    Experience e{settings, effort, pixels, {}};
-    e.stages.emplace_back("between stages", std::max(0.0, seconds - (by_cpu ? cpu : wall)));
-    for (const StageStats& stage : stats.stages)
-        if (stage.name != kChoice) e.stages.emplace_back(stage.name, by_cpu ? stage.cpu_seconds : stage.wall_seconds);
-    return e;
-}
-
-/// Effort of the trial, as a share of what should fill the time, and at most.
-constexpr double kTrial = 0.02, kTrialAtMost = 0.1;
-/// What traces importance costs is told by so many walks.
-constexpr std::int64_t kTrialImportons = 4000;
-/// A trial's picture is smaller by so much in width and height: it is to show what effort costs, nothing else.
-constexpr int kTrialScale = 4;
-/// Of the time that is left, so that a render that costs a little more than was foreseen is done in time.
-constexpr double kUse = 0.95;
-/// The same after the trial, which shows costs less well than the render that then follows, where what each of these
-/// costs at least is less than such a share of the time.
-constexpr double kUseOfTrial = 0.55, kCheap = 0.15;
-/// A render is worth its time if it has so much of the effort of the one before it.
-constexpr double kWorthwhile = 0.25;
-/// What one render shows of costs isn't stretched further than to so many times its effort.
-constexpr double kMostGrowth = 200;
-/// Renders with less effort than this share of a later one's tell nothing that it doesn't.
-constexpr double kNegligible = 0.1;
-
-/// The seed of the render of that number: errors have to be independent.
-std::int64_t seed_of_render(const Settings& settings, std::int64_t number) {
-    constexpr std::int64_t kBeyondPasses = std::int64_t{1} << 40; // no pass has such a number
-    return static_cast<std::int64_t>(seed_of_pass(settings, kBeyondPasses + number));
-}
-
-/// One line of all stages of a render that a better one takes the place of.
-void add_stages(StageStats& sum, const RenderStats& stats) {
-    for (const StageStats& stage : stats.stages) {
-        sum.wall_seconds += stage.wall_seconds;
-        sum.cpu_seconds += stage.cpu_seconds;
-        sum.rays += stage.rays;
-    }
-}
-
-/// CPU time of some stages [s].
-double seconds_of(const RenderStats& stats, std::initializer_list<std::string_view> names) {
-    double seconds = 0;
-    for (const StageStats& stage : stats.stages)
-        if (std::find(names.begin(), names.end(), stage.name) != names.end()) seconds += stage.cpu_seconds;
-    return seconds;
-}
-
-/// The split with the least error for the time of a render with `balance`: squared errors fall as the reciprocal of
-/// time, so the best times are as errors times the roots of times. Nothing changes where an error isn't known.
-StageBalance rebalance(const StageBalance& balance, const RenderStats& stats) {
-    const auto chains = stats.values.find("chains, error of block brightness");
-    const double one = seconds_of(stats, {"brightness"}), two = seconds_of(stats, {"photons", "chains"});
-    if (chains == stats.values.end() || !(chains->second > 0 && stats.brightness > 0 && one > 0 && two > 0))
-        return balance;
-    const double to_one = stats.brightness_error / stats.brightness * std::sqrt(one);
-    const double to_two = chains->second * std::sqrt(two);
-    const double share = to_one / (to_one + to_two);
-    // Bounds, for what short renders say of their errors is vague; and groups of chains that agree too well, as those
-    // do that have not mixed, think their error smaller than it is.
-    return {std::clamp(balance.brightness * share * (one + two) / one, 0.25, 1.2),
-            std::clamp(balance.chains * (1 - share) * (one + two) / two, 0.9, 4.0)};
-}
-
-/// The mean of renders, weighted by their efforts: their squared errors are about as the reciprocals. What is told of
-/// it is what is to be told of the one with most effort.
-class MeanRender {
-  public:
-    bool empty() const { return !result_; }
-    void add(RenderResult&& result, double effort) {
-        if (!result_ || effort_ <= kNegligible * effort) {
-            if (result_) add_stages(others_, result_->stats);
-            result_ = std::move(result);
-            effort_ = most_ = effort;
-            return;
-        }
-        effort_ += effort;
-        blend(result_->picture, result.picture, effort_ > 0 ? effort / effort_ : 0);
-        result_->picture.sums.clear(); // they are of one render
-        const double samples = result_->stats.samples + result.stats.samples;
-        if (effort > most_) {
-            most_ = effort;
-            std::swap(result_->stats, result.stats);
-            result_->settings = result.settings;
-        }
-        result_->stats.samples = samples;
-        add_stages(others_, result.stats);
-    }
-    const Picture& picture() const { return result_->picture; }
-    /// A render that gave no picture took time, too.
-    void add_time_of(const RenderStats& stats) { add_stages(others_, stats); }
-    RenderResult take() {
-        auto& stages = result_->stats.stages;
-        stages.insert(stages.begin(), others_);
-        result_->stats.values["effort"] = effort_;
-        return std::move(*result_);
-    }
-
-  private:
-    std::optional<RenderResult> result_;
-    double effort_ = 0, most_ = 0;
-    StageStats others_{.name = "other renders"};
-};
-
-bool has_empty_pixels(const RenderStats& stats) {
-    const auto empty = stats.values.find("empty pixels");
-    return empty != stats.values.end() && empty->second > 0;
-}
-
-/// What part of what was asked for there was time for.
-double share_done(const Settings& asked, const RenderStats& stats) {
-    if (stats.complete && stats.proposals.empty() && !stats.values.contains("light paths")) return 1; // no light found
-    const auto passes = static_cast<double>(std::max<std::int64_t>(1, asked.passes));
-    double share = 1;
-    if (const auto paths = stats.values.find("light paths"); paths != stats.values.end())
-        share = paths->second / (passes * static_cast<double>(asked.light_paths));
-    else {
-        const double steps =
-            std::accumulate(stats.proposals.begin(), stats.proposals.end(), 0.0,
-                            [](double sum, const ProposalStats& p) { return sum + static_cast<double>(p.proposed); });
-        share = steps / (passes * static_cast<double>(asked.mutations));
-    }
-    // Fewer samples of a pixel leave what photons and the cache know of it as it is.
-    const double samples =
-        keeps_photons(asked.method) && !stats.complete ? stats.samples / (passes * static_cast<double>(asked.spp)) : 1;
-    return std::min(share, 1.0) * std::clamp(samples, 0.1, 1.0);
-}
-
-/// For a method that takes samples as long as there is time.
-Settings with_all_samples(Settings settings, const char* method, const std::set<std::string>& given) {
-    settings.method = method;
-    if (!given.contains("spp")) settings.spp = 1 << 24;
-    return settings;
-}
-
-/// Renders a scene as often as there is time for.
+/// Renders a scene for as long as there is time.
 class RenderInTime {
   public:
     RenderInTime(Scene& scene, const Settings& settings, const std::set<std::string>& given, const RunContext& context,
                  const UserPathFile& user_paths, const Share& share)
-        : scene_(scene), settings_(settings), given_(given), context_(context), user_paths_(user_paths), share_(share),
-          window_(scene.camera().window()) {}
+        : scene_(scene), settings_(settings), given_(given), context_(context),
+          user_paths_(bind_user_paths(scene, user_paths)), share_(share), start_(left()) {
+        const ImageWindow& window = scene.camera().window();
+        pixels_ = static_cast<double>(window.width) * window.height;
+    }
 
     RenderResult run() {
-        const RenderStats trial = try_out();
-        mean_.add_time_of(trial);
-        if (keeps_photons(settings_.method) && foreseen(0) > left()) return trace_paths();
-        for (auto effort = affordable(); effort && add_render(*effort) && !context_.stopped();) effort = affordable();
+        try {
+            choose();
+            if (is_close()) spend_in_parts();
+            while (!context_.stopped() && left() > kLeast * start_ && !used_up_) render_part(left(), true);
+            if (mean_.empty() && !context_.stopped()) fall_back();
+        } catch (const Interrupted&) {
+            if (mean_.empty() && !context_.stopped()) fall_back();
+        }
+        if (mean_.empty()) return first_look(scene_, settings_);
         RenderResult result = mean_.take();
-        std::ranges::copy_if(trial.remarks, std::back_inserter(result.stats.remarks),
-                             [](const std::string& remark) { return remark.starts_with("method "); });
+        result.stats.complete = !context_.stop->requested();
+        if (result.stats.values["passes"] == 0) result.stats.values.erase("passes");
+        result.stats.remarks.insert(result.stats.remarks.begin(), remarks_.begin(), remarks_.end());
+        result.settings.seed = settings_.seed;
         return result;
     }
 
   private:
-    static double pixels_of(const ImageWindow& w) { return static_cast<double>(w.width) * w.height; }
-    double pixels() const { return pixels_of(window_); }
     double left() const { return context_.stop->seconds_left(); }
-    Settings with(double effort, double pixels) const {
-        return with_effort(settings_, effort, static_cast<std::int64_t>(pixels), given_, balance_);
-    }
+    TrialContext trial_context() { return {scene_, settings_, given_, context_, user_paths_, findings_}; }
+    const TriedMethod* runner_up() const { return tried_.size() > 1 ? &tried_[1] : nullptr; }
+    bool is_close() const { return runner_up() != nullptr && tried_[1].predicted < kClose * tried_[0].predicted; }
 
-    /// A first, small render, which chooses the method and shows what the stages cost. Its picture is of no use.
-    RenderStats try_out() {
-        const double start = left();
-        ImageWindow small = window_;
-        small.width = std::max(1, window_.width / kTrialScale);
-        small.height = std::max(1, window_.height / kTrialScale);
-        const double effort = std::min(kTrial * start / kSecondsOfEffort, kTrialAtMost);
-        Settings chosen = with_effort(settings_, effort, static_cast<std::int64_t>(pixels_of(small)), {},
-                                      balance_); // what is given may be much
-        chosen.importons = std::min(chosen.importons, kTrialImportons);
-        chosen.save_map.clear();
-        chosen.seed = seed_of_render(settings_, renders_++);
-        scene_.set_window(small);
-        RenderStats stats = render(scene_, chosen, context_, user_paths_).stats;
-        scene_.set_window(window_);
-        learn(chosen, effort, pixels_of(small), stats, start);
-        // What gather rays reach is a question of the scene, and takes time to answer.
-        if (const auto stored = stats.values.find("light beyond gather rays is stored");
-            stored != stats.values.end() && stored->second == 0)
-            settings_.reach = "off";
-        return stats;
-    }
-
-    /// Where there isn't time for the least of what photon maps take. Paths of a sample a pixel are a noisy picture,
-    /// not a wrong one, and are traced even if time is up.
-    RenderResult trace_paths() {
-        RunContext whole = context_;
-        whole.whole_round = true;
-        mean_.add(render(scene_, with_all_samples(settings_, "path", given_), whole, user_paths_, share_), 0);
-        RenderResult result = mean_.take();
-        result.stats.warnings.push_back("too little time for " + settings_.method + " here: paths were traced instead");
-        return result;
-    }
-
-    void learn(Settings settings, double effort, double pixels, const RenderStats& stats, double start) {
-        settings.method = settings_.method = stats.method; // what `auto` stands for
-        last_ = experience(settings, effort, pixels, stats, start - left());
-        balance_ = rebalance(balance_, stats);
-    }
-
-    double foreseen(double effort) const { return last_->foresee(with(effort, pixels()), pixels()); }
-
-    /// The most effort that the rest of the time is enough for; none where it is enough for none that is worth it.
-    std::optional<double> affordable() const {
-        const double worthwhile = kWorthwhile * last_->effort;
-        const bool in_two = mean_.empty() && foreseen(0) < kCheap * left();
-        const double seconds = (in_two ? kUseOfTrial : kUse) * left();
-        double least = worthwhile, most = kMostGrowth * last_->effort;
-        if (foreseen(least) > seconds) return mean_.empty() ? std::optional(least) : std::nullopt;
-        if (foreseen(most) <= foreseen(least)) return last_->effort; // all that effort is was given
-        while (most - least > 0.01 * least) {
-            const double effort = (least + most) / 2;
-            (foreseen(effort) < seconds ? least : most) = effort;
+    /// The method, and what it costs.
+    void choose() {
+        if (settings_.method != "auto") {
+            use(settings_.method);
+            if (samples_pixels(method_)) return;
+            cost_ =
+                try_cost(trial_context(), method_, std::min(kTrial * start_, kTrialSeconds), kLongestTrial * start_);
+            forget_rough_findings();
+            if (!cost_ && !context_.stopped())
+                throw InputError(fmt::format("too little time for {0}: what it does before its first picture takes "
+                                             "longer here; expected more than {1:.2g} s, or another method",
+                                             method_, start_));
+            return;
         }
-        return least;
+        tried_ = try_methods(trial_context());
+        forget_rough_findings();
+        if (tried_.empty()) return use("path");
+        remarks_.push_back(describe_choice(tried_));
+        take_over(tried_.front());
+        at_choice_ = left();
+    }
+    /// How far gather rays come is found out anew, with more rays than trials spend on it, where it matters.
+    void forget_rough_findings() {
+        if (findings_.plan && findings_.plan->reach) findings_.plan.reset();
+        findings_.reach.reset();
+    }
+    void use(const std::string& method) { method_ = method; }
+    void take_over(const TriedMethod& t) {
+        use(t.method);
+        cost_ = t.of;
+        weight_ = 1 / std::max(t.predicted, 1e-12);
     }
 
-    /// Returns whether it came to a picture.
-    bool add_render(double effort) {
+    /// A part of the time, looked at again after two; then the rest is for the better one.
+    void spend_in_parts() {
+        const double part = kPart * left();
+        for (int look = 0; look < kLooks && !context_.stopped(); ++look) {
+            std::vector<Image> pictures;
+            for (int i = 0; i < kPartsOfALook && !context_.stopped(); ++i)
+                if (auto y = render_part(part, false)) pictures.push_back(std::move(*y));
+            if (pictures.size() < kPartsOfALook || !runner_up()) return;
+            const TrialPictures halves{std::move(pictures[0]), std::move(pictures[1])};
+            const TrialError e = trial_errors(std::span(&halves, 1)).front();
+            // Of all the time, as predictions are.
+            const double turned_out = (e.grain + e.blotches) * part / at_choice_;
+            remarks_.push_back(fmt::format("the error of {} turns out to be {:.2g} where {:.2g} was foreseen", method_,
+                                           turned_out, tried_.front().predicted));
+            tried_.front().predicted = turned_out;
+            if (turned_out < kWorse * tried_[1].predicted) {
+                if (!is_close()) return;
+                continue;
+            }
+            std::swap(tried_[0], tried_[1]);
+            take_over(tried_.front());
+            remarks_.push_back("the rest of the time went to " + method_);
+        }
+    }
+
+    /// Settings that use so many seconds, and of a method whose last stage goes on as long as there is time: more than
+    /// that. All of these are good at any length.
+    Settings settings_for(double seconds, bool open_ended) {
+        Settings s = settings_;
+        s.method = method_;
+        if (samples_pixels(method_)) {
+            if (!given_.contains("spp")) s.spp = 1 << 24;
+            return s;
+        }
+        effort_ = affordable_effort(cost_->cost, s, given_, cost_->balance, pixels_, kUse * seconds);
+        s = with_effort(s, effort_, static_cast<std::int64_t>(pixels_), given_, cost_->balance);
+        if (!keeps_photons(method_)) {
+            s.chain_groups = 1;
+            if (!given_.contains("mutations"))
+                s.mutations = static_cast<std::int64_t>(kMoreMutations * static_cast<double>(s.mutations));
+        } else if (open_ended && s.passes == 1 && !given_.contains("spp")) {
+            s.spp = 1 << 24;
+        }
+        return s;
+    }
+
+    /// A render of so many seconds; the last one goes on to the end of the time. Returns its luminance.
+    std::optional<Image> render_part(double seconds, bool last) {
         const double start = left();
-        Settings chosen = with(effort, pixels());
+        Settings chosen = settings_for(seconds, last);
         RunContext limited = context_;
-        if (keeps_photons(chosen.method)) {
-            // Should the stages before it cost more than was foreseen, they leave stage three its time.
-            limited.reserve = std::min(1.2 * last_->foresee(chosen, pixels(), {"cache", "gather"}), start / 2) /
-                              static_cast<double>(std::max<std::int64_t>(1, chosen.passes));
-            limited.whole_round = !mean_.empty(); // there is a picture, and photons are worth that little more time
+        limited.whole_round = last && mean_.empty(); // a noisy picture is better than one with holes
+        if (!last) limited.reserve = std::max(0.0, start - seconds);
+        Share share = share_to_look_at();
+        if (keeps_photons(method_)) {
+            Settings planned = chosen;
+            planned.spp = std::min<std::int64_t>(
+                chosen.spp, with_effort(chosen, effort_, static_cast<std::int64_t>(pixels_), {}).spp);
+            share.for_gather = std::min(1.2 * cost_->cost.foresee(planned, pixels_, {"cache", "gather"}), seconds / 2) /
+                               static_cast<double>(std::max<std::int64_t>(1, chosen.passes));
+            if (!last) limited.reserve = std::max(0.0, start - 1.5 * seconds); // ends by itself
         }
         chosen.seed = seed_of_render(settings_, renders_++);
-        if (!mean_.empty()) chosen.save_map.clear();
-        RenderResult result = render(scene_, chosen, limited, user_paths_, share_to_look_at());
-        result.settings.seed = chosen.seed = settings_.seed;
-        // Where time was up before each pixel had a sample, what was there before is the better picture.
-        if (!mean_.empty() && !result.stats.complete && has_empty_pixels(result.stats)) {
+        if (renders_ > 1) chosen.save_map.clear();
+        RenderResult result = render_by_method(scene_, chosen, user_paths_, limited, share, findings_);
+        used_up_ = last && (left() > start - 0.5 * seconds); // all that was asked for by number is done
+        const auto empty = result.stats.values.find("empty pixels");
+        const bool holes = empty != result.stats.values.end() && empty->second > 0;
+        if (!has_picture(result) || (holes && !mean_.empty())) {
             mean_.add_time_of(result.stats);
-            return false;
+            return std::nullopt;
         }
+        if (chosen.spp == 1 << 24)
+            chosen.spp = std::max<std::int64_t>(1, static_cast<std::int64_t>(std::lround(result.stats.samples)));
         result.stats.remarks.push_back("set by the time:" + differences(settings_, chosen));
-        learn(chosen, effort, pixels(), result.stats, start);
-        // One that was cut short comes to less.
-        const double made = effort * share_done(chosen, result.stats);
-        mean_.add(std::move(result), made);
-        return true;
+        result.settings = chosen;
+        auto y = luminance_of(result.picture);
+        mean_.add(std::move(result), weight_ * (start - left()));
+        return y;
+    }
+
+    /// Paths of a sample a pixel are a noisy picture, not a wrong one.
+    void fall_back() {
+        if (settings_.method != "auto") return;
+        remarks_.push_back("paths are traced: " + method_ + " was not done in its time");
+        use("path");
+        render_part(left(), true);
     }
 
     /// Who looks sees the mean once there is one, not the begin of what comes after.
@@ -315,15 +217,23 @@ class RenderInTime {
     }
 
     Scene& scene_;
-    Settings settings_;
+    const Settings& settings_;
     const std::set<std::string>& given_;
     const RunContext& context_;
-    const UserPathFile& user_paths_;
+    const UserPaths user_paths_;
     const Share& share_;
-    const ImageWindow window_;
-    std::int64_t renders_ = 0; // begun
-    StageBalance balance_;
-    std::optional<Experience> last_;
+    const double start_; // of time, in the beginning [s]
+    double pixels_ = 0;
+    Findings findings_;
+    std::string method_;
+    std::optional<TrialCost> cost_;  // of the method; none for those that sample pixels
+    std::vector<TriedMethod> tried_; // the best first
+    double at_choice_ = 0;           // time that was left then [s]
+    double weight_ = 1;              // of a second of the method in the mean
+    double effort_ = 0;              // of the render under way
+    bool used_up_ = false;           // everything that was asked for by number is done before the time
+    std::int64_t renders_ = 0;       // begun
+    std::vector<std::string> remarks_;
     MeanRender mean_;
 };
 
@@ -331,9 +241,7 @@ class RenderInTime {
 
 RenderResult render_in_time(Scene& scene, const Settings& settings, const std::set<std::string>& given,
                             const RunContext& context, const UserPathFile& user_paths, const Share& share) {
-    for (const char* method : {"path", "bdpt"})
-        if (settings.method == method)
-            return render(scene, with_all_samples(settings, method, given), context, user_paths, share);
+    set_window_margin(scene, settings);
     Settings s = settings;
     if (!given.contains("brightness_error")) s.brightness_error = 0; // stage one gets its part of the time, no more
     return RenderInTime{scene, s, given, context, user_paths, share}.run();

@@ -9,14 +9,15 @@
 
 namespace keyhole {
 
-/// Renders with as much effort as fits in context.stop->seconds_left(). A small trial shows what effort costs in this
-/// scene, and chooses the method for `auto`; a render follows with what is foreseen to fill the time, and others in
-/// what is left then, as long as that is worth it. The result is their mean, weighted by their efforts. Where chains
-/// are run, stage one and they share time so that their errors, as the render before had them, shrink together. Where
-/// even the first doesn't fit, the result is what there was when time was up.
+/// Renders for context.stop->seconds_left(), and uses all of it. Short trials show what each method costs in this scene
+/// and how large its error is; for `auto` the one that promises the least error makes the picture. Where another one is
+/// close, the time goes in parts, and what their errors turn out to be is looked at again when a quarter and a half of
+/// it are spent. The result is the mean of all renders but the trials, with weights that were fixed before their
+/// samples: nothing in choosing biases it. Where chains are run, stage one and they share time so that their errors
+/// shrink together.
 /// @param given settings that stay as they are.
 /// @param share for its look(); all passes are done here.
-/// @throws as render().
+/// @throws InputError where the time is too short for a method that is asked for by name, and as render().
 RenderResult render_in_time(Scene& scene, const Settings& settings, const std::set<std::string>& given,
                             const RunContext& context, const UserPathFile& user_paths = {}, const Share& share = {});
 

@@ -33,6 +33,9 @@ struct Share {
     std::function<void(const Picture&)> look;
     std::function<bool()> wants_look;
 
+    /// Of the time until the stop, what photons leave to the gather, in each pass [s].
+    double for_gather = 0;
+
     /// Tells different processes what to do: the n-th call made by any of them returns n, from 0; none: it is time to
     /// stop. Empty: there is only this process.
     std::function<std::optional<std::int64_t>()> take_number;

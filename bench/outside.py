@@ -1,0 +1,163 @@
+#!/usr/bin/env python3
+"""Every method, and what `auto` makes of the time, on scenes that other people made.
+
+usage: bench/outside.py [--keyhole build/keyhole] [--shared ../shared] [--scenes coffee,...] [--times 5,15,60]
+                        [--methods auto,path,...] [--best N] [--seed 1] [--reference-seconds 240] [-j 2] [--out outside]
+
+Renders each scene at the size of its given reference, one thread a render, by `--cpu-time`. The error is the trimmed relative
+squared error free of the references' own noise (`keyhole diff`, cross_trim), against two independent long renders of our own,
+which stay in OUT/references; how far their blocks are from the reference that was given stands in OUT/references.json. Results
+stay in OUT/results.json, so that a run that was interrupted goes on, and more scenes, times or methods add to it. --best N
+leaves out, at all times but the shortest, methods that were not among the N best of the scene at the time before.
+The table has a row for each scene and time; the last columns are the best method by name and auto over it.
+"""
+import argparse
+import concurrent.futures
+import json
+import os
+import pathlib
+import statistics
+import subprocess
+import threading
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+METHODS = "auto,path,bdpt,mlt,pssmlt,mmlt,rjmlt,ipm,mps,pm"
+# Size, the method of the long renders, and the reference that was given (if it has the size).
+SCENES = {
+    "coffee": ("100x125", "path", "references/coffee.exr"),
+    "bathroom": ("128x128", "bdpt", "references/bathroom.exr"),
+    "dining-room": ("160x90", "bdpt", "references/dining-room.exr"),
+    "veach-ajar": ("160x90", "mmlt", "references/veach-ajar.a.exr"),
+    "cornell-box": ("128x128", "bdpt", "references/cornell-box.exr"),
+    "veach-bidir": ("128x128", "bdpt", "references/veach-bidir.exr"),
+    "water-caustic": ("128x128", "bdpt", None),
+    "mps/box": ("320x240", "ipm", "references/mps/box.a.exr"),
+    "mps/rooms": ("320x240", "ipm", "references/mps/rooms.a.exr"),
+    "mps/lantern": ("320x240", "ipm", "references/mps/lantern.a.exr"),
+}
+
+
+def scene_file(shared, name):
+    return f"{shared}/scenes/{name}.pbrt" if name.startswith("mps/") else f"{shared}/scenes/{name}/scene.pbrt"
+
+
+def render(args, name, picture, seconds, method, seed):
+    """Renders; returns the CPU seconds that the process took and its statistics. Runs in a thread of its own."""
+    stats = f"{picture}.json"
+    command = [args.keyhole, "render", scene_file(args.shared, name), "-q", "-t", "1", "--no-png", "-o", picture, "--stats", stats,
+               "--resolution", SCENES[name][0], "--method", method, "--seed", str(seed), "--cpu-time", str(seconds)]
+    child = subprocess.Popen(command)
+    usage = os.wait4(child.pid, 0)
+    if usage[1] != 0:
+        raise SystemExit(f"{' '.join(command)}: status {usage[1]}")
+    with open(stats) as file:
+        told = json.load(file)
+    os.remove(stats)
+    return usage[2].ru_utime + usage[2].ru_stime, told
+
+
+def diff(args, *pictures):
+    return json.loads(subprocess.run([args.keyhole, "diff", *pictures], check=True, capture_output=True, text=True).stdout)
+
+
+class Results:
+    """A dictionary in a file."""
+    def __init__(self, path):
+        self.path, self.lock = path, threading.Lock()
+        self.found = json.loads(path.read_text()) if path.exists() else {}
+
+    def add(self, key, value):
+        with self.lock:
+            self.found[key] = value
+            self.path.write_text(json.dumps(self.found, indent=1, sort_keys=True))
+
+
+def references(args, folder, name):
+    return [str(folder / f"{name.replace('/', '-')}.{x}.exr") for x in "ab"]
+
+
+def make_references(args, folder, pool):
+    folder.mkdir(parents=True, exist_ok=True)
+    wanted = [(name, picture, 1001 + i) for name in args.scenes for i, picture in enumerate(references(args, folder, name))
+              if not os.path.exists(picture)]
+    list(pool.map(lambda w: render(args, w[0], w[1], args.reference_seconds, SCENES[w[0]][1], w[2]), wanted))
+    checked = {}
+    for name in args.scenes:
+        a, b = references(args, folder, name)
+        checked[name] = {"halves": diff(args, a, b)["block"]}
+        given = SCENES[name][2]
+        if given:
+            e = diff(args, a, f"{args.shared}/{given}")
+            checked[name] |= {"given": e["block"], "ratio": e["ratio"]}
+        print(name, checked[name], flush=True)
+    (folder.parent / "references.json").write_text(json.dumps(checked, indent=1))
+
+
+def measure(args, results, folder, name, seconds, method):
+    picture = str(folder / f"{name.replace('/', '-')}-{seconds:g}-{method}.exr")
+    start = time.monotonic()
+    used, told = render(args, name, picture, seconds, method, args.seed)
+    e = diff(args, picture, *references(args, folder.parent / "references", name))
+    results.add(f"{name} {seconds:g} {method}",
+                {"error": e["cross_trim"], "ratio": e["ratio"], "block": e["block"], "bad": e["bad"], "seconds": used,
+                 "wall": time.monotonic() - start, "method": told["method"], "warnings": told.get("warnings", [])})
+    print(f"{name:15}{seconds:>5g} {method:7}{e['cross_trim']:10.5f}  {used:6.2f} s  {told['method']}", flush=True)
+
+
+def contenders(args, results, name, before):
+    """The methods to try where those of a shorter time are known."""
+    if not args.best or before is None:
+        return args.methods
+    known = {m: results.found[f"{name} {before:g} {m}"]["error"] for m in args.methods
+             if m != "auto" and f"{name} {before:g} {m}" in results.found}
+    return ["auto"] * ("auto" in args.methods) + sorted(known, key=known.get)[:args.best]
+
+
+def table(args, results):
+    print("\n| scene | s | " + " | ".join(args.methods) + " | best | auto over best |\n" + "| --- " * (len(args.methods) + 4) + "|")
+    ratios = []
+    for name in args.scenes:
+        for seconds in args.times:
+            row = {m: results.found.get(f"{name} {seconds:g} {m}") for m in args.methods}
+            errors = {m: r["error"] for m, r in row.items() if r and m != "auto"}
+            if not errors:
+                continue
+            best = min(errors, key=errors.get)
+            ratio = row["auto"]["error"] / errors[best] if row.get("auto") else float("nan")
+            ratios.append(ratio)
+            cells = [("-" if not r else f"{r['error']:.2g}" + (f" ({r['method']})" if m == "auto" else "")) for m, r in row.items()]
+            print(f"| {name} | {seconds:g} | " + " | ".join(cells) + f" | {best} | {ratio:.2f} |")
+    if ratios:
+        print(f"\nauto over best: median {statistics.median(ratios):.2f}, largest {max(ratios):.2f}")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--keyhole", default=str(ROOT / "build/keyhole"))
+    parser.add_argument("--shared", default=str(ROOT.parent / "shared"))
+    parser.add_argument("--scenes", default=",".join(SCENES))
+    parser.add_argument("--times", default="5,15,60")
+    parser.add_argument("--methods", default=METHODS)
+    parser.add_argument("--best", type=int, default=0)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--reference-seconds", type=float, default=240)
+    parser.add_argument("-j", "--jobs", type=int, default=os.cpu_count())
+    parser.add_argument("--out", default="outside")
+    args = parser.parse_args()
+    args.scenes, args.methods = args.scenes.split(","), args.methods.split(",")
+    args.times = [float(t) for t in args.times.split(",")]
+    folder = pathlib.Path(args.out) / "pictures"
+    folder.mkdir(parents=True, exist_ok=True)
+    results = Results(pathlib.Path(args.out) / "results.json")
+    with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
+        make_references(args, folder.parent / "references", pool)
+        for before, seconds in zip([None, *args.times], args.times):
+            wanted = [(name, seconds, m) for name in args.scenes for m in contenders(args, results, name, before)
+                      if f"{name} {seconds:g} {m}" not in results.found]
+            list(pool.map(lambda w: measure(args, results, folder, *w), wanted))
+    table(args, results)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,14 @@
+// A picture for a render that was stopped before it had one.
+#pragma once
+
+#include "render/render.h"
+
+namespace keyhole {
+
+/// Whether at least one pixel has a sample, or a share at least one unit of work.
+bool has_picture(const RenderResult& result);
+
+/// A sample a pixel by path tracing, as far as half a second goes, from the top. Says so in a warning.
+RenderResult first_look(const Scene& scene, const Settings& settings);
+
+} // namespace keyhole

@@ -1,0 +1,289 @@
+#include "render/method_trials.h"
+
+#include "core/interruptible.h"
+#include "render/affordable.h"
+#include "render/first_look.h"
+#include "render/methods.h"
+#include "render/pass_seed.h"
+#include "render/stage_balance.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace keyhole {
+namespace {
+
+/// Methods in the order of their trials, each with its share of the time for all. Photons need more, for they start
+/// with a survey of the scene; so do chains, which tell little before they mix.
+struct Candidate {
+    std::string_view method;
+    double share;
+};
+constexpr std::array kCandidates{Candidate{"path", 0.06},  Candidate{"bdpt", 0.10},  Candidate{"ipm", 0.26},
+                                 Candidate{"mmlt", 0.14},  Candidate{"mps", 0.16},   Candidate{"mlt", 0.12},
+                                 Candidate{"rjmlt", 0.08}, Candidate{"pssmlt", 0.08}};
+
+/// Of the whole time, at most; and so many seconds with a smaller share of longer times.
+constexpr double kMost = 0.13, kSeconds = 0.6, kShare = 0.03;
+/// Of the whole time, what the survey that methods with photons start with may take.
+constexpr double kPlan = 0.08;
+/// A trial that takes so many times as long as it should is given up.
+constexpr double kPatience = 3;
+/// What traces importance costs is told by so many walks.
+constexpr std::int64_t kImportons = 4000;
+/// Number of the first render of a trial, for its seed; those that count have others.
+constexpr std::int64_t kTrialSeed = std::int64_t{1} << 20;
+/// Chains of a trial are too short to show what they never reach: they are believed to be that much worse.
+constexpr double kDoubt = 1.5;
+
+/// What photons and records err falls faster than the effort grows, as long as both are few.
+constexpr double kSlope = 1.5;
+
+/// Of trials by work: as many seconds as a window of their size stands for, and samples of its pixels.
+constexpr double kTrialOfWork = 5;
+constexpr std::int64_t kSamplesOfTrial = 4;
+
+bool samples_pixels(std::string_view method) { return method == "path" || method == "bdpt"; }
+
+/// Pixels of a trial's window: enough to tell errors by, few enough for several samples of each.
+double trial_pixels(double seconds) { return std::clamp(240 * seconds, 600.0, 4800.0); }
+
+ImageWindow trial_window(ImageWindow window, double seconds) {
+    const double scale =
+        std::max(1.0, std::sqrt(static_cast<double>(window.width) * window.height / trial_pixels(seconds)));
+    window.width = std::max(1, static_cast<int>(window.width / scale));
+    window.height = std::max(1, static_cast<int>(window.height / scale));
+    return window;
+}
+
+/// Sets a window for as long as it lives.
+class WindowScope {
+  public:
+    WindowScope(Scene& scene, const Settings& settings, const ImageWindow& window)
+        : scene_(scene), before_(scene.camera().window()) {
+        scene_.set_window(window);
+        set_window_margin(scene_, settings);
+    }
+    ~WindowScope() { scene_.set_window(before_); }
+    WindowScope(const WindowScope&) = delete;
+    WindowScope& operator=(const WindowScope&) = delete;
+
+  private:
+    Scene& scene_;
+    ImageWindow before_;
+};
+
+double pixels_of(const ImageWindow& w) { return static_cast<double>(w.width) * w.height; }
+
+/// Settings of a render of the scene's window with so much effort.
+Settings trial_settings(const TrialContext& c, const std::string& method, double effort) {
+    Settings s = c.settings;
+    s.method = method;
+    // What is given may be much: it is left for the render.
+    s = with_effort(s, effort, static_cast<std::int64_t>(pixels_of(c.scene.camera().window())), {});
+    s.importons = std::min(s.importons, kImportons);
+    s.save_map.clear();
+    s.chain_groups = 1;
+    if (samples_pixels(method)) s.spp = 1 << 24; // ends by `seconds`
+    return s;
+}
+
+struct TrialRender {
+    Image luminance;
+    TrialCost of;
+};
+
+bool has_holes(const RenderResult& r) {
+    const auto empty = r.stats.values.find("empty pixels");
+    return !has_picture(r) || (empty != r.stats.values.end() && empty->second > 0);
+}
+
+/// A render of the scene's window; none if it leaves holes. @throws Interrupted
+std::optional<TrialRender> render_trial(const TrialContext& c, Settings settings, double effort,
+                                        const RunContext& context) {
+    const auto left = [&] { return context.stop != nullptr ? context.stop->seconds_left() : 0; };
+    const bool in_time = std::isfinite(left()) && context.stop != nullptr;
+    const double start = left(), pixels = pixels_of(c.scene.camera().window());
+    const RenderResult r = render_by_method(c.scene, settings, c.user_paths, context, {}, c.findings);
+    if (has_holes(r)) return std::nullopt;
+    settings.spp = std::max<std::int64_t>(1, static_cast<std::int64_t>(r.stats.samples));
+    const Experience cost = in_time ? Experience(settings, effort, pixels, r.stats, start - left())
+                                    : Experience::in_rays(settings, effort, pixels, r.stats);
+    return TrialRender{luminance_of(r.picture),
+                       {.cost = cost,
+                        .taken = in_time ? start - left() : cost.total(),
+                        .samples = r.stats.samples,
+                        .balance = in_time ? rebalance({}, r.stats) : StageBalance()}};
+}
+
+/// The same under a cap; none if it was given up.
+std::optional<TrialRender> render_trial(const TrialContext& c, const Settings& settings, double effort, double most) {
+    RunContext limited = c.context;
+    limited.progress = nullptr;
+    limited.reserve = std::max(0.0, c.context.stop->seconds_left() - most);
+    try {
+        return render_trial(c, settings, effort, limited);
+    } catch (const Interrupted&) {
+        return std::nullopt;
+    }
+}
+
+/// Finds out what methods with photons need to know; false if that takes longer than so many seconds.
+bool plan(const TrialContext& c, double most) {
+    Settings s = c.settings;
+    s.importons = std::min(s.importons, kImportons);
+    RunContext limited = c.context;
+    limited.progress = nullptr;
+    limited.reserve = std::max(0.0, c.context.stop->seconds_left() - most);
+    try {
+        plan_photons(c.scene, s, c.user_paths, limited, c.findings);
+    } catch (const Interrupted&) {
+        return false;
+    }
+    return true;
+}
+
+double effort_of(double seconds) { return std::min(seconds / kSecondsOfEffort, 0.1); }
+
+/// A trial of one method in about so many seconds; none where it is too slow for that.
+std::optional<TriedMethod> try_method(const TrialContext& c, const std::string& method, double seconds) {
+    const WindowScope window(c.scene, c.settings,
+                             trial_window(c.scene.camera().window(), c.context.stop->seconds_left()));
+    const double half = seconds / 2, most = kPatience * half, effort = effort_of(half);
+    Settings s = trial_settings(c, method, effort);
+    s.seed = seed_of_render(c.settings, kTrialSeed);
+    auto first = render_trial(c, s, effort, samples_pixels(method) ? half : most);
+    if (!first) return std::nullopt;
+    if (samples_pixels(method)) s.spp = first->of.cost.settings.spp; // both are to cost the same
+    s.seed = seed_of_render(c.settings, kTrialSeed + 1);
+    auto second = render_trial(c, s, effort, most);
+    if (!second) return std::nullopt;
+    return TriedMethod{.method = method,
+                       .pictures = {std::move(first->luminance), std::move(second->luminance)},
+                       .of = std::move(second->of),
+                       .error = {}};
+}
+
+/// The squared error in the time that is left, told from that of a trial.
+double predict(const TriedMethod& t, const TrialContext& c, double left) {
+    const double pixels = pixels_of(c.scene.camera().window());
+    const double time = t.of.taken / left, size = pixels / t.of.cost.pixels;
+    const TrialError& e = t.error;
+    if (samples_pixels(t.method)) {
+        // Light that was missed is that of rare, bright samples, and grain where they are found.
+        const double missing = e.missing * t.of.cost.pixels / kTrialParts;
+        return (e.grain + e.blotches + missing) * time * size;
+    }
+    if (!keeps_photons(t.method)) return kDoubt * (e.grain * time * size + (e.blotches + e.missing) * time);
+    Settings s = c.settings;
+    s.method = t.method;
+    const double growth = affordable_effort(t.of.cost, s, c.given, t.of.balance, pixels, left) / t.of.cost.effort;
+    return e.grain / growth + (e.blotches + e.missing) * std::pow(growth, -kSlope);
+}
+
+/// Rays that light tracing by importance would take with the settings, or else the first of the methods.
+double work_asked_for(const TrialContext& c, std::span<const TriedMethod> tried) {
+    const double pixels = pixels_of(c.scene.camera().window());
+    const auto ipm = std::ranges::find(tried, "ipm", &TriedMethod::method);
+    if (ipm == tried.end()) {
+        const TrialCost& of = tried.front().of;
+        return of.taken / of.samples * static_cast<double>(c.settings.spp) * pixels / of.cost.pixels;
+    }
+    Settings s = c.settings;
+    s.method = "ipm";
+    return ipm->of.cost.foresee(s, pixels);
+}
+
+/// Errors of all, for so much time or work, and the best first.
+void rank(std::vector<TriedMethod>& tried, const TrialContext& c, double left) {
+    std::vector<TrialPictures> pictures;
+    for (const TriedMethod& t : tried) pictures.push_back(t.pictures);
+    const std::vector<TrialError> errors = trial_errors(pictures);
+    for (std::size_t i = 0; i < tried.size(); ++i) {
+        tried[i].error = errors[i];
+        tried[i].predicted = predict(tried[i], c, left);
+    }
+    std::ranges::stable_sort(tried, {}, &TriedMethod::predicted);
+}
+
+} // namespace
+
+std::optional<TrialCost> try_cost(const TrialContext& c, const std::string& method, double seconds, double most) {
+    const WindowScope window(c.scene, c.settings,
+                             trial_window(c.scene.camera().window(), c.context.stop->seconds_left()));
+    Settings s = trial_settings(c, method, effort_of(seconds));
+    s.seed = seed_of_render(c.settings, kTrialSeed);
+    auto trial = render_trial(c, s, effort_of(seconds), most);
+    return trial ? std::optional(std::move(trial->of)) : std::nullopt;
+}
+
+std::vector<TriedMethod> try_methods(const TrialContext& c) {
+    const double start = c.context.stop->seconds_left();
+    const double budget = std::min(kMost * start, kSeconds + kShare * start);
+    std::vector<TriedMethod> tried;
+    for (const Candidate& candidate : kCandidates) {
+        const double spent = start - c.context.stop->seconds_left();
+        if (c.context.stopped() || spent + candidate.share * budget > budget) break;
+        if (keeps_photons(candidate.method) && !plan(c, kPlan * start)) continue;
+        if (auto t = try_method(c, std::string(candidate.method), candidate.share * budget))
+            tried.push_back(std::move(*t));
+    }
+    rank(tried, c, c.context.stop->seconds_left());
+    return tried;
+}
+
+std::vector<TriedMethod> try_methods_by_work(const TrialContext& c) {
+    std::vector<TriedMethod> tried;
+    {
+        const WindowScope window(c.scene, c.settings, trial_window(c.scene.camera().window(), kTrialOfWork));
+        RunContext context = c.context;
+        context.progress = nullptr;
+        const double asked = static_cast<double>(std::max(c.settings.light_paths, c.settings.mutations)) / 500e3;
+        const double effort = std::clamp(0.02 * asked, 0.001, 0.01);
+        for (const std::string method : {"path", "bdpt", "ipm", "mps", "mmlt"}) {
+            Settings s = trial_settings(c, method, effort);
+            if (samples_pixels(method)) s.spp = kSamplesOfTrial;
+            s.seed = seed_of_render(c.settings, kTrialSeed);
+            auto first = render_trial(c, s, effort, context);
+            s.seed = seed_of_render(c.settings, kTrialSeed + 1);
+            auto second = render_trial(c, s, effort, context);
+            if (!first || !second) continue;
+            tried.push_back({.method = method,
+                             .pictures = {std::move(first->luminance), std::move(second->luminance)},
+                             .of = std::move(second->of),
+                             .error = {}});
+        }
+    }
+    if (!tried.empty()) rank(tried, c, work_asked_for(c, tried));
+    return tried;
+}
+
+Settings settings_of_same_work(const TrialContext& c, std::span<const TriedMethod> tried) {
+    const TriedMethod& best = tried.front();
+    Settings s = c.settings;
+    s.method = best.method;
+    const double pixels = pixels_of(c.scene.camera().window()), work = work_asked_for(c, tried);
+    if (samples_pixels(best.method)) {
+        const double per_sample = best.of.taken / best.of.samples * pixels / best.of.cost.pixels;
+        s.spp = std::max(s.spp, static_cast<std::int64_t>(work / per_sample));
+    } else if (!keeps_photons(best.method)) {
+        const double effort = affordable_effort(best.of.cost, s, {}, {}, pixels, work);
+        const Settings same = with_effort(s, effort, static_cast<std::int64_t>(pixels), {});
+        s.mutations = std::max(s.mutations, same.mutations);
+    }
+    return s;
+}
+
+std::string describe_choice(std::span<const TriedMethod> tried) {
+    std::string text = fmt::format("method {} chosen by trial: squared relative errors in this time would be about",
+                                   tried.front().method);
+    for (const TriedMethod& t : tried)
+        text += fmt::format("{} {} {:.2g} [{:.2g} {:.2g} {:.2g}; {:.2g} s]", &t == tried.data() ? "" : ",", t.method,
+                            t.predicted, t.error.grain, t.error.blotches, t.error.missing, t.of.taken);
+    return text;
+}
+
+} // namespace keyhole

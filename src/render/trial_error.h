@@ -1,0 +1,35 @@
+// How large the error of a method is, told by two independent renders of it.
+#pragma once
+
+#include "film/picture.h"
+
+#include <span>
+#include <vector>
+
+namespace keyhole {
+
+/// Parts of a picture, 4 x 4 of them, in which light may be missing.
+constexpr int kTrialParts = 16;
+
+/// Two independent renders of a window by one method at equal cost: luminance, one channel, W/(m^2 sr).
+struct TrialPictures {
+    Image first, second;
+};
+
+/// Squared error of one of the two, relative to the picture (the measure of ImageError::relmse_trim), in parts that
+/// fall differently with time and the number of pixels.
+struct TrialError {
+    double grain = 0;    ///< independent from pixel to pixel
+    double blotches = 0; ///< common to blocks of 4 x 4 pixels
+    double missing = 0;  ///< of parts of the picture that are darker than another method finds them, beyond chance
+};
+
+/// The luminance of what is looked at.
+Image luminance_of(const Picture& picture);
+
+/// One for each of the methods. The picture that errors are relative to is the mean of all, weighted by how well the
+/// two renders of each agree. Two renders agree on what neither found: where all of a method's are darker than another
+/// one can be, what is missing is an error. All pictures have the same size.
+std::vector<TrialError> trial_errors(std::span<const TrialPictures> methods);
+
+} // namespace keyhole
