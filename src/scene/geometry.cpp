@@ -101,6 +101,10 @@ std::size_t geometry_bytes(const Shape& shape) {
     return bytes(mesh->positions) + bytes(mesh->normals) + bytes(mesh->uvs) + bytes(mesh->triangles);
 }
 
+bool is_invisible_light(const Shape& shape) {
+    return shape.emission && shape.alpha && shape.alpha->is_constant() && !(shape.alpha->value({}) > 0);
+}
+
 bool is_interface(const Shape& shape) {
     if (shape.emission) return false;
     return shape.material ? std::string_view(shape.material->kind()) == "interface" : bounds_media(shape);

@@ -85,11 +85,12 @@ void Scene::attach_shapes() {
     for (std::uint32_t i = 0; i < shapes_.size(); ++i) {
         const Shape& shape = shapes_[i];
         if (is_interface(shape)) continue;
-        accelerator_.attach(shape, i);
         if (shape.emission && surface_area(shape) > 0) {
             emitter_of_shape_[i] = static_cast<std::uint32_t>(emitters_.size());
             emitters_.push_back(make_area_emitter(shape, i));
         }
+        if (is_invisible_light(shape)) continue;
+        accelerator_.attach(shape, i);
         const BsdfTraits t = shape.material ? shape.material->traits() : BsdfTraits{};
         traits_.finite |= t.finite;
         traits_.delta |= t.delta;
