@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <utility>
 
 namespace keyhole::pbrt {
 namespace {
@@ -154,10 +155,12 @@ std::optional<Directive> DirectiveReader::next() {
     }
     while (form->second.parameters && lexer_.peek().kind == Token::Kind::string) {
         Parameter parameter = read_parameter(directive);
-        for (const Parameter& other : directive.parameters)
-            if (other.name == parameter.name)
-                directive.fail(parameter, fmt::format("found '{}' again, expected it once", parameter.name));
-        directive.parameters.push_back(std::move(parameter));
+        const auto same = std::ranges::find(directive.parameters, parameter.name, &Parameter::name);
+        if (same == directive.parameters.end()) {
+            directive.parameters.push_back(std::move(parameter));
+        } else {
+            directive.overruled.push_back(std::exchange(*same, std::move(parameter)));
+        }
     }
     return directive;
 }

@@ -31,7 +31,8 @@ struct Directive {
     FilePosition position;
     std::vector<double> numbers;
     std::vector<std::string> words;
-    std::vector<Parameter> parameters; ///< names are unique
+    std::vector<Parameter> parameters; ///< names are unique: of those given more than once the last
+    std::vector<Parameter> overruled;  ///< those that another of their name came after
 
     /// As it begins in the file: `Shape "sphere"`.
     std::string title() const;

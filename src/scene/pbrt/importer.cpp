@@ -101,6 +101,9 @@ SceneDescription Importer::take_description() {
 }
 
 void Importer::carry_out(const Directive& d) {
+    for (const Parameter& p : d.overruled)
+        warnings_.add(p.position, "repeated " + d.title() + " " + p.name,
+                      fmt::format("{}: '{}' is given again: the last one counts", d.title(), p.name));
     Transform unused;
     if (apply_transform(d, moves_end_only_ ? unused : state_.to_world)) return;
     if (is_option(d.name) == in_world_ && !is_anywhere(d.name))
