@@ -60,6 +60,7 @@ void merge_environments(std::vector<std::unique_ptr<Emitter>>& emitters) {
 /// Shapes ready for rays: checked, without what no ray could tell from nothing.
 std::vector<Shape> checked(std::vector<Shape> shapes) {
     for (Shape& shape : shapes) {
+        if (is_invisible_light(shape)) shape.material = make_interface(); // where nothing scatters and no photon lies
         if (auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) {
             check_mesh(*mesh);
             remove_degenerate_triangles(*mesh);

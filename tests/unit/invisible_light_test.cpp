@@ -1,4 +1,6 @@
 // Area lights of opacity 0: no ray meets them, and light sampling finds what they would send if they were seen.
+#include "core/statistics.h"
+#include "photonmap/surface_patches.h"
 #include "sampling/direct_light.h"
 #include "sampling/measure.h"
 #include "support/test_scenes.h"
@@ -45,6 +47,12 @@ TEST(InvisibleLight_Rays, PassThroughIt) {
     EXPECT_NEAR(scene->trace(above, {0, -1, 0}).value().p.y, 0, 1e-6);
     EXPECT_TRUE(scene->visible(above, below));
     EXPECT_FALSE(scene->trace(below, {0, 1, 0}).has_value());
+}
+
+TEST(InvisibleLight_Surface, HoldsNoPhotons) {
+    const auto scene = lamp_over_floor(0);
+    const SurfacePatches patches(scene->shapes());
+    EXPECT_EQ(patches.area({{0, 1, 0}, {0, -1, 0}}, 0.1), 0);
 }
 
 TEST(InvisibleLight_Light, IsFoundBySamplingItAlone) {

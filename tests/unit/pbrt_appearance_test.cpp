@@ -260,7 +260,8 @@ TEST(PbrtShapes, KeepTheirAlpha) {
 }
 
 TEST(PbrtShapes, ShineUnseenWhereTheirAlphaIsZero) {
-    PbrtScene s("AreaLightSource \"diffuse\" \"rgb L\" [ 2 2 2 ] Shape \"sphere\" \"float alpha\" 0");
+    PbrtScene s("AttributeBegin Translate 5 0 0 " + kPbrtTriangle +
+                "AttributeEnd AreaLightSource \"diffuse\" \"rgb L\" [ 2 2 2 ] Shape \"sphere\" \"float alpha\" 0");
     const Scene scene(std::move(s.scene.description));
     ASSERT_EQ(scene.emitters().size(), 1u);
     EXPECT_TRUE(scene.emitter(0).is_delta());
