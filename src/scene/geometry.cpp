@@ -1,5 +1,7 @@
 #include "scene/geometry.h"
 
+#include <algorithm>
+#include <limits>
 #include <string_view>
 
 namespace keyhole {
@@ -81,6 +83,17 @@ double triangle_area(const TriangleMesh& mesh, std::uint32_t triangle) {
     const auto& [a, b, c] = mesh.triangles[triangle];
     const Imath::V3d e(mesh.positions[b] - mesh.positions[a]), f(mesh.positions[c] - mesh.positions[a]);
     return e.cross(f).length() / 2;
+}
+
+bool has_area(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& triangle) {
+    const Vec3& a = mesh.positions[triangle[0]];
+    const Imath::V3d n = Imath::V3d(mesh.positions[triangle[1]] - a).cross(Imath::V3d(mesh.positions[triangle[2]] - a));
+    return n.length2() > std::numeric_limits<float>::min();
+}
+
+bool has_area(const std::variant<TriangleMesh, Sphere>& geometry) {
+    const auto* mesh = std::get_if<TriangleMesh>(&geometry);
+    return mesh == nullptr || std::ranges::any_of(mesh->triangles, [&](const auto& t) { return has_area(*mesh, t); });
 }
 
 double surface_area(const Shape& shape) {

@@ -36,15 +36,6 @@ void check_sphere(const Sphere& sphere) {
         throw InputError("a sphere needs a finite centre and a positive radius");
 }
 
-/// Degenerate triangles have no normal; nothing may hit or sample them.
-void remove_degenerate_triangles(TriangleMesh& mesh) {
-    std::erase_if(mesh.triangles, [&](const auto& t) {
-        const Vec3& a = mesh.positions[t[0]];
-        const Imath::V3d n = Imath::V3d(mesh.positions[t[1]] - a).cross(Imath::V3d(mesh.positions[t[2]] - a));
-        return !(n.length2() > std::numeric_limits<float>::min());
-    });
-}
-
 /// Puts the sum of all environments, if there are several, in the place of the first.
 void merge_environments(std::vector<std::unique_ptr<Emitter>>& emitters) {
     const auto environment = [](const auto& e) { return is_environment(*e); };
@@ -63,7 +54,7 @@ std::vector<Shape> checked(std::vector<Shape> shapes) {
         if (is_invisible_light(shape)) shape.material = make_interface(); // where nothing scatters and no photon lies
         if (auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) {
             check_mesh(*mesh);
-            remove_degenerate_triangles(*mesh);
+            std::erase_if(mesh->triangles, [&](const auto& t) { return !has_area(*mesh, t); });
         } else {
             check_sphere(std::get<Sphere>(shape.geometry));
         }

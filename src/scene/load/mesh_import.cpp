@@ -92,6 +92,7 @@ class Collector {
 
     TriangleMesh collect() {
         visit(*scene_.mRootNode, Transform(), 0);
+        if (!any_) fail(path_, "found no triangles, expected at least one");
         return std::move(all_);
     }
 
@@ -110,6 +111,7 @@ class Collector {
         TriangleMesh part = convert(source);
         if (!(regularity(to_world) > 1e-12))
             fail(path_, "found a singular placement of a part, expected a regular one");
+        any_ = any_ || !part.triangles.empty();
         transform_mesh(part, to_world);
         mend_mesh(part, path_);
         if (part.triangles.empty()) return;
@@ -119,6 +121,7 @@ class Collector {
     const aiScene& scene_;
     const std::string& path_;
     TriangleMesh all_;
+    bool any_ = false; ///< triangles, with an area or without
 };
 
 /// Assimp tries all of its readers on what the right one refuses, and some of them take minutes over junk.
@@ -149,10 +152,8 @@ TriangleMesh import_mesh(const std::string& path) {
     check_faces(*checked(importer.ReadFile(path, aiProcess_ValidateDataStructure)), path);
     const aiScene* scene = checked(
         importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType));
-    TriangleMesh mesh;
-    if (scene->mRootNode != nullptr) mesh = Collector(*scene, path).collect();
-    if (mesh.triangles.empty()) fail(path, "found no triangles, expected at least one");
-    return mesh;
+    if (scene->mRootNode == nullptr) fail(path, "found no triangles, expected at least one");
+    return Collector(*scene, path).collect();
 }
 
 } // namespace keyhole

@@ -345,8 +345,8 @@ TriangleMesh read_ply(const std::string& path) {
     } catch (const InputError& e) {
         throw InputError({path, 0, 0}, e.what());
     }
-    mend_mesh(mesh, path);
     if (mesh.triangles.empty()) throw InputError({path, 0, 0}, "found no triangles, expected at least one");
+    mend_mesh(mesh, path);
     return mesh;
 }
 

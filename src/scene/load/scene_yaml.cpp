@@ -19,7 +19,7 @@ namespace {
 /// Gathers a scene from a file and its includes.
 class SceneReader {
   public:
-    explicit SceneReader(std::vector<std::string>* warnings) : warnings_(warnings) {}
+    explicit SceneReader(std::vector<std::string>* warnings) : warnings_out_(warnings), warnings_(warnings) {}
 
     /// Reads included files first, so that their materials stand ready and this file overrules their settings.
     void read_file(const std::string& path, const YamlNode* includer) {
@@ -69,7 +69,7 @@ class SceneReader {
     void read_pbrt(const std::string& path, const YamlNode& includer) {
         LoadedScene part;
         try {
-            part = load_pbrt(path, warnings_, settings_);
+            part = load_pbrt(path, warnings_out_, settings_);
         } catch (const InputError& e) {
             fail(includer, e.what());
         }
@@ -121,7 +121,8 @@ class SceneReader {
         }
     }
 
-    std::vector<std::string>* warnings_;
+    std::vector<std::string>* warnings_out_; // may be null
+    Warnings warnings_;
     std::vector<YamlPtr> documents_; // what is read keeps pointers into them
     std::vector<std::string> open_;
     std::set<std::string> seen_;
@@ -129,7 +130,7 @@ class SceneReader {
     MaterialTable materials_;
     MediumTable media_;
     std::shared_ptr<const Medium> outermost_;
-    ShapeReader shapes_{materials_, media_};
+    ShapeReader shapes_{materials_, media_, warnings_};
     std::vector<std::unique_ptr<Emitter>> emitters_;
     Settings settings_;
     UserPathFile user_paths_;

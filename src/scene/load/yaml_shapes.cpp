@@ -85,6 +85,8 @@ void ShapeReader::read_shape(const YamlNode& node, const Placement& placement) {
     const double area = surface_area(shape);
     if (!has_bounded_positions(shape.geometry))
         fail(node, "found a shape too large or too far, expected it within 1e13");
+    if (type == "mesh" && !has_area(shape.geometry))
+        return warnings_.add_flat_mesh(node.position(), fmt::format("mesh '{}'", map.at("file").text));
     if (!(area > 0)) fail(node, "found a shape without area, expected one that can be seen");
 
     const YamlNode* emission = map.find("emission");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "scene/load/geometry_transform.h"
+#include "scene/load/warnings.h"
 #include "scene/load/yaml_materials.h"
 #include "scene/load/yaml_media.h"
 #include "scene/load/yaml_primitives.h"
@@ -23,7 +24,8 @@ constexpr std::size_t kMaxTriangles = std::size_t{1} << 27;
 /// Reads lists of shapes and puts them into world space. Holds the named groups and the meshes already imported.
 class ShapeReader {
   public:
-    ShapeReader(const MaterialTable& materials, const MediumTable& media) : materials_(materials), media_(media) {}
+    ShapeReader(const MaterialTable& materials, const MediumTable& media, Warnings& warnings)
+        : materials_(materials), media_(media), warnings_(warnings) {}
 
     /// Notes the groups of a `groups:` section. @throws InputError for names already taken.
     void read_groups(const YamlNode& section);
@@ -65,6 +67,7 @@ class ShapeReader {
 
     const MaterialTable& materials_;
     const MediumTable& media_;
+    Warnings& warnings_;
     std::map<std::string, Group> groups_;
     MeshCache meshes_;
     std::vector<Shape> shapes_;

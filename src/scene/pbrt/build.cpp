@@ -81,10 +81,12 @@ class Builder {
         });
     }
 
-    std::vector<Shape> place() {
+    std::vector<Shape> place(Warnings& warnings) {
         check_limits();
         std::vector<std::vector<Shape>> made(placements_.size());
         parallel_attempt(placements_.size(), [&](std::size_t i) { made[i] = place(placements_[i]); });
+        for (std::size_t i = 0; i < made.size(); ++i)
+            if (made[i].empty()) warn_of_flat(records_[placements_[i].record], warnings);
         std::vector<Shape> shapes;
         for (auto& list : made)
             for (Shape& shape : list) shapes.push_back(std::move(shape));
@@ -121,6 +123,12 @@ class Builder {
         return finish(record, std::move(geometry));
     }
 
+    static void warn_of_flat(const ShapeRecord& record, Warnings& warnings) {
+        const std::string& path = record.source.ply_path;
+        warnings.add_flat_mesh(record.directive.position,
+                               record.directive.title() + (path.empty() ? "" : " '" + path + "'"));
+    }
+
     static void parametrise(Geometry& geometry) {
         if (const auto* sphere = std::get_if<Sphere>(&geometry))
             geometry = parametrised_sphere(static_cast<double>(sphere->radius));
@@ -128,9 +136,10 @@ class Builder {
             assume_uvs(std::get<TriangleMesh>(geometry));
     }
 
-    /// Where power is given each triangle or patch has it, so that they part ways.
+    /// Where power is given each triangle or patch has it, so that they part ways. None where no ray could hit any.
     static std::vector<Shape> finish(const ShapeRecord& record, Geometry geometry) {
         std::vector<Shape> shapes;
+        if (!has_area(geometry)) return shapes;
         const auto* mesh = std::get_if<TriangleMesh>(&geometry);
         const std::size_t step = record.source.faces_per_patch;
         if (mesh != nullptr && record.light && record.light->power > 0 && mesh->triangles.size() > step) {
@@ -175,7 +184,7 @@ std::vector<Shape> build_shapes(std::vector<ShapeRecord> records, const std::vec
     Builder builder(std::move(records), placements);
     builder.resolve_materials(materials, warnings);
     builder.read_meshes();
-    return builder.place();
+    return builder.place(warnings);
 }
 
 } // namespace keyhole::pbrt
