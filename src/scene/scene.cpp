@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <tuple>
+#include <utility>
 
 namespace keyhole {
 namespace {
@@ -62,6 +64,12 @@ std::vector<Shape> checked(std::vector<Shape> shapes) {
     return shapes;
 }
 
+/// Stands for the bounds of a scene that is nothing but its surroundings: much goes by the size of the scene.
+std::pair<Vec3, Vec3> box_around(const Vec3& eye) {
+    const float half = std::max(1.0f, 1e-3f * eye.length()); // more than the last bits of a place far away
+    return {eye - Vec3(half), eye + Vec3(half)};
+}
+
 } // namespace
 
 Scene::Scene(SceneDescription description)
@@ -91,7 +99,10 @@ void Scene::attach_shapes() {
     accelerator_.commit();
     lower_ = accelerator_.lower();
     upper_ = accelerator_.upper();
-    if (!(lower_.x <= upper_.x)) throw InputError("the scene is empty: no shapes");
+    if (lower_.x <= upper_.x) return;
+    if (std::ranges::none_of(emitters_, [](const auto& e) { return is_environment(*e); }))
+        throw InputError("the scene is empty: nothing that a ray could meet, and no environment");
+    std::tie(lower_, upper_) = box_around(camera_.parameters().origin);
 }
 
 void Scene::prepare_emitters() {

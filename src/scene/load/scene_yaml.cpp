@@ -39,9 +39,10 @@ class SceneReader {
     LoadedScene finish(const std::vector<std::string>& overrides) {
         const YamlNode& root = *documents_.front();
         shapes_.check_unused_groups();
-        if (shapes_.empty()) {
+        if (shapes_.empty() && std::ranges::none_of(emitters_, [](const auto& e) { return is_environment(*e); })) {
             const YamlNode* section = MapReader(root, "a scene").find("shapes");
-            fail(section != nullptr ? *section : root, "found an empty scene, expected at least one shape");
+            fail(section != nullptr ? *section : root,
+                 "found an empty scene, expected at least one shape or an environment");
         }
         LoadedScene scene;
         scene.description.camera = camera_.camera(root);

@@ -90,8 +90,8 @@ SceneDescription Importer::take_description() {
     description.window = view_.window;
     if (!camera_medium_.empty()) description.medium = media_.look_up(camera_medium_, options_.at("Camera"));
     description.shapes = build_shapes(std::move(records_), placements_, materials_, warnings_);
-    if (description.shapes.empty())
-        throw InputError(files_.begin(), "found an empty scene, expected at least one shape");
+    if (description.shapes.empty() && environments_.empty())
+        throw InputError(files_.begin(), "found an empty scene, expected at least one shape or an infinite light");
     description.emitters = std::move(emitters_);
     if (environments_.size() > 1)
         description.emitters.push_back(make_environment_sum(std::move(environments_)));
