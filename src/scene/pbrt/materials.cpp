@@ -262,7 +262,8 @@ const MaterialEntry& MaterialTable::look_up(const std::string& name, const Direc
     if (found != named_.end()) return found->second;
     std::vector<std::string_view> names;
     for (const auto& [known, entry] : named_) names.push_back(known);
-    user.fail(fmt::format("found the unknown material '{}', {}", name, expected_one_of(name, names)));
+    user.fail_unknown(user.position, fmt::format("material '{}'", name),
+                      fmt::format("found the unknown material '{}', {}", name, expected_one_of(name, names)));
 }
 
 } // namespace keyhole::pbrt
