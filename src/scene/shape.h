@@ -51,7 +51,7 @@ inline bool reads_parametrisation(const Shape& shape) {
     return shape.alpha != nullptr || (shape.material != nullptr && shape.material->reads_parametrisation());
 }
 
-/// Whether `shape` shines and is not there otherwise: an area light of opacity 0 everywhere. No ray meets it and it casts
+/// Whether `shape` shines and is not there otherwise: an area light of opacity 0 everywhere. No ray meets it and it has
 /// no shadow, but its points are sampled like those of other lights.
 bool is_invisible_light(const Shape& shape);
 
