@@ -10,6 +10,7 @@ find_package(nlohmann_json 3 CONFIG REQUIRED)
 find_package(assimp 5 CONFIG REQUIRED)
 find_package(PNG REQUIRED)
 find_package(JPEG REQUIRED)
+find_package(ZLIB REQUIRED)
 # OpenImageIO's own CMake files want parts that Debian's package lacks.
 find_library(OPENIMAGEIO_LIBRARY OpenImageIO REQUIRED)
 find_library(OPENIMAGEIO_UTIL_LIBRARY OpenImageIO_Util REQUIRED)

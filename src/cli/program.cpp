@@ -2,7 +2,7 @@
 
 #include "cli/command.h"
 #include "cli/team.h"
-#include "core/error.h"
+#include "core/input_errors.h"
 
 #include <fmt/format.h>
 
@@ -68,6 +68,9 @@ int run(int argc, char** argv, Team* team) {
 int run_program(int argc, char** argv, Team* team) {
     try {
         return run(argc, argv, team);
+    } catch (const InputErrors& e) {
+        for (const std::string& line : e.lines()) fail(kBadInput, line);
+        return kBadInput;
     } catch (const InputError& e) {
         return fail(kBadInput, e.what());
     } catch (const TeamLost& e) {

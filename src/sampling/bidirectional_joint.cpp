@@ -1,5 +1,7 @@
 #include "sampling/bidirectional_joint.h"
 
+#include "scene/emitters/area.h"
+
 namespace keyhole {
 
 Joint::Joint(const Scene& scene, const TracedSubPath& light, int s, const TracedSubPath& eye, int t, const Vec2& image)
@@ -15,6 +17,8 @@ Joint::Joint(const Scene& scene, const TracedSubPath& light, int s, const Traced
     if (!possible_) return;
     to_eye_ = direction(y.point, z.point);
     if (t > 1) return;
+    possible_ = s > 1 || !is_invisible(scene.emitter(y.point.emitter));
+    if (!possible_) return;
     const auto p = scene.camera().image_point(z.point, -to_eye_);
     possible_ = p.has_value();
     if (p) image_ = *p;

@@ -1,5 +1,7 @@
 #include "sampling/measure.h"
 
+#include "scene/emitters/area.h"
+
 namespace keyhole {
 
 /// A delta lobe has a density only up to the factor that its delta function would have. The factors are chosen so that
@@ -55,7 +57,8 @@ void measure(const Scene& scene, Path& path) {
     x[eye - 1].pdf_from_eye = solid_angle_to_area(direction_pdf, x[eye].point, x[eye - 1].point);
     x[eye].pdf_from_light = 0; // light never hits the lens by chance
     if (emitter.is_delta()) x[0].pdf_from_eye = 0;
-    path.contribution = f * x[eye].value;
+    const bool unseen = eye == 1 && is_invisible(emitter);
+    path.contribution = unseen ? Rgb(0.0) : f * x[eye].value;
 }
 
 void evaluate(const Scene& scene, Path& path, PathSet set) {

@@ -1,5 +1,7 @@
 #include "scene/geometry.h"
 
+#include <algorithm>
+#include <limits>
 #include <string_view>
 
 namespace keyhole {
@@ -83,6 +85,17 @@ double triangle_area(const TriangleMesh& mesh, std::uint32_t triangle) {
     return e.cross(f).length() / 2;
 }
 
+bool has_area(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& triangle) {
+    const Vec3& a = mesh.positions[triangle[0]];
+    const Imath::V3d n = Imath::V3d(mesh.positions[triangle[1]] - a).cross(Imath::V3d(mesh.positions[triangle[2]] - a));
+    return n.length2() > std::numeric_limits<float>::min();
+}
+
+bool has_area(const std::variant<TriangleMesh, Sphere>& geometry) {
+    const auto* mesh = std::get_if<TriangleMesh>(&geometry);
+    return mesh == nullptr || std::ranges::any_of(mesh->triangles, [&](const auto& t) { return has_area(*mesh, t); });
+}
+
 double surface_area(const Shape& shape) {
     if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) {
         const double r = sphere->radius;
@@ -99,6 +112,10 @@ std::size_t geometry_bytes(const Shape& shape) {
     if (mesh == nullptr) return sizeof(Sphere);
     const auto bytes = [](const auto& list) { return list.size() * sizeof(list[0]); };
     return bytes(mesh->positions) + bytes(mesh->normals) + bytes(mesh->uvs) + bytes(mesh->triangles);
+}
+
+bool is_invisible_light(const Shape& shape) {
+    return shape.emission && shape.alpha && shape.alpha->is_constant() && !(shape.alpha->value({}) > 0);
 }
 
 bool is_interface(const Shape& shape) {

@@ -17,6 +17,12 @@ SurfacePoint sphere_point(const Sphere& sphere, const Vec3& outward, bool parame
 /// Area of a triangle [m^2].
 double triangle_area(const TriangleMesh& mesh, std::uint32_t triangle);
 
+/// Whether a triangle is more than a line or a point. Others have no normal; nothing may hit or sample them.
+bool has_area(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& triangle);
+
+/// Whether any part of a shape has an area in that sense.
+bool has_area(const std::variant<TriangleMesh, Sphere>& geometry);
+
 /// Area of a shape [m^2].
 double surface_area(const Shape& shape);
 

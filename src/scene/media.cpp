@@ -5,6 +5,11 @@
 
 namespace keyhole {
 
+float beyond_boundary(float nearest, float met, float skip) {
+    const float from = std::max(nearest, met);
+    return std::max(std::nextafter(from, std::numeric_limits<float>::infinity()), from + skip);
+}
+
 Media::Media(const std::vector<Shape>& shapes, std::shared_ptr<const Medium> outermost)
     : shapes_(shapes), outermost_(std::move(outermost)) {
     if (std::ranges::none_of(shapes, bounds_media)) return;
@@ -36,13 +41,13 @@ Rgb Media::transmittance(const SurfacePoint& a, const SurfacePoint& b) const {
         const auto hit = accelerator_ ? accelerator_->intersect(origin, w, t) : std::nullopt;
         const SurfacePoint met = hit ? hit_point(shapes_[hit->shape], *hit, origin, w) : SurfacePoint();
         const Medium* medium = hit ? medium_beside(met, -w) : behind;
-        const float stop = hit ? std::min(hit->t, end) : end;
+        const float stop = hit ? std::clamp(hit->t, t, end) : end;
         if (medium != nullptr) left *= medium->transmittance(stop - t);
         if (!hit) break;
         behind = medium_beside(met, w);
         // Beyond this surface: by what its position may be off, which is more where it is met at a slant.
         const float slant = std::max(0.001f, std::abs(met.ng.dot(w)));
-        t = std::max(std::nextafter(hit->t, std::numeric_limits<float>::infinity()), hit->t + met.offset / slant);
+        t = beyond_boundary(t, hit->t, met.offset / slant);
     }
     return left;
 }

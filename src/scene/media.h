@@ -9,6 +9,11 @@
 
 namespace keyhole {
 
+/// Where along a ray the search for its next boundary begins, once a search from `nearest` has met one at `met`: at
+/// least `skip` beyond it, and always farther on than before. An accelerator may find what lies a rounding error before
+/// where it was told to begin, and would find that for ever.
+float beyond_boundary(float nearest, float met, float skip);
+
 /// Knows which medium lies where from the shapes whose sides differ in it. An edge asks for itself, with a ray that
 /// meets nothing but those shapes: nobody carries a medium along a path, and both directions of transport get the same
 /// answer. Thread-safe. Invariant: without media, nothing is built and nothing is asked.

@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <tuple>
+#include <utility>
 
 namespace keyhole {
 namespace {
@@ -36,15 +38,6 @@ void check_sphere(const Sphere& sphere) {
         throw InputError("a sphere needs a finite centre and a positive radius");
 }
 
-/// Degenerate triangles have no normal; nothing may hit or sample them.
-void remove_degenerate_triangles(TriangleMesh& mesh) {
-    std::erase_if(mesh.triangles, [&](const auto& t) {
-        const Vec3& a = mesh.positions[t[0]];
-        const Imath::V3d n = Imath::V3d(mesh.positions[t[1]] - a).cross(Imath::V3d(mesh.positions[t[2]] - a));
-        return !(n.length2() > std::numeric_limits<float>::min());
-    });
-}
-
 /// Puts the sum of all environments, if there are several, in the place of the first.
 void merge_environments(std::vector<std::unique_ptr<Emitter>>& emitters) {
     const auto environment = [](const auto& e) { return is_environment(*e); };
@@ -60,14 +53,21 @@ void merge_environments(std::vector<std::unique_ptr<Emitter>>& emitters) {
 /// Shapes ready for rays: checked, without what no ray could tell from nothing.
 std::vector<Shape> checked(std::vector<Shape> shapes) {
     for (Shape& shape : shapes) {
+        if (is_invisible_light(shape)) shape.material = make_interface(); // where nothing scatters and no photon lies
         if (auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) {
             check_mesh(*mesh);
-            remove_degenerate_triangles(*mesh);
+            std::erase_if(mesh->triangles, [&](const auto& t) { return !has_area(*mesh, t); });
         } else {
             check_sphere(std::get<Sphere>(shape.geometry));
         }
     }
     return shapes;
+}
+
+/// Stands for the bounds of a scene that is nothing but its surroundings: much goes by the size of the scene.
+std::pair<Vec3, Vec3> box_around(const Vec3& eye) {
+    const float half = std::max(1.0f, 1e-3f * eye.length()); // more than the last bits of a place far away
+    return {eye - Vec3(half), eye + Vec3(half)};
 }
 
 } // namespace
@@ -85,11 +85,12 @@ void Scene::attach_shapes() {
     for (std::uint32_t i = 0; i < shapes_.size(); ++i) {
         const Shape& shape = shapes_[i];
         if (is_interface(shape)) continue;
-        accelerator_.attach(shape, i);
         if (shape.emission && surface_area(shape) > 0) {
             emitter_of_shape_[i] = static_cast<std::uint32_t>(emitters_.size());
             emitters_.push_back(make_area_emitter(shape, i));
         }
+        if (is_invisible_light(shape)) continue;
+        accelerator_.attach(shape, i);
         const BsdfTraits t = shape.material ? shape.material->traits() : BsdfTraits{};
         traits_.finite |= t.finite;
         traits_.delta |= t.delta;
@@ -98,7 +99,10 @@ void Scene::attach_shapes() {
     accelerator_.commit();
     lower_ = accelerator_.lower();
     upper_ = accelerator_.upper();
-    if (!(lower_.x <= upper_.x)) throw InputError("the scene is empty: no shapes");
+    if (lower_.x <= upper_.x) return;
+    if (std::ranges::none_of(emitters_, [](const auto& e) { return is_environment(*e); }))
+        throw InputError("the scene is empty: nothing that a ray could meet, and no environment");
+    std::tie(lower_, upper_) = box_around(camera_.parameters().origin);
 }
 
 void Scene::prepare_emitters() {

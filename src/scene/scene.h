@@ -28,7 +28,7 @@ struct SceneDescription {
 /// own surface (an error bound after Pharr, Jakob and Humphreys, not a constant of the scene).
 class Scene {
   public:
-    /// @throws InputError for geometry that can't be rendered (bad indices, non-finite positions, nothing at all).
+    /// @throws InputError for bad geometry (indices, non-finite positions), and for neither geometry nor environment.
     explicit Scene(SceneDescription description);
     ~Scene() = default;
     Scene(const Scene&) = delete;
@@ -66,7 +66,7 @@ class Scene {
     /// Union of what the materials may do.
     const BsdfTraits& traits() const { return traits_; }
 
-    /// Bounding box of the geometry, world space.
+    /// Bounding box of the geometry, world space; where there is none, a box around the camera.
     const Vec3& lower() const { return lower_; }
     const Vec3& upper() const { return upper_; }
     /// Holds all geometry. A little too large, so that a beam as wide as the sphere misses nothing by rounding.

@@ -39,7 +39,7 @@ struct Shape {
     std::variant<TriangleMesh, Sphere> geometry;
     std::shared_ptr<const Material> material; ///< null: black; of a boundary of media: nothing that light would notice
     std::unique_ptr<SurfaceEmission> emission;
-    FloatTexture alpha{};                              ///< opacity, as is_opaque() reads it; null: opaque
+    FloatTexture alpha{}; ///< opacity, as is_opaque() reads it; null: opaque. Of an area light 0: see below
     std::shared_ptr<const Medium> inside{}, outside{}; ///< null: vacuum; both the same: whatever is around
 };
 
@@ -50,6 +50,10 @@ inline bool bounds_media(const Shape& shape) { return shape.inside != shape.outs
 inline bool reads_parametrisation(const Shape& shape) {
     return shape.alpha != nullptr || (shape.material != nullptr && shape.material->reads_parametrisation());
 }
+
+/// Whether `shape` shines and is not there otherwise: an area light of opacity 0 everywhere. No ray meets it and it has
+/// no shadow, but its points are sampled like those of other lights.
+bool is_invisible_light(const Shape& shape);
 
 /// Whether rays and light pass `shape` as if it weren't there, but for the media that it parts.
 bool is_interface(const Shape& shape);

@@ -38,6 +38,11 @@ SceneMaker& SceneMaker::room(const Vec3& lower, const Vec3& upper, const Materia
     return rectangle(lower + x, z, y, m, radiance); // right
 }
 
+SceneMaker& SceneMaker::alpha(double opacity) {
+    d_.shapes.back().alpha = constant_texture(opacity);
+    return *this;
+}
+
 SceneMaker& SceneMaker::media(std::shared_ptr<const Medium> inside, std::shared_ptr<const Medium> outside) {
     d_.shapes.back().inside = std::move(inside);
     d_.shapes.back().outside = std::move(outside);
@@ -146,6 +151,13 @@ std::unique_ptr<Scene> point_light_box() {
     SceneMaker m = box_shell(make_diffuse(Rgb(0.2, 0.4, 0.7)));
     m.emitter(make_point_emitter({0.2f, 1.7f, 0.3f}, Rgb(2.0, 1.8, 1.5)));
     m.sphere({-0.45f, 0.4f, -0.4f}, 0.4f, make_mirror(Rgb(0.9)));
+    return m.build();
+}
+
+std::unique_ptr<Scene> invisible_lamp_box() {
+    SceneMaker m = box_shell(make_diffuse(Rgb(0.2, 0.4, 0.7)));
+    m.rectangle({-0.4f, 1.1f, -0.6f}, {0.8f, 0, 0}, {0, 0.2f, 0.6f}, make_diffuse(Rgb(0.5)), Rgb(6.0, 5.0, 4.0), true);
+    m.alpha(0).sphere({-0.45f, 0.4f, -0.4f}, 0.4f, make_diffuse(Rgb(0.5)));
     return m.build();
 }
 

@@ -17,6 +17,8 @@ class SceneMaker {
     SceneMaker& sphere(const Vec3& center, float radius, const MaterialPtr& m);
     /// Six walls of [lower, upper] that face inwards.
     SceneMaker& room(const Vec3& lower, const Vec3& upper, const MaterialPtr& m, const Rgb& radiance = Rgb(0.0));
+    /// The opacity of the last shape.
+    SceneMaker& alpha(double opacity);
     /// The media inside and outside of the last shape.
     SceneMaker& media(std::shared_ptr<const Medium> inside, std::shared_ptr<const Medium> outside = nullptr);
     /// A box of `inside` without a surface, in vacuum.
@@ -38,6 +40,9 @@ std::unique_ptr<Scene> mirror_glass_box(float lens_radius = 0);
 
 /// diffuse_box() lit by a point light.
 std::unique_ptr<Scene> point_light_box();
+
+/// The shell of diffuse_box() with a diffuse ball, lit by a large lamp in plain view that no ray can hit.
+std::unique_ptr<Scene> invisible_lamp_box();
 
 /// diffuse_box() with a pane of glass across it, between its light at the rear and the eye.
 std::unique_ptr<Scene> glass_wall_box();

@@ -80,6 +80,38 @@ TEST(Media_Edges, LieInTheOutermostMediumWhereNothingElseIs) {
     expect_transmittance(scene, place({0, 0, 4}), place({0, 3, 4}), 0.6);
 }
 
+// Embree now and then meets what lies the last bit before where its search began.
+TEST(Media_Boundary, IsLeftBehindEvenWhereItIsMetBeforeTheSearchBegan) {
+    for (const float nearest : {0.0f, 1e-30f, 1.0f, 12345.678f}) {
+        const float before = std::nextafter(nearest, -1.0f), after = std::nextafter(nearest, 1e9f);
+        EXPECT_GT(beyond_boundary(nearest, before, 0), nearest);
+        EXPECT_GT(beyond_boundary(nearest, nearest, 0), nearest);
+        EXPECT_GT(beyond_boundary(nearest, after, 0), after);
+        EXPECT_GE(beyond_boundary(nearest, before, 0.25f), nearest + 0.25f);
+    }
+}
+
+// Planes through the origin have no error of position that would carry the search away from them.
+TEST(Media_Boundary, ManyInOnePlaneAreCrossedFromAnywhere) {
+    SceneMaker m = wall_behind(-5);
+    for (int i = 0; i < 8; ++i) {
+        m.rectangle({-9, -9, 0}, {18, 0, 0}, {0, 18, 0}, make_interface());
+        m.media(medium(0.1));
+    }
+    const auto scene = m.build();
+    Rng rng(3, StreamPurpose::test, 0);
+    const auto between = [&](double a, double b) { return static_cast<float>(a + (b - a) * rng.next()); };
+    for (int i = 0; i < 20'000; ++i) {
+        const SurfacePoint above = place({between(-4, 4), between(-4, 4), between(0.01, 3)});
+        const SurfacePoint below = place({between(-4, 4), between(-4, 4), between(-3, -0.01)});
+        const Rgb t = scene->transmittance(above, below), back = scene->transmittance(below, above);
+        for (const double share : {t.x, back.x}) {
+            EXPECT_GE(share, std::exp(-0.1 * 3.001 * 12));
+            EXPECT_LE(share, 1);
+        }
+    }
+}
+
 TEST(Media_Interface, LetsDirectLightThroughWithWhatIsLeft) {
     SceneMaker m;
     m.rectangle({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, make_diffuse(Rgb(1.0)));

@@ -243,11 +243,32 @@ TEST(PbrtMedia, AbsorbOrAreRefused) {
     EXPECT_THAT(error_of("MediumInterface \"no\" \"\" "), HasSubstr("found the unknown medium 'no'"));
 }
 
+TEST(PbrtMaterials, OfIndicesGivenAsColoursTakeTheMiddleOfRedAndGreen) {
+    expect_same("Material \"dielectric\" \"rgb eta\" [ 1.3 1.5 1.8 ] ", make_dielectric(1.4, number(0), number(0)));
+    const PbrtScene colours("Material \"dielectric\" \"rgb eta\" [ 1.3 1.5 1.8 ] " + kPbrtTriangle);
+    EXPECT_THAT(colours.warnings,
+                testing::ElementsAre(HasSubstr("one refractive index, halfway between red and green")));
+    EXPECT_TRUE(PbrtScene("Material \"dielectric\" \"rgb eta\" [ 1.5 1.5 1.5 ] " + kPbrtTriangle).warnings.empty());
+    EXPECT_THAT(error_of("Material \"thindielectric\" \"rgb eta\" [ 0 0 0 ] "), HasSubstr("found 0 as 'eta'"));
+}
+
 TEST(PbrtShapes, KeepTheirAlpha) {
     const PbrtScene s("Texture \"t\" \"float\" \"checkerboard\" Shape \"sphere\" \"texture alpha\" \"t\" " +
                       kPbrtTriangle);
     EXPECT_NE(s.shape(0).alpha, nullptr);
     EXPECT_EQ(s.shape(1).alpha, nullptr);
+}
+
+TEST(PbrtShapes, ShineUnseenWhereTheirAlphaIsZero) {
+    PbrtScene s("AttributeBegin Translate 5 0 0 " + kPbrtTriangle +
+                "AttributeEnd AreaLightSource \"diffuse\" \"rgb L\" [ 2 2 2 ] Shape \"sphere\" \"float alpha\" 0");
+    const Scene scene(std::move(s.scene.description));
+    ASSERT_EQ(scene.emitters().size(), 1u);
+    EXPECT_TRUE(scene.emitter(0).is_delta());
+    Rng rng(1, StreamPurpose::test, 0);
+    const SurfacePoint point = scene.emitter(0).sample_point(rng).point;
+    EXPECT_NEAR(luminance(scene.emitter(0).radiance(point, point.ng)), 2, 1e-6);
+    EXPECT_FALSE(scene.trace(scene.camera().eye(0.5, 0.5), Vec3(0, 0, 1)).has_value());
 }
 
 } // namespace

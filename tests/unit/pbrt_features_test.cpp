@@ -87,6 +87,15 @@ TEST(PbrtShapes, MeshesHaveHolesWhereAlphaSays) {
     EXPECT_FALSE(s.mesh(0).uvs.empty());
 }
 
+TEST(PbrtShapes, WithoutAreaAreLeftOutAndNamed) {
+    const std::string flat = "Shape \"trianglemesh\" \"point3 P\" [ 0 0 0  1 0 0  2 0 0 ]\n";
+    const PbrtScene s(flat + kPbrtTriangle + "AreaLightSource \"diffuse\" \"float power\" 3\n" + flat);
+    EXPECT_EQ(s.scene.description.shapes.size(), 1u);
+    EXPECT_THAT(s.warnings, testing::ElementsAre(testing::HasSubstr(":4:1: Shape \"trianglemesh\": no triangle of the "
+                                                                    "mesh has an area: it is left out"),
+                                                 testing::HasSubstr(":7:1: ")));
+}
+
 TEST(PbrtLights, IlluminanceIsWhatAPlaneFacingThemGets) {
     const PbrtScene sun("LightSource \"distant\" \"float illuminance\" 7 " + kPbrtTriangle);
     const SurfacePoint far = infinite_point({0, 0, -1});

@@ -89,11 +89,21 @@ TEST(PbrtSyntax, MistakesAreNamedWhereTheyStand) {
         {"Shape \"m\" \"point3 P\" [ 1 2 ]", "found 2 numbers in 'point3 P', expected a multiple of 3"},
         {"Shape \"m\" \"integer i\" [ 1.5 ]", "expected a whole number"},
         {"Shape \"m\" \"integer i\" [ 99999999999 ]", "expected a whole number"},
-        {"Shape \"m\" \"float r\" 1 \"float r\" 2", "found 'r' again, expected it once"},
         {std::string("\0\1\2ELF", 6), "found the byte 0x00, expected text"},
         {"Shape \x7f", "found the byte 0x7f, expected text"},
     };
     for (const auto& [text, message] : cases) EXPECT_THAT(error_of(text), HasSubstr(message)) << text;
+}
+
+TEST(PbrtSyntax, OfAParameterGivenTwiceTheLastCounts) {
+    const PbrtScene s("Shape \"sphere\" \"float radius\" 1 \"float radius\" 2 \"float radius\" 3");
+    EXPECT_EQ(s.sphere().radius, 3);
+    EXPECT_THAT(s.warnings,
+                ElementsAre(HasSubstr("scene.pbrt:4:16: Shape \"sphere\": 'radius' is given again: the last "
+                                      "one counts")));
+    const auto d = parse("Shape \"m\" \"float r\" 1 \"integer n\" 5 \"integer r\" 2");
+    ASSERT_EQ(d[0].parameters.size(), 2u);
+    EXPECT_EQ(d[0].parameters[0].type, "integer") << "of another type, too";
 }
 
 std::string load_error(const std::string& text) {

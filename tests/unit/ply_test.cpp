@@ -1,10 +1,13 @@
 // The PLY reader: every layout gives the same mesh, and nothing broken passes or hangs.
 #include "core/error.h"
+#include "scene/load/gzip.h"
+#include "scene/load/mesh_import.h"
 #include "scene/load/ply.h"
 #include "support/scratch_directory.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <cstring>
@@ -76,6 +79,54 @@ TEST(Ply, AllLayoutsGiveTheSameMesh) {
     expect_the_mesh(read_ply(d.write("t.ply", header("ascii") + text_body())));
     expect_the_mesh(read_ply(d.write("l.ply", header("binary_little_endian") + binary_body(false))));
     expect_the_mesh(read_ply(d.write("b.ply", header("binary_big_endian") + binary_body(true))));
+}
+
+/// Packed with gzip.
+std::string packed(const std::string& bytes) {
+    z_stream stream{};
+    EXPECT_EQ(deflateInit2(&stream, 9, Z_DEFLATED, 16 + MAX_WBITS, 8, Z_DEFAULT_STRATEGY), Z_OK);
+    std::string out(deflateBound(&stream, bytes.size()), '\0');
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+    stream.avail_in = static_cast<uInt>(bytes.size());
+    stream.next_out = reinterpret_cast<Bytef*>(out.data());
+    stream.avail_out = static_cast<uInt>(out.size());
+    EXPECT_EQ(deflate(&stream, Z_FINISH), Z_STREAM_END);
+    out.resize(stream.total_out);
+    deflateEnd(&stream);
+    return out;
+}
+
+TEST(Ply, MeshesPackedWithGzipAreTheSame) {
+    const ScratchDirectory d;
+    const std::string binary = header("binary_little_endian") + binary_body(false);
+    expect_the_mesh(read_ply(d.write("l.ply.gz", packed(binary))));
+    expect_the_mesh(import_mesh(d.write("T.PLY.GZ", packed(header("ascii") + text_body()))));
+    const std::string parts = packed(binary.substr(0, 100)) + packed(binary.substr(100)) + "and a tail";
+    expect_the_mesh(read_ply(d.write("parts.ply.gz", parts)));
+    EXPECT_THROW(import_mesh(d.write("t.obj.gz", packed("v 0 0 0\n"))), InputError);
+}
+
+TEST(Ply, BrokenPackedMeshesAreNamed) {
+    const ScratchDirectory d;
+    const std::string whole = packed(header("ascii") + text_body());
+    const auto error = [&](const std::string& bytes) {
+        const std::string path = d.write("t.ply.gz", bytes);
+        try {
+            read_ply(path);
+        } catch (const InputError& e) {
+            EXPECT_EQ(std::string(e.what()).rfind(path + ": found", 0), 0u) << e.what();
+            return std::string(e.what());
+        }
+        return std::string();
+    };
+    for (std::size_t n = 2; n < whole.size(); n += 5)
+        EXPECT_THAT(error(whole.substr(0, n)), testing::HasSubstr("early"));
+    std::string wrong = whole;
+    wrong[whole.size() - 6] ^= 1; // of the checksum
+    EXPECT_THAT(error(wrong), testing::HasSubstr("found broken packed data (incorrect data check)"));
+    EXPECT_THAT(error("\x1f\x8bjunk and more junk"), testing::HasSubstr("found broken packed data"));
+    EXPECT_THROW(gunzip(packed(std::string(5000, 'a')), 4999), InputError);
+    EXPECT_EQ(gunzip(packed(std::string(5000, 'a')), 5000), std::string(5000, 'a'));
 }
 
 TEST(Ply, EveryTruncationIsAnError) {

@@ -283,6 +283,21 @@ TEST_F(SceneYaml, DegenerateTrianglesAndZeroNormalsAreMended) {
     for (const auto i : mesh.triangles[0]) expect_near(mesh.normals[i], {0, 0, 1});
 }
 
+TEST_F(SceneYaml, MeshesWithoutAreaAreLeftOutAndNamed) {
+    directory.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+    const std::string path = directory.write(
+        "scene.yaml",
+        kCamera + kMaterials +
+            "shapes:\n  - {type: mesh, material: white, file: flat.obj}\n  - {type: box, material: white}\n"
+            "  - {type: mesh, file: flat.obj, emission: {power: 3}}\n");
+    std::vector<std::string> warnings;
+    const auto loaded = load_scene(path, {}, &warnings);
+    EXPECT_EQ(loaded.description.shapes.size(), 1u);
+    ASSERT_EQ(warnings.size(), 2u);
+    EXPECT_EQ(warnings[0], path + ":4:5: mesh 'flat.obj': no triangle of the mesh has an area: it is left out");
+    EXPECT_EQ(warnings[1].find(path + ":6:5: "), 0u);
+}
+
 TEST_F(SceneYaml, OverridesFollowTheFileInTheirOrder) {
     const auto scene =
         load(kCamera + kMaterials + "shapes: [{type: box, material: white}]\nrender: {method: path, spp: 3}\n",

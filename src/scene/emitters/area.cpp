@@ -43,7 +43,8 @@ EmitterBounds bounds_of(const Sphere& sphere) {
 class AreaEmitter final : public Emitter {
   public:
     AreaEmitter(const Shape& shape, std::uint32_t index)
-        : shape_(shape), index_(index), parametrised_(reads_parametrisation(shape)), area_(surface_area(shape)) {
+        : shape_(shape), index_(index), invisible_(is_invisible_light(shape)),
+          parametrised_(reads_parametrisation(shape)), area_(surface_area(shape)) {
         if (!(area_ > 0)) throw InputError("an emitting shape has no area");
         if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) {
             std::vector<double> areas(mesh->triangles.size());
@@ -56,7 +57,7 @@ class AreaEmitter final : public Emitter {
     }
 
     Site site() const override { return Site::surface; }
-    bool is_delta() const override { return false; }
+    bool is_delta() const override { return invisible_; }
     double power() const override {
         return luminance(shape_.emission->radiance) * area_ * kPi * (shape_.emission->two_sided ? 2 : 1);
     }
@@ -95,15 +96,16 @@ class AreaEmitter final : public Emitter {
     }
     Rgb radiance(const SurfacePoint& point, const Vec3& w) const override {
         const bool lit = shape_.emission->two_sided || point.ng.dot(w) > 0;
-        if (shape_.alpha && !is_opaque(shape_.alpha, point)) return Rgb(0.0);
+        if (shape_.alpha && !invisible_ && !is_opaque(shape_.alpha, point)) return Rgb(0.0);
         return lit ? shape_.emission->radiance : Rgb(0.0);
     }
     std::optional<EmitterBounds> bounds() const override { return bounds_; }
-    const char* kind() const override { return "area"; }
+    const char* kind() const override { return invisible_ ? "invisible area" : "area"; }
 
   private:
     const Shape& shape_;
     std::uint32_t index_;
+    bool invisible_;
     bool parametrised_;
     double area_;
     EmitterDistribution triangles_;

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <filesystem>
@@ -24,18 +25,25 @@ namespace {
 
 [[noreturn]] void fail(const std::string& path, const std::string& message) { throw InputError({path, 0, 0}, message); }
 
-/// @returns the extension in lower case.
+/// In lower case; with what stands before ".gz".
+std::string extension_of(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
+    return extension == ".gz" && path.stem() != path ? extension_of(path.stem()) + extension : extension;
+}
+
+/// @returns the extension.
 std::string check_file(const std::string& path) {
     std::error_code error;
     const auto status = std::filesystem::status(path, error);
     if (!std::filesystem::exists(status)) fail(path, "found no such file, expected a mesh");
     if (!std::filesystem::is_regular_file(status)) fail(path, "found something that is not a file, expected a mesh");
-    std::string extension = std::filesystem::path(path).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
+    const std::string extension = extension_of(path);
     // Other formats that assimp knows stay shut: we don't test them.
-    if (extension != ".obj" && extension != ".ply" && extension != ".gltf" && extension != ".glb")
-        fail(path, fmt::format("found the extension '{}', expected .obj, .ply, .gltf or .glb", extension));
+    constexpr std::array kKnown{".obj", ".ply", ".ply.gz", ".gltf", ".glb"};
+    if (std::ranges::find(kKnown, extension) == kKnown.end())
+        fail(path, fmt::format("found the extension '{}', expected .obj, .ply, .ply.gz, .gltf or .glb", extension));
     if (!std::ifstream(path)) fail(path, "found a file that can't be opened, expected a readable mesh");
     return extension;
 }
@@ -92,6 +100,7 @@ class Collector {
 
     TriangleMesh collect() {
         visit(*scene_.mRootNode, Transform(), 0);
+        if (!any_) fail(path_, "found no triangles, expected at least one");
         return std::move(all_);
     }
 
@@ -110,6 +119,7 @@ class Collector {
         TriangleMesh part = convert(source);
         if (!(regularity(to_world) > 1e-12))
             fail(path_, "found a singular placement of a part, expected a regular one");
+        any_ = any_ || !part.triangles.empty();
         transform_mesh(part, to_world);
         mend_mesh(part, path_);
         if (part.triangles.empty()) return;
@@ -119,6 +129,7 @@ class Collector {
     const aiScene& scene_;
     const std::string& path_;
     TriangleMesh all_;
+    bool any_ = false; ///< triangles, with an area or without
 };
 
 /// Assimp tries all of its readers on what the right one refuses, and some of them take minutes over junk.
@@ -137,7 +148,7 @@ void keep_readers_of(const std::string& extension, Assimp::Importer& importer) {
 
 TriangleMesh import_mesh(const std::string& path) {
     const std::string extension = check_file(path);
-    if (extension == ".ply") return read_ply(path);
+    if (extension == ".ply" || extension == ".ply.gz") return read_ply(path);
     Assimp::Importer importer;
     keep_readers_of(extension, importer);
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
@@ -149,10 +160,8 @@ TriangleMesh import_mesh(const std::string& path) {
     check_faces(*checked(importer.ReadFile(path, aiProcess_ValidateDataStructure)), path);
     const aiScene* scene = checked(
         importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType));
-    TriangleMesh mesh;
-    if (scene->mRootNode != nullptr) mesh = Collector(*scene, path).collect();
-    if (mesh.triangles.empty()) fail(path, "found no triangles, expected at least one");
-    return mesh;
+    if (scene->mRootNode == nullptr) fail(path, "found no triangles, expected at least one");
+    return Collector(*scene, path).collect();
 }
 
 } // namespace keyhole

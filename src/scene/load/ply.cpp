@@ -1,6 +1,7 @@
 #include "scene/load/ply.h"
 
 #include "core/error.h"
+#include "scene/load/gzip.h"
 #include "scene/load/mesh_mend.h"
 
 #include <fmt/format.h>
@@ -327,7 +328,8 @@ std::string read_bytes(const std::string& path) {
     std::string bytes(size, '\0');
     stream.read(bytes.data(), static_cast<std::streamsize>(size));
     bytes.resize(static_cast<std::size_t>(stream.gcount()));
-    return bytes;
+    constexpr std::size_t kMostUnpacked = std::size_t{1} << 32;
+    return is_gzip(bytes) ? gunzip(bytes, kMostUnpacked) : bytes;
 }
 
 TriangleMesh parse(const std::string& bytes) {
@@ -345,8 +347,8 @@ TriangleMesh read_ply(const std::string& path) {
     } catch (const InputError& e) {
         throw InputError({path, 0, 0}, e.what());
     }
-    mend_mesh(mesh, path);
     if (mesh.triangles.empty()) throw InputError({path, 0, 0}, "found no triangles, expected at least one");
+    mend_mesh(mesh, path);
     return mesh;
 }
 

@@ -21,8 +21,9 @@ struct LoadedScene {
 
 /// Reads a scene file, the files it includes and its meshes.
 /// @param overrides `key=value` settings, applied in order after those of the file.
-/// @param warnings receives what an included pbrt file makes necessary to say; may be null.
-/// @throws InputError "file:line:column: what was found, what was expected" for every mistake in the files.
+/// @param warnings receives what isn't read as it is meant, one line each; may be null.
+/// @throws InputErrors with "file:line:column: what was found, what was expected" for every mistake in the files, as
+/// far as it is independent of those before.
 LoadedScene load_scene(const std::string& path, const std::vector<std::string>& overrides = {},
                        std::vector<std::string>* warnings = nullptr);
 

@@ -140,14 +140,16 @@ MaterialPtr read_material(const YamlNode& node, const MaterialTable& table) {
 
 } // namespace
 
-void MaterialTable::read(const YamlNode& section) {
-    for (const auto& [key, value] : read_names(section, "materials")) {
-        const auto [entry, fresh] =
-            materials_.try_emplace(key->text, Named{read_material(*value, *this), key->position()});
-        if (!fresh)
-            fail(*key, fmt::format("found the material '{}' again, expected another name (first at {})", key->text,
-                                   entry->second.position.to_string()));
-    }
+void MaterialTable::read(const YamlNode& section, Mistakes& mistakes) {
+    for (const YamlNode::Entry& entry : read_names(section, "materials"))
+        mistakes.attempt_definition([&] { add(*entry.key, *entry.value); });
+}
+
+void MaterialTable::add(const YamlNode& key, const YamlNode& value) {
+    const auto [entry, fresh] = materials_.try_emplace(key.text, Named{read_material(value, *this), key.position()});
+    if (!fresh)
+        fail(key, fmt::format("found the material '{}' again, expected another name (first at {})", key.text,
+                              entry->second.position.to_string()));
 }
 
 std::shared_ptr<const Material> MaterialTable::resolve(const YamlNode& node) const {
@@ -156,7 +158,8 @@ std::shared_ptr<const Material> MaterialTable::resolve(const YamlNode& node) con
     if (const auto found = materials_.find(name); found != materials_.end()) return found->second.material;
     std::vector<std::string_view> names;
     for (const auto& [other, material] : materials_) names.push_back(other);
-    fail(node, fmt::format("found the unknown material '{}', {}", name, expected_one_of(name, names)));
+    fail_unknown(node, fmt::format("material '{}'", name),
+                 fmt::format("found the unknown material '{}', {}", name, expected_one_of(name, names)));
 }
 
 } // namespace keyhole

@@ -7,16 +7,19 @@
 
 namespace keyhole {
 
-void MediumTable::read(const YamlNode& section) {
+void MediumTable::read(const YamlNode& section, Mistakes& mistakes) {
+    for (const YamlNode::Entry& entry : read_names(section, "media"))
+        mistakes.attempt_definition([&] { add(*entry.key, *entry.value); });
+}
+
+void MediumTable::add(const YamlNode& key, const YamlNode& value) {
     constexpr NumberRange kAbsorption{"an absorption coefficient", 0, 1e30};
-    for (const auto& [key, value] : read_names(section, "media")) {
-        const MapReader map(*value, "a medium", {"absorption"});
-        auto medium = std::make_shared<const Medium>(Medium{read_color(map.at("absorption"), kAbsorption)});
-        const auto [entry, fresh] = media_.try_emplace(key->text, Named{std::move(medium), key->position()});
-        if (!fresh)
-            fail(*key, fmt::format("found the medium '{}' again, expected another name (first at {})", key->text,
-                                   entry->second.position.to_string()));
-    }
+    const MapReader map(value, "a medium", {"absorption"});
+    auto medium = std::make_shared<const Medium>(Medium{read_color(map.at("absorption"), kAbsorption)});
+    const auto [entry, fresh] = media_.try_emplace(key.text, Named{std::move(medium), key.position()});
+    if (!fresh)
+        fail(key, fmt::format("found the medium '{}' again, expected another name (first at {})", key.text,
+                              entry->second.position.to_string()));
 }
 
 std::shared_ptr<const Medium> MediumTable::resolve(const YamlNode& node) const {
@@ -24,7 +27,8 @@ std::shared_ptr<const Medium> MediumTable::resolve(const YamlNode& node) const {
     if (const auto found = media_.find(name); found != media_.end()) return found->second.medium;
     std::vector<std::string_view> names;
     for (const auto& [other, medium] : media_) names.push_back(other);
-    fail(node, fmt::format("found the unknown medium '{}', {}", name, expected_one_of(name, names)));
+    fail_unknown(node, fmt::format("medium '{}'", name),
+                 fmt::format("found the unknown medium '{}', {}", name, expected_one_of(name, names)));
 }
 
 } // namespace keyhole

@@ -1,5 +1,6 @@
 #include "scene/load/yaml_reader.h"
 
+#include "scene/load/mistakes.h"
 #include "scene/load/suggest.h"
 
 #include <fmt/format.h>
@@ -46,6 +47,10 @@ bool contains(const NumberRange& r, double x) {
 } // namespace
 
 void fail(const YamlNode& node, const std::string& message) { throw InputError(node.position(), message); }
+
+void fail_unknown(const YamlNode& node, const std::string& name, const std::string& message) {
+    throw UnknownName(node.position(), name, message);
+}
 
 void fail_expected(const YamlNode& node, std::string_view expected) {
     fail(node, fmt::format("found {}, expected {}", describe(node), expected));

@@ -29,6 +29,8 @@ constexpr NumberRange kReflectance{"a reflectance", 0, 1};
 constexpr NumberRange kLight{"an amount of light", 0, 1e30};
 
 [[noreturn]] void fail(const YamlNode& node, const std::string& message);
+/// @param name with what it should name. @throws UnknownName.
+[[noreturn]] void fail_unknown(const YamlNode& node, const std::string& name, const std::string& message);
 /// Fails with "found <the node, in words>, expected <expected>".
 [[noreturn]] void fail_expected(const YamlNode& node, std::string_view expected);
 

@@ -37,16 +37,22 @@ std::size_t count_triangles(const Geometry& geometry) {
 } // namespace
 
 void ShapeReader::read_groups(const YamlNode& section) {
-    for (const auto& [key, value] : read_names(section, "lists of shapes")) {
-        read_list(*value, "shapes");
-        const auto [entry, fresh] = groups_.try_emplace(key->text, Group{key, value});
-        if (!fresh)
-            fail(*key, fmt::format("found the group '{}' again, expected another name (first at {})", key->text,
-                                   entry->second.key->position().to_string()));
-    }
+    for (const YamlNode::Entry& entry : read_names(section, "lists of shapes"))
+        mistakes_.attempt_definition([&] { add_group(entry); });
 }
 
-void ShapeReader::read_shapes(const YamlNode& section) { read_list_of_shapes(section, {}); }
+void ShapeReader::add_group(const YamlNode::Entry& entry) {
+    const auto& [key, value] = entry;
+    read_list(*value, "shapes");
+    const auto [known, fresh] = groups_.try_emplace(key->text, Group{key, value});
+    if (!fresh)
+        fail(*key, fmt::format("found the group '{}' again, expected another name (first at {})", key->text,
+                               known->second.key->position().to_string()));
+}
+
+void ShapeReader::read_shapes(const YamlNode& section) {
+    for (const auto& item : read_list(section, "shapes")) mistakes_.attempt([&] { read_shape(*item, {}); });
+}
 
 void ShapeReader::append(std::vector<Shape> shapes) {
     for (Shape& shape : shapes) {
@@ -58,7 +64,7 @@ void ShapeReader::append(std::vector<Shape> shapes) {
 void ShapeReader::check_unused_groups() {
     const std::size_t shapes = shapes_.size(), instances = instances_;
     for (auto& [name, group] : groups_)
-        if (!group.used) read_named_group(group, *group.key, {});
+        if (!group.used) mistakes_.attempt([&, &unused = group] { read_named_group(unused, *unused.key, {}); });
     shapes_.resize(shapes);
     instances_ = instances;
 }
@@ -85,6 +91,8 @@ void ShapeReader::read_shape(const YamlNode& node, const Placement& placement) {
     const double area = surface_area(shape);
     if (!has_bounded_positions(shape.geometry))
         fail(node, "found a shape too large or too far, expected it within 1e13");
+    if (type == "mesh" && !has_area(shape.geometry))
+        return warnings_.add_flat_mesh(node.position(), fmt::format("mesh '{}'", map.at("file").text));
     if (!(area > 0)) fail(node, "found a shape without area, expected one that can be seen");
 
     const YamlNode* emission = map.find("emission");
@@ -116,7 +124,8 @@ void ShapeReader::read_instance(const YamlNode& node, const Placement& placement
     if (found == groups_.end()) {
         std::vector<std::string_view> names;
         for (const auto& [other, group] : groups_) names.push_back(other);
-        fail(reference, fmt::format("found the unknown group '{}', {}", name, expected_one_of(name, names)));
+        fail_unknown(reference, fmt::format("group '{}'", name),
+                     fmt::format("found the unknown group '{}', {}", name, expected_one_of(name, names)));
     }
     ++instances_;
     read_named_group(found->second, reference, inherit(map, placement));
@@ -125,8 +134,11 @@ void ShapeReader::read_instance(const YamlNode& node, const Placement& placement
 void ShapeReader::read_named_group(Group& group, const YamlNode& user, const Placement& placement) {
     if (group.open) fail(user, fmt::format("found the group '{}' within itself, expected no cycle", group.key->text));
     group.used = group.open = true;
+    const struct Closer {
+        Group& group;
+        ~Closer() { group.open = false; } // after a mistake, too: the group may be placed again
+    } closer{group};
     read_list_of_shapes(*group.shapes, placement);
-    group.open = false;
 }
 
 ShapeReader::Placement ShapeReader::inherit(const MapReader& map, const Placement& placement) const {
@@ -143,9 +155,11 @@ ShapeReader::Placement ShapeReader::inherit(const MapReader& map, const Placemen
 }
 
 void ShapeReader::check_limits(const YamlNode& node) const {
-    if (shapes_.size() > kMaxShapes) fail(node, fmt::format("found more than {} shapes, expected fewer", kMaxShapes));
-    if (triangles_ > kMaxTriangles)
-        fail(node, fmt::format("found more than {} triangles, expected fewer", kMaxTriangles));
+    const auto stop = [&](std::size_t most, const char* what) {
+        throw FatalInputError(node.position(), fmt::format("found more than {} {}, expected fewer", most, what));
+    };
+    if (shapes_.size() > kMaxShapes) stop(kMaxShapes, "shapes");
+    if (triangles_ > kMaxTriangles) stop(kMaxTriangles, "triangles");
 }
 
 } // namespace keyhole

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "scene/load/geometry_transform.h"
+#include "scene/load/warnings.h"
 #include "scene/load/yaml_materials.h"
 #include "scene/load/yaml_media.h"
 #include "scene/load/yaml_primitives.h"
@@ -23,12 +24,16 @@ constexpr std::size_t kMaxTriangles = std::size_t{1} << 27;
 /// Reads lists of shapes and puts them into world space. Holds the named groups and the meshes already imported.
 class ShapeReader {
   public:
-    ShapeReader(const MaterialTable& materials, const MediumTable& media) : materials_(materials), media_(media) {}
+    /// All must outlive it.
+    ShapeReader(const MaterialTable& materials, const MediumTable& media, Warnings& warnings, Mistakes& mistakes)
+        : materials_(materials), media_(media), warnings_(warnings), mistakes_(mistakes) {}
 
-    /// Notes the groups of a `groups:` section. @throws InputError for names already taken.
+    // Mistakes are noted: of each group and each item of the list of shapes the first.
+
+    /// Keeps the groups of a `groups:` section.
     void read_groups(const YamlNode& section);
 
-    /// Appends the shapes of a `shapes:` section. @throws InputError for mistakes, with their positions.
+    /// Appends the shapes of a `shapes:` section. @throws FatalInputError for too many.
     void read_shapes(const YamlNode& section);
 
     /// Reads the groups that nothing used and forgets their shapes, so that mistakes in them don't lie in wait.
@@ -55,6 +60,7 @@ class ShapeReader {
         bool open = false; ///< being read, so that an instance of it would be within itself
     };
 
+    void add_group(const YamlNode::Entry& entry);
     void read_list_of_shapes(const YamlNode& list, const Placement& placement);
     void read_shape(const YamlNode& node, const Placement& placement);
     void read_instance(const YamlNode& node, const Placement& placement);
@@ -65,6 +71,8 @@ class ShapeReader {
 
     const MaterialTable& materials_;
     const MediumTable& media_;
+    Warnings& warnings_;
+    Mistakes& mistakes_;
     std::map<std::string, Group> groups_;
     MeshCache meshes_;
     std::vector<Shape> shapes_;

@@ -14,8 +14,8 @@
 namespace keyhole::pbrt {
 namespace {
 
-/// Runs body(i) for all i at once; of what they throw the first by i is thrown on.
-template <class Body> void parallel_attempt(std::size_t n, const Body& body) {
+/// Runs body(i) for all i at once; mistakes are noted in the order of i.
+template <class Body> void parallel_attempt(std::size_t n, Mistakes& mistakes, const Body& body) {
     std::vector<std::exception_ptr> errors(n);
     parallel_for(static_cast<std::int64_t>(n), [&](std::int64_t i) {
         try {
@@ -25,7 +25,7 @@ template <class Body> void parallel_attempt(std::size_t n, const Body& body) {
         }
     });
     for (const auto& error : errors)
-        if (error) std::rethrow_exception(error);
+        if (error) mistakes.attempt([&] { std::rethrow_exception(error); });
 }
 
 /// Triangles `begin` to `end` of a mesh, with the positions that they use.
@@ -45,18 +45,21 @@ TriangleMesh part_of(const TriangleMesh& mesh, std::size_t begin, std::size_t en
 
 class Builder {
   public:
-    Builder(std::vector<ShapeRecord> records, const std::vector<Placement>& placements)
-        : records_(std::move(records)), placements_(placements), uses_(records_.size(), 0) {
+    Builder(std::vector<ShapeRecord> records, const std::vector<Placement>& placements, Warnings& warnings,
+            Mistakes& mistakes)
+        : records_(std::move(records)), placements_(placements), warnings_(warnings), mistakes_(mistakes),
+          uses_(records_.size(), 0) {
         for (const Placement& p : placements_) ++uses_[p.record];
     }
 
-    void resolve_materials(const MaterialTable& materials, Warnings& warnings) {
+    void resolve_materials(const MaterialTable& materials) {
         for (ShapeRecord& r : records_) {
-            if (!r.material_name.empty()) r.material = materials.look_up(r.material_name, r.directive);
+            if (!r.material_name.empty())
+                mistakes_.attempt([&] { r.material = materials.look_up(r.material_name, r.directive); });
             if (!r.light || !r.material.is_interface) continue;
             r.light.reset();
-            warnings.add(r.directive.position, "interface light",
-                         r.directive.title() + ": the area light is ignored, as pbrt does on the material interface");
+            warnings_.add(r.directive.position, "interface light",
+                          r.directive.title() + ": the area light is ignored, as pbrt does on the material interface");
         }
     }
 
@@ -68,7 +71,7 @@ class Builder {
         std::vector<const std::vector<std::size_t>*> files;
         files.reserve(users.size());
         for (const auto& [path, list] : users) files.push_back(&list);
-        parallel_attempt(files.size(), [&](std::size_t f) {
+        parallel_attempt(files.size(), mistakes_, [&](std::size_t f) {
             const ShapeRecord& first = records_[files[f]->front()];
             TriangleMesh mesh;
             try {
@@ -84,7 +87,10 @@ class Builder {
     std::vector<Shape> place() {
         check_limits();
         std::vector<std::vector<Shape>> made(placements_.size());
-        parallel_attempt(placements_.size(), [&](std::size_t i) { made[i] = place(placements_[i]); });
+        parallel_attempt(placements_.size(), mistakes_, [&](std::size_t i) { made[i] = place(placements_[i]); });
+        if (!mistakes_.empty()) return {};
+        for (std::size_t i = 0; i < made.size(); ++i)
+            if (made[i].empty()) warn_of_flat(records_[placements_[i].record]);
         std::vector<Shape> shapes;
         for (auto& list : made)
             for (Shape& shape : list) shapes.push_back(std::move(shape));
@@ -121,6 +127,12 @@ class Builder {
         return finish(record, std::move(geometry));
     }
 
+    void warn_of_flat(const ShapeRecord& record) const {
+        const std::string& path = record.source.ply_path;
+        warnings_.add_flat_mesh(record.directive.position,
+                                record.directive.title() + (path.empty() ? "" : " '" + path + "'"));
+    }
+
     static void parametrise(Geometry& geometry) {
         if (const auto* sphere = std::get_if<Sphere>(&geometry))
             geometry = parametrised_sphere(static_cast<double>(sphere->radius));
@@ -128,9 +140,10 @@ class Builder {
             assume_uvs(std::get<TriangleMesh>(geometry));
     }
 
-    /// Where power is given each triangle or patch has it, so that they part ways.
+    /// Where power is given each triangle or patch has it, so that they part ways. None where no ray could hit any.
     static std::vector<Shape> finish(const ShapeRecord& record, Geometry geometry) {
         std::vector<Shape> shapes;
+        if (!has_area(geometry)) return shapes;
         const auto* mesh = std::get_if<TriangleMesh>(&geometry);
         const std::size_t step = record.source.faces_per_patch;
         if (mesh != nullptr && record.light && record.light->power > 0 && mesh->triangles.size() > step) {
@@ -165,17 +178,21 @@ class Builder {
 
     std::vector<ShapeRecord> records_;
     const std::vector<Placement>& placements_;
+    Warnings& warnings_;
+    Mistakes& mistakes_;
     std::vector<std::size_t> uses_;
 };
 
 } // namespace
 
 std::vector<Shape> build_shapes(std::vector<ShapeRecord> records, const std::vector<Placement>& placements,
-                                const MaterialTable& materials, Warnings& warnings) {
-    Builder builder(std::move(records), placements);
-    builder.resolve_materials(materials, warnings);
+                                const MaterialTable& materials, Warnings& warnings, Mistakes& mistakes) {
+    Builder builder(std::move(records), placements, warnings, mistakes);
+    builder.resolve_materials(materials);
     builder.read_meshes();
-    return builder.place();
+    std::vector<Shape> shapes;
+    if (mistakes.empty()) mistakes.attempt([&] { shapes = builder.place(); });
+    return shapes;
 }
 
 } // namespace keyhole::pbrt

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "scene/load/geometry_transform.h"
+#include "scene/load/mistakes.h"
 #include "scene/pbrt/lights.h"
 #include "scene/pbrt/materials.h"
 #include "scene/pbrt/shapes.h"
@@ -37,9 +38,9 @@ constexpr std::size_t kMaxShapes = std::size_t{1} << 20;
 constexpr std::size_t kMaxTriangles = std::size_t{1} << 27;
 
 /// Reads the mesh files, each once and several at a time, and puts all shapes into world space. `records` are used up.
-/// @throws InputError for broken meshes, singular transforms, unknown materials, and too much of everything: the first
-/// by the order of `placements`.
+/// Broken meshes, singular transforms, unknown materials, and too much of everything become `mistakes`, in the order of
+/// `records` or `placements`. Where there are any, nothing is put anywhere, and no shapes are returned.
 std::vector<Shape> build_shapes(std::vector<ShapeRecord> records, const std::vector<Placement>& placements,
-                                const MaterialTable& materials, Warnings& warnings);
+                                const MaterialTable& materials, Warnings& warnings, Mistakes& mistakes);
 
 } // namespace keyhole::pbrt

@@ -1,5 +1,6 @@
 #include "scene/pbrt/directive.h"
 
+#include "scene/load/mistakes.h"
 #include "scene/load/suggest.h"
 
 #include <fmt/format.h>
@@ -9,6 +10,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <utility>
 
 namespace keyhole::pbrt {
 namespace {
@@ -114,6 +116,9 @@ std::optional<double> parse_number(std::string_view text) {
     return value;
 }
 
+/// The form of the directive that a token begins; the end of forms() for other tokens.
+auto form_of(const Token& token) { return token.kind == Token::Kind::word ? forms().find(token.text) : forms().end(); }
+
 bool is_words(std::string_view directive) { return directive == "ActiveTransform"; }
 
 } // namespace
@@ -128,10 +133,19 @@ void Directive::fail(const Parameter& parameter, const std::string& message) con
     throw InputError(parameter.position, fmt::format("{}: {}", title(), message));
 }
 
+void Directive::stop(const std::string& message) const {
+    throw FatalInputError(position, fmt::format("{}: {}", title(), message));
+}
+
+void Directive::fail_unknown(const FilePosition& where, const std::string& name, const std::string& message) const {
+    throw UnknownName(where, name, fmt::format("{}: {}", title(), message));
+}
+
 std::optional<Directive> DirectiveReader::next() {
-    const Token token = lexer_.next();
+    const Token token = begin_ ? *std::exchange(begin_, std::nullopt) : lexer_.next();
+    taken_ = 0;
     if (token.kind == Token::Kind::end) return std::nullopt;
-    const auto form = token.kind == Token::Kind::word ? forms().find(token.text) : forms().end();
+    const auto form = form_of(token);
     if (form == forms().end()) {
         const std::string hint = token.kind == Token::Kind::word ? expected_one_of(token.text, keys(forms())) : "";
         throw InputError(
@@ -150,20 +164,42 @@ std::optional<Directive> DirectiveReader::next() {
         if (!fits)
             throw InputError(lexer_.position(word),
                              fmt::format("{}: found {}, expected a name in quotes", directive.title(), describe(word)));
-        directive.words.push_back(unescape(lexer_.next().text));
+        directive.words.push_back(unescape(take().text));
     }
     while (form->second.parameters && lexer_.peek().kind == Token::Kind::string) {
         Parameter parameter = read_parameter(directive);
-        for (const Parameter& other : directive.parameters)
-            if (other.name == parameter.name)
-                directive.fail(parameter, fmt::format("found '{}' again, expected it once", parameter.name));
-        directive.parameters.push_back(std::move(parameter));
+        const auto same = std::ranges::find(directive.parameters, parameter.name, &Parameter::name);
+        if (same == directive.parameters.end()) {
+            directive.parameters.push_back(std::move(parameter));
+        } else {
+            directive.overruled.push_back(std::exchange(*same, std::move(parameter)));
+        }
     }
     return directive;
 }
 
+void DirectiveReader::skip_to_directive() {
+    if (taken_ > 0 && form_of(last_) != forms().end()) {
+        begin_ = last_;
+        return;
+    }
+    for (;;) {
+        try {
+            const Token& token = lexer_.peek();
+            if (token.kind == Token::Kind::end || form_of(token) != forms().end()) return;
+            lexer_.next();
+        } catch (const InputError&) { // one message is enough for what is passed over
+        }
+    }
+}
+
+Token DirectiveReader::take() {
+    ++taken_;
+    return last_ = lexer_.next();
+}
+
 double DirectiveReader::read_number(const Directive& directive) {
-    const Token token = lexer_.next();
+    const Token token = take();
     const auto value = token.kind == Token::Kind::word ? parse_number(token.text) : std::nullopt;
     if (!value || !std::isfinite(*value))
         throw InputError(lexer_.position(token),
@@ -175,17 +211,17 @@ double DirectiveReader::read_number(const Directive& directive) {
 void DirectiveReader::read_numbers(Directive& directive, std::size_t count) {
     if (count == 0) return;
     const bool bracketed = lexer_.peek().kind == Token::Kind::open;
-    if (bracketed) lexer_.next();
+    if (bracketed) take();
     for (std::size_t i = 0; i < count; ++i) directive.numbers.push_back(read_number(directive));
     if (!bracketed) return;
-    const Token token = lexer_.next();
+    const Token token = take();
     if (token.kind != Token::Kind::close)
         throw InputError(lexer_.position(token), fmt::format("{}: found {} after {} numbers, expected ']'",
                                                              directive.title(), describe(token), count));
 }
 
 Parameter DirectiveReader::read_parameter(const Directive& directive) {
-    const Token declaration = lexer_.next();
+    const Token declaration = take();
     Parameter parameter;
     parameter.position = lexer_.position(declaration);
     const std::string text = unescape(declaration.text);
@@ -208,9 +244,9 @@ Parameter DirectiveReader::read_parameter(const Directive& directive) {
 }
 
 void DirectiveReader::read_values(const Directive& directive, Parameter& parameter) {
-    const Token first = lexer_.next();
+    const Token first = take();
     if (first.kind == Token::Kind::open) {
-        for (Token token = lexer_.next(); token.kind != Token::Kind::close; token = lexer_.next())
+        for (Token token = take(); token.kind != Token::Kind::close; token = take())
             read_value(directive, parameter, token);
     } else {
         read_value(directive, parameter, first);

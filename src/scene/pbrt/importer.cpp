@@ -32,6 +32,12 @@ bool is_anywhere(const std::string& name) {
     return kAnywhere.contains(name);
 }
 
+bool defines_a_name(const std::string& name) {
+    static const std::set<std::string_view> kDefinitions{"CoordinateSystem", "MakeNamedMaterial", "MakeNamedMedium",
+                                                         "Texture"};
+    return kDefinitions.contains(name);
+}
+
 } // namespace
 
 const std::map<std::string_view, Importer::Handler>& Importer::handlers() {
@@ -75,23 +81,47 @@ Importer::Importer(const std::string& path, std::vector<std::string>* warnings, 
 }
 
 void Importer::run() {
-    while (const auto directive = files_.next()) {
-        leave_imports();
-        carry_out(*directive);
+    try {
+        while (const auto directive = next()) {
+            leave_imports();
+            const auto act = [&] { carry_out(*directive); };
+            defines_a_name(directive->name) ? mistakes_.attempt_definition(act) : mistakes_.attempt(act);
+        }
+        // What was passed over may have had them.
+        if (!mistakes_.empty()) return;
+        if (!in_world_) throw FatalInputError(files_.begin(), "found no WorldBegin, expected it and a scene after it");
+        if (!blocks_.empty())
+            blocks_.back().begin.fail("found no end of the block, expected it before the end of the file");
+    } catch (const InputError& e) {
+        mistakes_.note(e);
+        mistakes_.lose_names();
     }
-    if (!in_world_) throw InputError(files_.begin(), "found no WorldBegin, expected it and a scene after it");
-    if (!blocks_.empty())
-        blocks_.back().begin.fail("found no end of the block, expected it before the end of the file");
+}
+
+/// The next directive that keeps to the grammar.
+std::optional<Directive> Importer::next() {
+    for (;;) {
+        try {
+            return files_.next();
+        } catch (const InputError& e) {
+            mistakes_.note(e);
+            mistakes_.lose_names();
+            files_.skip_to_directive();
+        }
+    }
 }
 
 SceneDescription Importer::take_description() {
     SceneDescription description;
     description.camera = view_.camera;
     description.window = view_.window;
-    if (!camera_medium_.empty()) description.medium = media_.look_up(camera_medium_, options_.at("Camera"));
-    description.shapes = build_shapes(std::move(records_), placements_, materials_, warnings_);
-    if (description.shapes.empty())
-        throw InputError(files_.begin(), "found an empty scene, expected at least one shape");
+    mistakes_.attempt([&] {
+        if (!camera_medium_.empty()) description.medium = media_.look_up(camera_medium_, options_.at("Camera"));
+    });
+    description.shapes = build_shapes(std::move(records_), placements_, materials_, warnings_, mistakes_);
+    mistakes_.report();
+    if (description.shapes.empty() && environments_.empty())
+        throw InputError(files_.begin(), "found an empty scene, expected at least one shape or an infinite light");
     description.emitters = std::move(emitters_);
     if (environments_.size() > 1)
         description.emitters.push_back(make_environment_sum(std::move(environments_)));
@@ -101,11 +131,15 @@ SceneDescription Importer::take_description() {
 }
 
 void Importer::carry_out(const Directive& d) {
+    for (const Parameter& p : d.overruled)
+        warnings_.add(p.position, "repeated " + d.title() + " " + p.name,
+                      fmt::format("{}: '{}' is given again: the last one counts", d.title(), p.name));
     Transform unused;
     if (apply_transform(d, moves_end_only_ ? unused : state_.to_world)) return;
-    if (is_option(d.name) == in_world_ && !is_anywhere(d.name))
-        d.fail(in_world_ ? "found it after WorldBegin, expected it before"
-                         : "found it before WorldBegin, expected it after");
+    if (is_option(d.name) == in_world_ && !is_anywhere(d.name)) {
+        if (in_world_) d.fail("found it after WorldBegin, expected it before");
+        d.stop("found it before WorldBegin, expected it after");
+    }
     const auto handler = handlers().find(d.name);
     if (handler != handlers().end()) (this->*handler->second)(d); // the others change no picture
 }
@@ -148,14 +182,15 @@ void Importer::begin_world(const Directive& d) {
     const Directive film = option("Film", "rgb"), camera = option("Camera", "perspective");
     const Directive integrator = option("Integrator", "volpath"), sampler = option("Sampler", "zsobol");
     const Directive filter = option("PixelFilter", "gaussian");
-    Parameters film_parameters = parameters(film), camera_parameters = parameters(camera);
-    read_film(film_parameters, view_);
-    read_camera(camera_parameters, camera_to_world_, view_);
-    Parameters integrator_parameters = parameters(integrator), sampler_parameters = parameters(sampler);
-    read_integrator(integrator_parameters, settings_);
-    read_sampler(sampler_parameters, settings_);
-    Parameters filter_parameters = parameters(filter);
-    read_filter(filter_parameters, settings_);
+    const auto read = [&](const Directive& directive, auto&& reader) {
+        Parameters p = parameters(directive);
+        mistakes_.attempt([&] { reader(p); });
+    };
+    read(film, [&](Parameters& p) { read_film(p, view_); });
+    read(camera, [&](Parameters& p) { read_camera(p, camera_to_world_, view_); });
+    read(integrator, [&](Parameters& p) { read_integrator(p, settings_); });
+    read(sampler, [&](Parameters& p) { read_sampler(p, settings_); });
+    read(filter, [&](Parameters& p) { read_filter(p, settings_); });
     state_.to_world = Transform();
     coordinate_systems_["world"] = Transform();
 }
@@ -164,10 +199,10 @@ void Importer::begin_block(const Directive& d) { blocks_.push_back({head_of(d), 
 
 void Importer::end_block(const Directive& d) {
     const std::string kind = d.name.substr(0, d.name.size() - std::string_view("End").size());
-    if (blocks_.empty()) d.fail(fmt::format("found it without {}Begin, expected one before", kind));
+    if (blocks_.empty()) d.stop(fmt::format("found it without {}Begin, expected one before", kind));
     const Directive& begin = blocks_.back().begin;
     if (begin.name != kind + "Begin")
-        d.fail(fmt::format("found it in the block of {} (at {}), expected that to end first", begin.title(),
+        d.stop(fmt::format("found it in the block of {} (at {}), expected that to end first", begin.title(),
                            begin.position.to_string()));
     if (kind == "Object") open_object_ = nullptr;
     if (kind == "Transform")
@@ -196,7 +231,9 @@ void Importer::use_coordinate_system(const Directive& d) {
     }
     std::vector<std::string_view> names;
     for (const auto& [name, transform] : coordinate_systems_) names.push_back(name);
-    d.fail(fmt::format("found the unknown coordinate system '{}', {}", d.words[0], expected_one_of(d.words[0], names)));
+    d.fail_unknown(
+        d.position, fmt::format("coordinate system '{}'", d.words[0]),
+        fmt::format("found the unknown coordinate system '{}', {}", d.words[0], expected_one_of(d.words[0], names)));
 }
 
 void Importer::reverse_orientation(const Directive& /*d*/) { state_.reversed = !state_.reversed; }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/settings.h"
+#include "scene/load/mistakes.h"
 #include "scene/pbrt/build.h"
 #include "scene/pbrt/camera_film.h"
 #include "scene/pbrt/graphics_state.h"
@@ -21,9 +22,10 @@ class Importer {
   public:
     Importer(const std::string& path, std::vector<std::string>* warnings, const Settings& settings);
 
-    /// Reads everything. Call it once. @throws InputError for the first mistake.
+    /// Reads everything, and notes the mistakes in it. Call it once.
     void run();
 
+    /// @throws InputErrors for all mistakes, those in what the shapes are built from included.
     SceneDescription take_description();
     const Settings& settings() const { return settings_; }
     /// Objects placed, as often as they are.
@@ -33,6 +35,7 @@ class Importer {
     using Handler = void (Importer::*)(const Directive&);
     static const std::map<std::string_view, Handler>& handlers();
 
+    std::optional<Directive> next();
     void carry_out(const Directive& directive);
     void leave_imports();
     Parameters parameters(const Directive& directive, const char* attribute = nullptr) const;
@@ -75,6 +78,7 @@ class Importer {
     };
 
     Warnings warnings_;
+    Mistakes mistakes_;
     IncludeStack files_;
     ReadContext context_;
 

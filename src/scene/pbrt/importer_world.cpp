@@ -6,9 +6,9 @@
 namespace keyhole::pbrt {
 
 void Importer::begin_object(const Directive& d) {
-    if (open_object_ != nullptr) d.fail("found an object within an object, expected the first to end before");
+    if (open_object_ != nullptr) d.stop("found an object within an object, expected the first to end before");
     if (objects_.contains(d.words[0]))
-        d.fail(fmt::format("found the object '{}' again, expected another name", d.words[0]));
+        d.stop(fmt::format("found the object '{}' again, expected another name", d.words[0]));
     begin_block(d);
     open_object_ = &objects_[d.words[0]];
 }
@@ -19,10 +19,12 @@ void Importer::place_object(const Directive& d) {
     if (found == objects_.end()) {
         std::vector<std::string_view> names;
         for (const auto& [name, records] : objects_) names.push_back(name);
-        d.fail(fmt::format("found the unknown object '{}', {}", d.words[0], expected_one_of(d.words[0], names)));
+        d.fail_unknown(
+            d.position, fmt::format("object '{}'", d.words[0]),
+            fmt::format("found the unknown object '{}', {}", d.words[0], expected_one_of(d.words[0], names)));
     }
     if (placements_.size() + found->second.size() > kMaxShapes)
-        d.fail(fmt::format("found more than {} shapes, expected fewer", kMaxShapes));
+        d.stop(fmt::format("found more than {} shapes, expected fewer", kMaxShapes));
     ++instances_;
     for (const std::size_t record : found->second) placements_.push_back({record, state_.to_world});
 }

@@ -42,6 +42,10 @@ std::optional<Directive> IncludeStack::next() {
     return std::nullopt;
 }
 
+void IncludeStack::skip_to_directive() {
+    if (!files_.empty()) files_.back().reader->skip_to_directive();
+}
+
 void IncludeStack::enter(const Directive& directive, const std::string& name) {
     const auto in = [&](const std::string& directory) {
         return (std::filesystem::path(directory) / name).lexically_normal().string();
@@ -54,14 +58,14 @@ void IncludeStack::enter(const Directive& directive, const std::string& name) {
     }
     const std::string real = canonical(path);
     if (std::any_of(files_.begin(), files_.end(), [&](const File& f) { return f.canonical == real; }))
-        directive.fail(fmt::format("found '{}' including itself, expected no cycle", path));
+        directive.stop(fmt::format("found '{}' including itself, expected no cycle", path));
     if (files_.size() >= kMostDepth)
-        directive.fail(fmt::format("found includes nested more than {} deep, expected fewer levels", kMostDepth));
-    if (opened_ >= kMostFiles) directive.fail(fmt::format("found more than {} includes, expected fewer", kMostFiles));
+        directive.stop(fmt::format("found includes nested more than {} deep, expected fewer levels", kMostDepth));
+    if (opened_ >= kMostFiles) directive.stop(fmt::format("found more than {} includes, expected fewer", kMostFiles));
     try {
         open(path);
     } catch (const InputError& e) {
-        directive.fail(e.what());
+        directive.stop(e.what());
     }
 }
 

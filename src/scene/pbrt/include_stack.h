@@ -18,10 +18,12 @@ class IncludeStack {
 
     /// The next directive; none at the end of the outermost file. @throws InputError for broken syntax.
     std::optional<Directive> next();
+    /// After next() threw: goes on to where the next directive begins.
+    void skip_to_directive();
 
     /// Goes on with another file, and comes back after its end. Paths are relative to the outermost file, as in pbrt,
     /// or else to the one that includes.
-    /// @throws InputError with the position of `directive` for missing files, cycles, and too many of them.
+    /// @throws FatalInputError with the position of `directive` for missing files, cycles, and too many of them.
     void enter(const Directive& directive, const std::string& name);
 
     /// Of the outermost file.

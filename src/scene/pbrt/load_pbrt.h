@@ -15,8 +15,8 @@ bool is_pbrt(const std::string& path);
 /// @param warnings receives "file:line:column: directive: what is done instead" for what isn't read as it is meant,
 /// once for each kind; may be null.
 /// @param settings those that the file's sampler and integrator then overrule.
-/// @throws InputError "file:line:column: directive: what was found, what was expected" for every mistake, and for what
-/// the picture would be wrong without.
+/// @throws InputErrors with "file:line:column: directive: what was found, what was expected" for every mistake, and for
+/// what the picture would be wrong without, as far as it is independent of those before.
 LoadedScene load_pbrt(const std::string& path, std::vector<std::string>* warnings, const Settings& settings = {});
 
 } // namespace keyhole

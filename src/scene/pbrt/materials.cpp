@@ -66,12 +66,16 @@ struct Source {
     }
 
     double index(std::string_view name, double otherwise) const {
-        const Parameter* eta = p.find(name, {"float", "integer", "spectrum"});
-        if (eta == nullptr || eta->type != "spectrum") return p.number(name, otherwise, kIndex);
+        const Parameter* eta = p.find(name, {"float", "integer", "spectrum", "rgb"});
+        if (eta == nullptr || (eta->type != "spectrum" && eta->type != "rgb")) return p.number(name, otherwise, kIndex);
         const Rgb n = p.spectrum(name, Rgb(otherwise), SpectrumUse::index);
-        if (n.x != n.z)
+        if (n.x != n.y || n.x != n.z)
             p.warn("dispersion", "one refractive index, halfway between red and green, stands for all colours");
-        return (n.x + n.y) / 2;
+        const double middle = (n.x + n.y) / 2;
+        if (!(middle >= kIndex.least && middle <= kIndex.most))
+            p.directive().fail(*eta, fmt::format("found {} as '{}', expected an index from {} to {}", middle, name,
+                                                 kIndex.least, kIndex.most));
+        return middle;
     }
 
     Rgb metal(std::string_view name, const Rgb& otherwise) const {
@@ -258,7 +262,8 @@ const MaterialEntry& MaterialTable::look_up(const std::string& name, const Direc
     if (found != named_.end()) return found->second;
     std::vector<std::string_view> names;
     for (const auto& [known, entry] : named_) names.push_back(known);
-    user.fail(fmt::format("found the unknown material '{}', {}", name, expected_one_of(name, names)));
+    user.fail_unknown(user.position, fmt::format("material '{}'", name),
+                      fmt::format("found the unknown material '{}', {}", name, expected_one_of(name, names)));
 }
 
 } // namespace keyhole::pbrt

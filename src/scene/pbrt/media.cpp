@@ -35,7 +35,8 @@ std::shared_ptr<const Medium> MediumTable::look_up(const std::string& name, cons
     if (found == media_.end()) {
         std::vector<std::string_view> names;
         for (const auto& [known, entry] : media_) names.push_back(known);
-        user.fail(fmt::format("found the unknown medium '{}', {}", name, expected_one_of(name, names)));
+        user.fail_unknown(user.position, fmt::format("medium '{}'", name),
+                          fmt::format("found the unknown medium '{}', {}", name, expected_one_of(name, names)));
     }
     if (!found->second.refusal.empty()) user.fail(found->second.refusal);
     return found->second.medium;

@@ -10,10 +10,6 @@
 
 namespace keyhole::pbrt {
 
-void Warnings::add(const FilePosition& where, const std::string& kind, const std::string& message) {
-    if (kinds_.insert(kind).second && out_ != nullptr) out_->push_back(where.to_string() + ": " + message);
-}
-
 std::string ReadContext::resolve(const std::string& path) const {
     return (std::filesystem::path(directory) / path).lexically_normal().string();
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/vec.h"
+#include "scene/load/warnings.h"
 #include "scene/pbrt/directive.h"
 #include "scene/pbrt/spectrum.h"
 
@@ -13,19 +14,6 @@
 #include <vector>
 
 namespace keyhole::pbrt {
-
-/// Collects warnings, each kind once.
-class Warnings {
-  public:
-    /// @param out may be null.
-    explicit Warnings(std::vector<std::string>* out) : out_(out) {}
-    /// Adds "file:line:column: message", unless one of this `kind` was added before.
-    void add(const FilePosition& where, const std::string& kind, const std::string& message);
-
-  private:
-    std::vector<std::string>* out_;
-    std::set<std::string> kinds_;
-};
 
 /// Numbers allowed for a parameter, both ends included.
 struct Bounds {

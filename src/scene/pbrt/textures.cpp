@@ -16,8 +16,9 @@ const std::shared_ptr<const T>& look_up(const std::map<std::string, std::shared_
     std::vector<std::string_view> names;
     names.reserve(table.size());
     for (const auto& [known, texture] : table) names.push_back(known);
-    directive.fail(parameter,
-                   fmt::format("found the unknown {} texture '{}', {}", kind, name, expected_one_of(name, names)));
+    directive.fail_unknown(
+        parameter.position, fmt::format("{} texture '{}'", kind, name),
+        fmt::format("found the unknown {} texture '{}', {}", kind, name, expected_one_of(name, names)));
 }
 
 UvMapping read_mapping(Parameters& p) {
