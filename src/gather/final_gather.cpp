@@ -16,13 +16,24 @@ constexpr int kSplits = 1;
 } // namespace
 
 PixelSample FinalGather::sample(const Vec2& image, SampleSource& source) const {
-    PixelSample out;
-    const Vertex eye = sample_eye(scene_, source);
-    follow({eye, scene_.camera().ray_direction(eye.point, image), Rgb(1.0), 1}, 0, kSplits, source, out);
+    Sample out;
+    draw(image, source, out);
     return out;
 }
 
-void FinalGather::follow(EyeRay ray, int scatterings, int splits, SampleSource& source, PixelSample& out) const {
+FinalGather::Confirmation FinalGather::confirm(const Vec2& image, SampleSource& source) const {
+    Sample out;
+    out.confirm = true;
+    draw(image, source, out);
+    return {luminance(out.direct + out.indirect + out.caustic), out.unconfirmed};
+}
+
+void FinalGather::draw(const Vec2& image, SampleSource& source, Sample& out) const {
+    const Vertex eye = sample_eye(scene_, source);
+    follow({eye, scene_.camera().ray_direction(eye.point, image), Rgb(1.0), 1}, 0, kSplits, source, out);
+}
+
+void FinalGather::follow(EyeRay ray, int scatterings, int splits, SampleSource& source, Sample& out) const {
     for (; scatterings <= rays_.max_scatterings(); ++scatterings) {
         const auto hit = next_vertex(scene_, ray.from, ray.w);
         if (!hit) return;
@@ -57,7 +68,7 @@ void FinalGather::follow(EyeRay ray, int scatterings, int splits, SampleSource& 
 }
 
 void FinalGather::shade(const Vertex& v, const Vec3& back, const Rgb& throughput, int scatterings, SampleSource& source,
-                        PixelSample& out) const {
+                        Sample& out) const {
     if (const auto cached = ask_cache(v, back)) {
         out.direct += throughput * direct_light(scene_, v, back, samples_.light, source);
         out.indirect += throughput * *cached;
@@ -71,7 +82,9 @@ void FinalGather::shade(const Vertex& v, const Vec3& back, const Rgb& throughput
         out.direct += throughput * direct;
         out.indirect += throughput * indirect;
     }
-    out.caustic += throughput * rays_.caustic(v, back);
+    const Rgb caustic = throughput * rays_.caustic(v, back);
+    out.caustic += caustic;
+    if (out.confirm) out.unconfirmed += luminance(caustic) * rays_.unconfirmed_caustic(v, back);
 }
 
 std::optional<Rgb> FinalGather::ask_cache(const Vertex& v, const Vec3& back) const {

@@ -25,12 +25,24 @@ class FinalGather {
     /// Estimates what arrives at the eye through window point `image`. Unbiased but for the maps and the cache.
     PixelSample sample(const Vec2& image, SampleSource& source) const;
 
+    /// Luminance of a sample, and of the caustics in it that scouts don't confirm (unconfirmed_share()).
+    struct Confirmation {
+        double all = 0, unconfirmed = 0;
+    };
+    /// Draws a sample, and asks scouts about it.
+    Confirmation confirm(const Vec2& image, SampleSource& source) const;
+
     /// Share of the questions to the cache, by all samples so far, that it had no record for; 0 before any.
     double starving() const {
         return asked_ > 0 ? static_cast<double>(unanswered_) / static_cast<double>(asked_) : 0.0;
     }
 
   private:
+    /// A sample in the making.
+    struct Sample : PixelSample {
+        bool confirm = false;   ///< whether to ask scouts
+        double unconfirmed = 0; ///< luminance of caustics that they don't confirm
+    };
     struct EyeRay {
         Vertex from;
         Vec3 w; ///< unit
@@ -39,10 +51,11 @@ class FinalGather {
         bool saw_surface = false; ///< that is not specular
     };
     /// Adds what arrives along the ray. At the first `splits` places that both reflect and transmit both are followed.
-    void follow(EyeRay ray, int scatterings, int splits, SampleSource& source, PixelSample& out) const;
+    void follow(EyeRay ray, int scatterings, int splits, SampleSource& source, Sample& out) const;
     /// Everything that the finite scattering at the last two vertices seen does: direct light, caustic, gather rays.
     void shade(const Vertex& v, const Vec3& back, const Rgb& throughput, int scatterings, SampleSource& source,
-               PixelSample& out) const;
+               Sample& out) const;
+    void draw(const Vec2& image, SampleSource& source, Sample& out) const;
     /// Radiance towards `back` by cached irradiance; none where the surface or the cache won't do.
     std::optional<Rgb> ask_cache(const Vertex& v, const Vec3& back) const;
     /// One gather ray; its share of direct light (MIS against next_event()) goes to `direct`.

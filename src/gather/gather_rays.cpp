@@ -1,6 +1,7 @@
 #include "gather/gather_rays.h"
 
 #include "gather/direct_light.h"
+#include "photonmap/confirmation.h"
 #include "photonmap/sight.h"
 #include "sampling/direct_light.h"
 
@@ -89,6 +90,15 @@ Rgb GatherRays::caustic(const Vertex& v, const Vec3& back) const {
     return estimate_density_in_sight(scene_, maps_.caustic->carriers(), query.region, r, *maps_.patches,
                                      reflection(v, back))
         .value;
+}
+
+double GatherRays::unconfirmed_caustic(const Vertex& v, const Vec3& back) const {
+    if (maps_.caustic == nullptr) return 0;
+    const PhotonQuery query = query_at(v, back, options_.caustic_radius, options_);
+    const float r = scouted_radius(maps_.caustic->scouts(), query);
+    return unconfirmed_share(*maps_.caustic, query.region, r, [reflection = reflection(v, back)](const Photon& p) {
+        return luminance(reflection(p) * p.power());
+    });
 }
 
 Rgb GatherRays::global(const Vertex& v, const Vec3& back) const {

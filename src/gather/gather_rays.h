@@ -42,6 +42,8 @@ class GatherRays {
 
     /// Radiance towards `back` that the caustic map gives at a visible point.
     Rgb caustic(const Vertex& v, const Vec3& back) const;
+    /// Share of its luminance that scouts don't confirm (unconfirmed_share()).
+    double unconfirmed_caustic(const Vertex& v, const Vec3& back) const;
 
     const Scene& scene() const { return scene_; }
     int max_scatterings() const { return max_scatterings_; }

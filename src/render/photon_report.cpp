@@ -1,6 +1,8 @@
 #include "render/photon_report.h"
 
+#include "core/parallel.h"
 #include "core/vec.h"
+#include "sampling/image_lattice.h"
 
 #include <fmt/format.h>
 
@@ -17,6 +19,7 @@ constexpr const char* kFound = "photons per lookup";
 constexpr const char* kEffective = "photons per lookup, effective";
 constexpr const char* kNoise = "cached irradiances, noise of one pass";
 constexpr const char* kStarving = "cached irradiances, share of points without";
+constexpr const char* kFalse = "photons seen, share of the picture not confirmed by scouts";
 constexpr const char* kShare = "photons per lookup, share of those asked for";
 
 /// Beyond these photons are not to be trusted.
@@ -24,7 +27,9 @@ constexpr double kMostOfPower = 0.25;
 constexpr double kLeastEffective = 0.5; ///< of those found; where that is known
 constexpr double kLeastFound = 0.25;
 constexpr double kMostStarving = 0.1;
-constexpr double kMostNoise = 0.2; ///< of irradiance records, where passes don't make it less
+constexpr double kShows = 0.1;       ///< of the light of a sample, or of the picture's mean where that is more
+constexpr double kMostFalse = 0.004; ///< of the picture
+constexpr double kMostNoise = 0.2;   ///< of irradiance records, where passes don't make it less
 
 double share_of_brightest(const std::vector<Photon>& photons) {
     if (photons.empty()) return 0;
@@ -58,6 +63,19 @@ void report_cache(const IrradianceCache& cache, double starving, RenderStats& st
     stats.values[kStarving] = starving;
 }
 
+void report_false_spots(const FinalGather& gather, std::uint64_t seed, RenderStats& stats) {
+    constexpr int kPoints = 4096;
+    std::vector<FinalGather::Confirmation> seen(kPoints);
+    parallel_for(kPoints, [&](std::int64_t i) {
+        Rng rng(seed, StreamPurpose::survey, static_cast<std::uint64_t>(i));
+        seen[static_cast<std::size_t>(i)] = gather.confirm(lattice_image_point(seed, StreamPurpose::survey, i), rng);
+    });
+    double mean = 0;
+    for (const auto& s : seen) mean += s.all / kPoints;
+    const auto shows = [&](const auto& s) { return s.unconfirmed > kShows * std::max(s.all, mean); };
+    stats.values[kFalse] = static_cast<double>(std::ranges::count_if(seen, shows)) / kPoints;
+}
+
 void warn_of_photons(RenderStats& stats, std::int64_t passes) {
     const auto value = [&](const char* name, double otherwise) {
         const auto v = stats.values.find(name);
@@ -77,6 +95,13 @@ void warn_of_photons(RenderStats& stats, std::int64_t passes) {
         stats.warnings.push_back(fmt::format("the photon map is too sparse where it is asked: {:.1f} photons within "
                                              "reach of a lookup, {:.0f} % of those asked for. Try more photons",
                                              value(kFound, 0), 100 * value(kShare, 1)));
+    // Each pass has spots of its own, and shows them less the more passes there are.
+    if (const double share = value(kFalse, 0) / std::max(1.0, static_cast<double>(passes)); share > kMostFalse)
+        stats.warnings.push_back(fmt::format("in {:.1f} % of the picture a good part of the light comes from a few "
+                                             "photons of great power that lie close together: expect bright discs that "
+                                             "are not there. Try more photons, light_paths or mutations, more passes, "
+                                             "or another method",
+                                             100 * share));
     if (const double noise = value(kNoise, 0) / std::sqrt(std::max(1.0, static_cast<double>(passes)));
         noise > kMostNoise)
         stats.warnings.push_back(

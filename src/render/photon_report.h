@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/render_stats.h"
+#include "gather/final_gather.h"
 #include "gather/irradiance_cache.h"
 #include "photonmap/irradiance_map.h"
 #include "photonmap/photons.h"
@@ -20,8 +21,13 @@ void report_lookups(const IrradianceMap& map, double asked, RenderStats& stats);
 /// there was none.
 void report_cache(const IrradianceCache& cache, double starving, RenderStats& stats);
 
+/// Puts into `stats` in what share of the picture caustics that scouts don't confirm are more than a tenth of the light
+/// there, and of the mean.
+void report_false_spots(const FinalGather& gather, std::uint64_t seed, RenderStats& stats);
+
 /// Warns by what the last of `passes` left in `stats`: few photons with most of the power, maps too sparse where they
-/// are asked, an irradiance cache that is noisy or without answers, no photons at all.
+/// are asked, spots of light that scouts don't confirm, an irradiance cache that is noisy or without answers, no
+/// photons at all.
 void warn_of_photons(RenderStats& stats, std::int64_t passes);
 
 } // namespace keyhole

@@ -11,6 +11,12 @@ std::optional<Vertex> first_vertex(const Scene& scene, const Vertex& end, From f
     return next_vertex(scene, ray.origin, ray.w);
 }
 
+/// Whether x[pivot], now at `from`, is left for `to` just as the old path leaves it towards x[pivot + step].
+bool rounded_away(const Path& x, int pivot, int step, const SurfacePoint& from, const SurfacePoint& to) {
+    if (from.site == Site::infinite) return to.p == x.x[static_cast<std::size_t>(pivot + step)].point.p;
+    return direction(from, to) == leaving_direction(x, pivot, step);
+}
+
 } // namespace
 
 bool grow(const Scene& scene, SubPath& walk, From from, const Vec2& image, bool kept, SampleSource& source,
@@ -60,6 +66,8 @@ bool retrace(const Scene& scene, SubPath& walk, SurfacePoint origin, Vec3 w, con
     for (int i = first;; i += step) {
         const auto hit = next_vertex(scene, origin, w);
         if (!hit) return why = Failure::no_hit, false;
+        if (i == first && rounded_away(x, first - step, step, walk.back().point, hit->point))
+            return why = Failure::unchanged, false;
         walk.push_back(*hit);
         Vertex& v = walk.back();
         v.event = x.x[static_cast<std::size_t>(i)].event;

@@ -57,7 +57,8 @@ std::optional<Path> join(const Scene& scene, PathSet set, const SubPath& light, 
 
 /// Adds to `walk` the vertices that a ray from `origin` along `w` meets, to correspond to x[first], ..., x[last] in
 /// this order (towards the light if last < first). Those before the last take the specular events that x has there; the
-/// last is finite. `origin` is the last vertex of the walk, or on its beam where that is infinite.
+/// last is finite. `origin` is the last vertex of the walk, or on its beam where that is infinite. A step that is lost
+/// when positions are rounded, where surfaces all but touch, fails: it has no density, and none the other way round.
 bool retrace(const Scene& scene, SubPath& walk, SurfacePoint origin, Vec3 w, const Path& x, int first, int last,
              Failure& why);
 
