@@ -7,6 +7,7 @@
 #include "cli/units.h"
 #include "core/percent.h"
 #include "render/expected_cost.h"
+#include "render/methods.h"
 #include "scene/load/load.h"
 #include "scene/texture.h"
 
@@ -19,6 +20,8 @@ namespace keyhole {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr std::int64_t kImportons = 32'768;
 
 struct PlanCommand {
     std::string scene, resolution;
@@ -59,9 +62,13 @@ Json plan_json(const PlanCommand& o) {
     Scene scene(std::move(loaded.description));
     set_window_margin(scene, loaded.settings);
     const UserPaths paths = bind_user_paths(scene, loaded.user_paths);
-    const SurfacePatches patches(scene);
-    const RenderPlan plan = plan_render({scene, loaded.settings, patches, paths}, {}, 1 << 16);
-    const ExpectedCost cost = expect_cost(scene, loaded.settings, {}, loaded.user_paths);
+    // Fewer eye paths than a render would find out by: nobody wants to wait for a plan.
+    Settings quick = loaded.settings;
+    quick.importons = std::min(quick.importons, kImportons);
+    Findings findings;
+    plan_photons(scene, quick, paths, {}, findings);
+    const RenderPlan& plan = *findings.plan;
+    const ExpectedCost cost = expect_cost(scene, loaded.settings, loaded.user_paths, findings);
     Json choices = Json::array(), stages = Json::object();
     for (const PlanItem& item : plan.items)
         choices.push_back({{"name", item.name}, {"on", item.on}, {"why", item.why}});

@@ -72,11 +72,11 @@ struct RunContext {
         if (in_overtime) return stop->requested();
         return stop->stopped() || (reserve > 0 && stop->seconds_left() < reserve);
     }
-    /// With a reserve of so much of the time that is left; 0: none.
+    /// With so much of the time that is left for this in reserve besides.
     RunContext with_reserve(double share) const {
         RunContext c = *this;
-        const double left = stop != nullptr && share > 0 ? stop->seconds_left() : 0;
-        c.reserve = std::isfinite(left) ? share * left : 0;
+        const double left = stop != nullptr ? stop->seconds_left() - reserve : 0;
+        if (std::isfinite(left)) c.reserve += share * std::max(0.0, left);
         return c;
     }
     /// For what each process does by itself.

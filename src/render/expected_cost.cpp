@@ -1,26 +1,34 @@
 #include "render/expected_cost.h"
 
-#include "render/stage_work.h"
+#include "render/method_trials.h"
+#include "render/methods.h"
 
 #include <algorithm>
-#include <array>
 
 namespace keyhole {
 namespace {
 
-constexpr std::int64_t kPart = 16;
+/// What a trial of one method should take, and may take; what those of all methods may [s].
+constexpr double kTrial = 0.1, kLongest = 0.6, kAll = 0.6;
+/// More time than any trial waits for: only the caps on trials count.
+constexpr double kEver = 1e6;
 
-/// What the time of the stages is proportional to.
-constexpr std::array kDrivers{&Settings::spp,       &Settings::importons,   &Settings::brightness_samples,
-                              &Settings::mutations, &Settings::light_paths, &Settings::cache_rays};
+/// Trials with so much time left.
+template <class Body> auto with_time(const TrialContext& c, double seconds, const Body& body) {
+    StopToken stop;
+    stop.set_cpu_limit(cpu_seconds() + seconds);
+    RunContext context;
+    context.stop = &stop;
+    return body(TrialContext{c.scene, c.settings, c.given, context, c.user_paths, c.findings});
+}
 
-Settings part_of(const Settings& settings) {
-    Settings part = settings;
-    for (const auto driver : kDrivers) part.*driver = std::max<std::int64_t>(1, settings.*driver / kPart);
-    part.brightness_samples = std::max<std::int64_t>(part.brightness_samples, 1000);
-    part.importons = std::max<std::int64_t>(part.importons, 1000);
-    part.passes = 1;
-    return part;
+std::optional<TrialCost> cost_of(const TrialContext& c, const std::string& method) {
+    return with_time(c, kEver, [&](const TrialContext& t) { return try_cost(t, method, kTrial, kLongest); });
+}
+
+double pixels_of(const Scene& scene) {
+    const ImageWindow& window = scene.camera().window();
+    return static_cast<double>(window.width) * window.height;
 }
 
 } // namespace
@@ -31,19 +39,31 @@ double ExpectedCost::cpu_seconds() const {
     return sum;
 }
 
-ExpectedCost expect_cost(Scene& scene, const Settings& settings, const RunContext& context,
-                         const UserPathFile& user_paths) {
-    const Settings part = part_of(settings);
-    const RenderStats stats = render(scene, part, context, user_paths).stats;
-    ExpectedCost cost{.method = stats.method, .stages = {}, .photon_bytes = 0, .remarks = stats.remarks};
-    Settings of_part = part, of_whole = settings;
-    of_part.method = of_whole.method = stats.method;
-    for (const StageStats& stage : stats.stages)
-        cost.stages.emplace_back(stage.name, stage.cpu_seconds * stage_work(stage.name, of_whole, 1) /
-                                                 stage_work(stage.name, of_part, 1));
-    if (stats.photon_bytes > 0)
-        cost.photon_bytes = std::max(stats.photon_bytes, static_cast<std::uint64_t>(settings.photon_memory));
-    return cost;
+ExpectedCost expect_cost(Scene& scene, const Settings& settings, const UserPathFile& user_paths, Findings& findings) {
+    const UserPaths paths = bind_user_paths(scene, user_paths);
+    const std::set<std::string> given;
+    const RunContext none;
+    Settings s = settings;
+    const TrialContext c{scene, s, given, none, paths, findings};
+    const double pixels = pixels_of(scene);
+    ExpectedCost expected;
+    if (settings.method == "auto") {
+        s.method = "ipm";
+        const auto ipm = cost_of(c, s.method);
+        const double seconds = ipm ? ipm->cost.foresee(s, pixels) : kEver;
+        const auto tried = with_time(c, seconds, [](const TrialContext& t) { return try_methods(t, kAll); });
+        if (!tried.empty()) {
+            expected.remarks.push_back(describe_choice(tried));
+            s = settings_of_same_work(c, tried);
+        }
+    }
+    expected.method = s.method;
+    if (const auto cost = cost_of(c, s.method))
+        for (const auto& [name, time] : cost->cost.stages)
+            expected.stages.emplace_back(name, cost->cost.foresee(s, pixels, {name}));
+    if (keeps_photons(s.method) && findings.plan && findings.plan->photons)
+        expected.photon_bytes = static_cast<std::uint64_t>(s.photon_memory);
+    return expected;
 }
 
 } // namespace keyhole

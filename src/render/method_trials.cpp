@@ -27,11 +27,11 @@ constexpr std::array kCandidates{Candidate{"path", 0.06},  Candidate{"bdpt", 0.1
                                  Candidate{"rjmlt", 0.08}, Candidate{"pssmlt", 0.08}};
 
 /// Of the whole time, at most; and so many seconds with a smaller share of longer times.
-constexpr double kMost = 0.13, kSeconds = 0.6, kShare = 0.03;
+constexpr double kMost = 0.115, kSeconds = 0.55, kShare = 0.03;
 /// Of the whole time, what the survey that methods with photons start with may take.
 constexpr double kPlan = 0.08;
 /// A trial that takes so many times as long as it should is given up.
-constexpr double kPatience = 3;
+constexpr double kPatience = 2.5;
 /// What traces importance costs is told by so many walks.
 constexpr std::int64_t kImportons = 4000;
 /// Number of the first render of a trial, for its seed; those that count have others.
@@ -39,17 +39,23 @@ constexpr std::int64_t kTrialSeed = std::int64_t{1} << 20;
 /// Chains of a trial are too short to show what they never reach: they are believed to be that much worse.
 constexpr double kDoubt = 1.5;
 
-/// What photons and records err falls faster than the effort grows, as long as both are few.
-constexpr double kSlope = 1.5;
+/// What photons and records err falls as this power of the effort at least: often faster while they are few, but two
+/// renders don't tell what both have wrong.
+constexpr double kSlope = 0.7;
 
-/// Of trials by work: as many seconds as a window of their size stands for, and samples of its pixels.
-constexpr double kTrialOfWork = 5;
+/// Of the grain that a trial shows, what stays at least where pixels of the picture are smaller.
+constexpr double kLeastGrain = 0.3;
+/// Of trials by work: seconds that a window of their size is for, and samples of its pixels.
+constexpr double kTrialOfWork = 0.7;
 constexpr std::int64_t kSamplesOfTrial = 4;
+/// A single trial has the window of as many seconds as all would take together.
+constexpr double kTrialsOfATrial = 8;
 
 bool samples_pixels(std::string_view method) { return method == "path" || method == "bdpt"; }
 
-/// Pixels of a trial's window: enough to tell errors by, few enough for several samples of each.
-double trial_pixels(double seconds) { return std::clamp(240 * seconds, 600.0, 4800.0); }
+/// Pixels of the window of trials that take so many seconds together: enough to tell errors by, few enough for several
+/// samples of each.
+double trial_pixels(double seconds) { return std::clamp(1800 * seconds, 600.0, 4800.0); }
 
 ImageWindow trial_window(ImageWindow window, double seconds) {
     const double scale =
@@ -146,12 +152,19 @@ bool plan(const TrialContext& c, double most) {
     return true;
 }
 
+/// Pixels of the picture in the middles of those of a window that is smaller by `scale`.
+void narrow_pixels(Settings& s, double scale) {
+    s.filter = "box";
+    s.filter_radius = 0.5 / scale;
+}
+
 double effort_of(double seconds) { return std::min(seconds / kSecondsOfEffort, 0.1); }
 
 /// A trial of one method in about so many seconds; none where it is too slow for that.
-std::optional<TriedMethod> try_method(const TrialContext& c, const std::string& method, double seconds) {
-    const WindowScope window(c.scene, c.settings,
-                             trial_window(c.scene.camera().window(), c.context.stop->seconds_left()));
+std::optional<TriedMethod> try_method(const TrialContext& c, const std::string& method, const ImageWindow& small,
+                                      double seconds) {
+    const double scale = static_cast<double>(c.scene.camera().window().width) / small.width;
+    const WindowScope window(c.scene, c.settings, small);
     const double half = seconds / 2, most = kPatience * half, effort = effort_of(half);
     Settings s = trial_settings(c, method, effort);
     s.seed = seed_of_render(c.settings, kTrialSeed);
@@ -161,10 +174,19 @@ std::optional<TriedMethod> try_method(const TrialContext& c, const std::string& 
     s.seed = seed_of_render(c.settings, kTrialSeed + 1);
     auto second = render_trial(c, s, effort, most);
     if (!second) return std::nullopt;
-    return TriedMethod{.method = method,
-                       .pictures = {std::move(first->luminance), std::move(second->luminance)},
-                       .of = std::move(second->of),
-                       .error = {}};
+    TriedMethod tried{.method = method,
+                      .pictures = {std::move(first->luminance), std::move(second->luminance)},
+                      .narrow = {},
+                      .of = std::move(second->of),
+                      .error = {}};
+    if (method == "path") {
+        narrow_pixels(s, scale);
+        auto third = render_trial(c, s, effort, most);
+        s.seed = seed_of_render(c.settings, kTrialSeed);
+        auto fourth = render_trial(c, s, effort, most);
+        if (third && fourth) tried.narrow = {std::move(third->luminance), std::move(fourth->luminance)};
+    }
+    return tried;
 }
 
 /// The squared error in the time that is left, told from that of a trial.
@@ -180,8 +202,10 @@ double predict(const TriedMethod& t, const TrialContext& c, double left) {
     if (!keeps_photons(t.method)) return kDoubt * (e.grain * time * size + (e.blotches + e.missing) * time);
     Settings s = c.settings;
     s.method = t.method;
-    const double growth = affordable_effort(t.of.cost, s, c.given, t.of.balance, pixels, left) / t.of.cost.effort;
-    return e.grain / growth + (e.blotches + e.missing) * std::pow(growth, -kSlope);
+    const double effort = affordable_effort(t.of.cost, s, c.given, t.of.balance, pixels, left);
+    s = with_effort(s, effort, static_cast<std::int64_t>(pixels), c.given, t.of.balance);
+    const double samples = static_cast<double>(s.spp * s.passes) / t.of.samples;
+    return e.grain / samples + (e.blotches + e.missing) * std::pow(effort / t.of.cost.effort, -kSlope);
 }
 
 /// Rays that light tracing by importance would take with the settings, or else the first of the methods.
@@ -197,13 +221,27 @@ double work_asked_for(const TrialContext& c, std::span<const TriedMethod> tried)
     return ipm->of.cost.foresee(s, pixels);
 }
 
+/// What the variance of a sample has of differences within a pixel of the small window that a pixel of the picture,
+/// which is smaller, doesn't have: the same for all methods that sample pixels.
+double variance_within_pixels(std::span<const TriedMethod> tried) {
+    const auto path = std::ranges::find_if(tried, [](const TriedMethod& t) { return t.narrow.has_value(); });
+    if (path == tried.end()) return 0;
+    const std::array pictures{path->pictures, *path->narrow};
+    const std::vector<TrialError> e = trial_errors(pictures);
+    return std::max(0.0, e[0].grain - e[1].grain) * path->of.samples;
+}
+
 /// Errors of all, for so much time or work, and the best first.
 void rank(std::vector<TriedMethod>& tried, const TrialContext& c, double left) {
     std::vector<TrialPictures> pictures;
     for (const TriedMethod& t : tried) pictures.push_back(t.pictures);
     const std::vector<TrialError> errors = trial_errors(pictures);
+    const double within = variance_within_pixels(tried);
     for (std::size_t i = 0; i < tried.size(); ++i) {
         tried[i].error = errors[i];
+        double& grain = tried[i].error.grain;
+        if (keeps_photons(tried[i].method) || samples_pixels(tried[i].method))
+            grain = std::max(kLeastGrain * grain, grain - within / tried[i].of.samples);
         tried[i].predicted = predict(tried[i], c, left);
     }
     std::ranges::stable_sort(tried, {}, &TriedMethod::predicted);
@@ -212,23 +250,23 @@ void rank(std::vector<TriedMethod>& tried, const TrialContext& c, double left) {
 } // namespace
 
 std::optional<TrialCost> try_cost(const TrialContext& c, const std::string& method, double seconds, double most) {
-    const WindowScope window(c.scene, c.settings,
-                             trial_window(c.scene.camera().window(), c.context.stop->seconds_left()));
+    const WindowScope window(c.scene, c.settings, trial_window(c.scene.camera().window(), kTrialsOfATrial * seconds));
     Settings s = trial_settings(c, method, effort_of(seconds));
     s.seed = seed_of_render(c.settings, kTrialSeed);
     auto trial = render_trial(c, s, effort_of(seconds), most);
     return trial ? std::optional(std::move(trial->of)) : std::nullopt;
 }
 
-std::vector<TriedMethod> try_methods(const TrialContext& c) {
+std::vector<TriedMethod> try_methods(const TrialContext& c, double most) {
     const double start = c.context.stop->seconds_left();
-    const double budget = std::min(kMost * start, kSeconds + kShare * start);
+    const double budget = std::min({kMost * start, kSeconds + kShare * start, most});
+    const ImageWindow small = trial_window(c.scene.camera().window(), budget);
     std::vector<TriedMethod> tried;
     for (const Candidate& candidate : kCandidates) {
         const double spent = start - c.context.stop->seconds_left();
         if (c.context.stopped() || spent + candidate.share * budget > budget) break;
-        if (keeps_photons(candidate.method) && !plan(c, kPlan * start)) continue;
-        if (auto t = try_method(c, std::string(candidate.method), candidate.share * budget))
+        if (keeps_photons(candidate.method) && !plan(c, std::min(kPlan * start, most))) continue;
+        if (auto t = try_method(c, std::string(candidate.method), small, candidate.share * budget))
             tried.push_back(std::move(*t));
     }
     rank(tried, c, c.context.stop->seconds_left());
@@ -238,7 +276,9 @@ std::vector<TriedMethod> try_methods(const TrialContext& c) {
 std::vector<TriedMethod> try_methods_by_work(const TrialContext& c) {
     std::vector<TriedMethod> tried;
     {
-        const WindowScope window(c.scene, c.settings, trial_window(c.scene.camera().window(), kTrialOfWork));
+        const ImageWindow small = trial_window(c.scene.camera().window(), kTrialOfWork);
+        const double scale = static_cast<double>(c.scene.camera().window().width) / small.width;
+        const WindowScope window(c.scene, c.settings, small);
         RunContext context = c.context;
         context.progress = nullptr;
         const double asked = static_cast<double>(std::max(c.settings.light_paths, c.settings.mutations)) / 500e3;
@@ -253,8 +293,15 @@ std::vector<TriedMethod> try_methods_by_work(const TrialContext& c) {
             if (!first || !second) continue;
             tried.push_back({.method = method,
                              .pictures = {std::move(first->luminance), std::move(second->luminance)},
+                             .narrow = {},
                              .of = std::move(second->of),
                              .error = {}});
+            if (method != "path") continue;
+            narrow_pixels(s, scale);
+            auto third = render_trial(c, s, effort, context);
+            s.seed = seed_of_render(c.settings, kTrialSeed);
+            auto fourth = render_trial(c, s, effort, context);
+            if (third && fourth) tried.back().narrow = {std::move(third->luminance), std::move(fourth->luminance)};
         }
     }
     if (!tried.empty()) rank(tried, c, work_asked_for(c, tried));

@@ -7,6 +7,7 @@
 #include "render/render.h"
 #include "render/trial_error.h"
 
+#include <limits>
 #include <optional>
 #include <set>
 #include <span>
@@ -27,7 +28,8 @@ struct TrialCost {
 struct TriedMethod {
     std::string method;
     TrialPictures pictures;
-    TrialCost of; ///< of one of the two renders
+    std::optional<TrialPictures> narrow; ///< of path tracing, with pixels as small as those of the picture
+    TrialCost of;                        ///< of one of the two renders
     TrialError error;
     double predicted = 0; ///< squared relative error that the render would leave (the measure of relmse_trim)
 };
@@ -47,9 +49,9 @@ struct TrialContext {
 std::optional<TrialCost> try_cost(const TrialContext& c, const std::string& method, double seconds, double most);
 
 /// Trials of all methods that can show the scene, the cheapest first, for as long as a part of the time goes: at most
-/// 13 % of it, less where there is much. The best is first. Empty if there is time for none. No picture of a trial
-/// counts in the end, so that nothing that follows from them can bias what does.
-std::vector<TriedMethod> try_methods(const TrialContext& c);
+/// 13 % of it, less where there is much, and `most` [s]. The best is first. Empty if there is time for none. No picture
+/// of a trial counts in the end, so that nothing that follows from them can bias what does.
+std::vector<TriedMethod> try_methods(const TrialContext& c, double most = std::numeric_limits<double>::infinity());
 
 /// The same for a render without a time: for the work that light tracing by importance would take with these settings.
 /// Work is counted in rays, so that the choice, and with it the picture, is the same on every machine and on any number

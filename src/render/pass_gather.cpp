@@ -15,14 +15,6 @@ constexpr double kForSamples = 0.25;
 
 const ScoutedMap* null_if_empty(const ScoutedMap& map) { return map.carriers().photons().empty() ? nullptr : &map; }
 
-/// Leaves so much of what is left of the time.
-RunContext leave(double share, const RunContext& context) {
-    RunContext c = context;
-    const double left = c.stop != nullptr ? c.stop->seconds_left() - c.reserve : 0;
-    if (std::isfinite(left)) c.reserve += share * std::max(0.0, left);
-    return c;
-}
-
 LookupOptions lookups(const Settings& settings, const Radii& radii) {
     return {.nearest = static_cast<int>(settings.nearest),
             .max_radius = radii.global,
@@ -65,8 +57,8 @@ PassGather::PassGather(const SamplerContext& c, const RenderPlan& plan, std::int
                              .reach = c.reach},
                   lookups(s, radii), static_cast<int>(s.max_depth));
     if (plan.cache)
-        cache_ =
-            fill_cache(*rays_, cache_options(s, static_cast<double>(radii.shrink), seed), leave(kForSamples, context));
+        cache_ = fill_cache(*rays_, cache_options(s, static_cast<double>(radii.shrink), seed),
+                            context.with_reserve(kForSamples));
     gather_.emplace(*rays_, cache_ ? &*cache_ : nullptr,
                     GatherSamples{.light = static_cast<int>(s.light_samples),
                                   .rays = plan.gather ? static_cast<int>(s.gather_rays) : 1});

@@ -42,6 +42,8 @@ Settings choose(const TrialContext& c, std::string& choice) {
     // How far gather rays come is found out anew, with more rays than trials spend on it, where it matters.
     if (c.findings.plan && c.findings.plan->reach) c.findings.plan.reset();
     choice = describe_choice(tried);
+    if (c.findings.plan && !c.findings.plan->photons)
+        choice += "; no photon maps: " + c.findings.plan->items.front().why;
     return settings_of_same_work(c, tried);
 }
 

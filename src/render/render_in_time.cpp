@@ -8,10 +8,12 @@
 #include "render/method_trials.h"
 #include "render/methods.h"
 #include "render/pass_seed.h"
+#include "render/stage_clock.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -20,11 +22,8 @@ namespace {
 
 /// Two methods are close if the one promises less than so many times the error of the other.
 constexpr double kClose = 1.8;
-/// The other takes over where the error of the first turns out so many times as large as what that promises.
-constexpr double kWorse = 1.3;
-/// Parts of the time that are spent before each look at what errors turned out to be.
+/// Of the time, each of the two renders of either method that show how large their errors are.
 constexpr double kPart = 0.125;
-constexpr int kPartsOfALook = 2, kLooks = 2;
 
 /// Of the time for a render with photons or chains that its foreseen cost is to fill. What is left then goes into more
 /// samples of pixels, or more mutations.
@@ -67,18 +66,15 @@ class RenderInTime {
         try {
             choose();
             if (is_close()) spend_in_parts();
-            while (!context_.stopped() && left() > kLeast * start_ && !used_up_) render_part(left(), true);
-            if (mean_.empty() && !context_.stopped()) fall_back();
-        } catch (const Interrupted&) {
-            if (mean_.empty() && !context_.stopped()) fall_back();
+            while (mean_.empty() || (left() > kLeast * start_ && !used_up_)) {
+                if (context_.stop->requested() || (context_.stopped() && !samples_pixels(method_))) break;
+                render_part(left(), true);
+                if (context_.stopped()) break;
+            }
+        } catch (const Interrupted&) { // too slow for the time, or somebody doesn't want to wait
         }
-        if (mean_.empty()) return first_look(scene_, settings_);
-        RenderResult result = mean_.take();
-        result.stats.complete = !context_.stop->requested();
-        if (result.stats.values["passes"] == 0) result.stats.values.erase("passes");
-        result.stats.remarks.insert(result.stats.remarks.begin(), remarks_.begin(), remarks_.end());
-        result.settings.seed = settings_.seed;
-        return result;
+        if (mean_.empty()) return without_picture();
+        return finish();
     }
 
   private:
@@ -92,15 +88,14 @@ class RenderInTime {
         if (settings_.method != "auto") {
             use(settings_.method);
             if (samples_pixels(method_)) return;
+            const StageClock clock(trials_, "trials");
             cost_ =
                 try_cost(trial_context(), method_, std::min(kTrial * start_, kTrialSeconds), kLongestTrial * start_);
             forget_rough_findings();
-            if (!cost_ && !context_.stopped())
-                throw InputError(fmt::format("too little time for {0}: what it does before its first picture takes "
-                                             "longer here; expected more than {1:.2g} s, or another method",
-                                             method_, start_));
+            if (!cost_) throw Interrupted();
             return;
         }
+        const StageClock clock(trials_, "trials");
         tried_ = try_methods(trial_context());
         forget_rough_findings();
         if (tried_.empty()) return use("path");
@@ -120,29 +115,32 @@ class RenderInTime {
         weight_ = 1 / std::max(t.predicted, 1e-12);
     }
 
-    /// A part of the time, looked at again after two; then the rest is for the better one.
+    /// Half of the time: a quarter by the best, a quarter by the one that comes next. Then the rest is for the better.
     void spend_in_parts() {
         const double part = kPart * left();
-        for (int look = 0; look < kLooks && !context_.stopped(); ++look) {
-            std::vector<Image> pictures;
-            for (int i = 0; i < kPartsOfALook && !context_.stopped(); ++i)
-                if (auto y = render_part(part, false)) pictures.push_back(std::move(*y));
-            if (pictures.size() < kPartsOfALook || !runner_up()) return;
-            const TrialPictures halves{std::move(pictures[0]), std::move(pictures[1])};
-            const TrialError e = trial_errors(std::span(&halves, 1)).front();
-            // Of all the time, as predictions are.
-            const double turned_out = (e.grain + e.blotches) * part / at_choice_;
+        std::array<double, 2> turned_out;
+        for (std::size_t k = 0; k < turned_out.size(); ++k) {
+            take_over(tried_[k]);
+            const auto error = error_of_parts(part);
+            if (!error) return;
+            turned_out[k] = *error;
             remarks_.push_back(fmt::format("the error of {} turns out to be {:.2g} where {:.2g} was foreseen", method_,
-                                           turned_out, tried_.front().predicted));
-            tried_.front().predicted = turned_out;
-            if (turned_out < kWorse * tried_[1].predicted) {
-                if (!is_close()) return;
-                continue;
-            }
-            std::swap(tried_[0], tried_[1]);
-            take_over(tried_.front());
-            remarks_.push_back("the rest of the time went to " + method_);
+                                           turned_out[k], tried_[k].predicted));
+            // Not so close after all?
+            if (k == 0 && kClose * turned_out[0] < tried_[1].predicted) return;
         }
+        if (turned_out[0] <= turned_out[1]) take_over(tried_[0]);
+        remarks_.push_back("the rest of the time went to " + method_);
+    }
+
+    /// What two renders of the method, of so many seconds each, tell of the error that all of the time would leave.
+    std::optional<double> error_of_parts(double seconds) {
+        auto first = render_part(seconds, false),
+             second = context_.stopped() ? std::nullopt : render_part(seconds, false);
+        if (!first || !second) return std::nullopt;
+        const TrialPictures halves{std::move(*first), std::move(*second)};
+        const TrialError e = trial_errors(std::span(&halves, 1)).front();
+        return (e.grain + e.blotches) * seconds / at_choice_;
     }
 
     /// Settings that use so many seconds, and of a method whose last stage goes on as long as there is time: more than
@@ -185,7 +183,7 @@ class RenderInTime {
         chosen.seed = seed_of_render(settings_, renders_++);
         if (renders_ > 1) chosen.save_map.clear();
         RenderResult result = render_by_method(scene_, chosen, user_paths_, limited, share, findings_);
-        used_up_ = last && (left() > start - 0.5 * seconds); // all that was asked for by number is done
+        used_up_ = last && samples_pixels(method_) && given_.contains("spp");
         const auto empty = result.stats.values.find("empty pixels");
         const bool holes = empty != result.stats.values.end() && empty->second > 0;
         if (!has_picture(result) || (holes && !mean_.empty())) {
@@ -194,19 +192,39 @@ class RenderInTime {
         }
         if (chosen.spp == 1 << 24)
             chosen.spp = std::max<std::int64_t>(1, static_cast<std::int64_t>(std::lround(result.stats.samples)));
+        if (effort_ > 0) result.stats.values["effort"] = effort_;
         result.stats.remarks.push_back("set by the time:" + differences(settings_, chosen));
         result.settings = chosen;
+        if (cost_ && (keeps_photons(method_) || result.stats.complete))
+            cost_->cost = Experience(chosen, effort_, pixels_, result.stats, start - left());
         auto y = luminance_of(result.picture);
         mean_.add(std::move(result), weight_ * (start - left()));
         return y;
     }
 
-    /// Paths of a sample a pixel are a noisy picture, not a wrong one.
-    void fall_back() {
-        if (settings_.method != "auto") return;
+    /// Paths are a noisy picture, not a wrong one; but a method that somebody named isn't replaced in silence.
+    RenderResult without_picture() {
+        if (context_.stop->requested() || (settings_.method == "auto" && context_.stopped()))
+            return first_look(scene_, settings_);
+        if (settings_.method != "auto")
+            throw InputError(fmt::format("too little time for {0}: what it does before its first picture takes longer "
+                                         "here; expected more than {1:.2g} s, or another method",
+                                         method_, start_));
         remarks_.push_back("paths are traced: " + method_ + " was not done in its time");
         use("path");
         render_part(left(), true);
+        return mean_.empty() ? first_look(scene_, settings_) : finish();
+    }
+
+    RenderResult finish() {
+        RenderResult result = mean_.take();
+        const bool by_number = samples_pixels(method_) && given_.contains("spp");
+        result.stats.complete = !context_.stop->requested() && (result.stats.complete || !by_number);
+        if (result.stats.values["passes"] == 0) result.stats.values.erase("passes");
+        result.stats.remarks.insert(result.stats.remarks.begin(), remarks_.begin(), remarks_.end());
+        result.settings.seed = settings_.seed;
+        result.stats.stages.insert(result.stats.stages.begin(), trials_.stages.begin(), trials_.stages.end());
+        return result;
     }
 
     /// Who looks sees the mean once there is one, not the begin of what comes after.
@@ -234,6 +252,7 @@ class RenderInTime {
     bool used_up_ = false;           // everything that was asked for by number is done before the time
     std::int64_t renders_ = 0;       // begun
     std::vector<std::string> remarks_;
+    RenderStats trials_; // their time
     MeanRender mean_;
 };
 

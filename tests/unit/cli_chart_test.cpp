@@ -45,7 +45,8 @@ TEST_F(Program, CpuTimeSetsSamplesAndPhotons) {
     const auto stats = nlohmann::json::parse(read("s.json"));
     EXPECT_THAT(stats["remarks"].dump(), HasSubstr("set by the time:"));
     EXPECT_GT(stats["values"]["effort"], 0);
-    EXPECT_EQ(stats["stages"][0]["name"], "other renders") << "the trial is not what comes out";
+    EXPECT_EQ(stats["stages"][0]["name"], "loading");
+    EXPECT_EQ(stats["stages"][1]["name"], "trials");
     const std::string settings = read_exr(scratch.path("a.exr")).metadata.at("settings");
     EXPECT_THAT(settings, testing::Not(HasSubstr("light_paths=1000000 ")));
     // What the command line names stays.
@@ -53,14 +54,20 @@ TEST_F(Program, CpuTimeSetsSamplesAndPhotons) {
     EXPECT_THAT(read_exr(scratch.path("b.exr")).metadata.at("settings"), HasSubstr("spp=3 "));
 }
 
-/// Where there is no time for photons paths are traced: noisy, not wrong, and it says so.
+/// Where there is no time for photons, paths are traced: noisy, not wrong.
 TEST_F(Program, TooLittleTimeForPhotonsStillGivesAPicture) {
-    ASSERT_EQ(run("render scene.yaml -o a.exr --cpu-time 0.001 --method ipm --stats s.json --no-png -q"), 0)
+    ASSERT_EQ(run("render scene.yaml -o a.exr --cpu-time 0.001 --method auto --stats s.json --no-png -q"), 0)
         << read("err");
-    const auto stats = nlohmann::json::parse(read("s.json"));
-    EXPECT_EQ(stats["method"], "path");
-    EXPECT_THAT(stats["warnings"].dump(), HasSubstr("too little time for ipm"));
+    EXPECT_EQ(nlohmann::json::parse(read("s.json"))["method"], "path");
     EXPECT_FALSE(read_exr(scratch.path("a.exr")).layers.at("beauty").data.empty());
+}
+
+TEST_F(Program, AMethodByNameIsThatMethodOrAnError) {
+    ASSERT_EQ(run("render scene.yaml -o a.exr --cpu-time 2 --method pm --stats s.json --no-png -q"), 0) << read("err");
+    EXPECT_EQ(nlohmann::json::parse(read("s.json"))["method"], "pm");
+    EXPECT_EQ(run("render scene.yaml -o b.exr --cpu-time 0.001 --method pm --no-png -q"), 2);
+    EXPECT_THAT(read("err"), HasSubstr("too little time for pm"));
+    EXPECT_FALSE(std::filesystem::exists(scratch.path("b.exr")));
 }
 
 TEST_F(Program, QualityIsEffortInOneWord) {

@@ -123,7 +123,6 @@ std::unique_ptr<Scene> fine_square() {
     SceneDescription d;
     d.shapes.push_back(shape_of(kUnitSquare, 150));
     d.shapes.back().material = make_diffuse(Rgb(0.5));
-    d.camera.position = Vec3(0.5f, 0.5f, 3);
     d.window.width = d.window.height = 8;
     return std::make_unique<Scene>(std::move(d));
 }

@@ -82,7 +82,7 @@ Lookups look_up(const PlaceGrid& grid, const std::vector<Shape>& shapes, const S
 TEST(PlaceGrid, GivesWhatWasFoundNearbyOnTheSameSide) {
     const std::vector<Shape> shapes = triangles();
     Searches searches;
-    const PlaceGrid grid(shapes, 16'000, searches.find(5));
+    const PlaceGrid grid(shapes, 16'000, searches.find(5), {});
     EXPECT_LE(searches.asked.size(), 600u) << "but for some that ask what sides there are";
     const Lookups found = look_up(grid, shapes, searches);
     EXPECT_EQ(found.searched, 0);
@@ -92,7 +92,7 @@ TEST(PlaceGrid, GivesWhatWasFoundNearbyOnTheSameSide) {
 TEST(PlaceGrid, DividesCellsThatAreTooLargeForTheirPlaces) {
     const std::vector<Shape> shapes = triangles();
     Searches searches;
-    const PlaceGrid grid(shapes, 160'000, searches.find(0.15f));
+    const PlaceGrid grid(shapes, 160'000, searches.find(0.15f), {});
     EXPECT_LE(grid.bytes(), 160'000);
     const Lookups found = look_up(grid, shapes, searches);
     EXPECT_EQ(found.searched, 0);
@@ -102,7 +102,7 @@ TEST(PlaceGrid, DividesCellsThatAreTooLargeForTheirPlaces) {
 TEST(PlaceGrid, LeavesWhatItHasNoRoomForToTheSearch) {
     const std::vector<Shape> shapes = triangles();
     Searches searches;
-    const PlaceGrid grid(shapes, 16'000, searches.find(0.1f));
+    const PlaceGrid grid(shapes, 16'000, searches.find(0.1f), {});
     EXPECT_LE(grid.bytes(), 16'000);
     const Lookups found = look_up(grid, shapes, searches);
     EXPECT_GT(found.searched, 0);
@@ -113,7 +113,7 @@ TEST(PlaceGrid, LeavesWhatItHasNoRoomForToTheSearch) {
 TEST(PlaceGrid, ASmallTriangleIsACellByItself) {
     const std::vector<Shape> shapes = triangles();
     Searches searches;
-    const PlaceGrid grid(shapes, 16'000, searches.find(0.2f));
+    const PlaceGrid grid(shapes, 16'000, searches.find(0.2f), {});
     Rng rng(1, StreamPurpose::test, 0);
     std::set<std::uint32_t> outside, inside;
     for (int i = 0; i < 100; ++i) {
@@ -132,19 +132,21 @@ TEST(PlaceGrid, ASmallTriangleIsACellByItself) {
 TEST(PlaceGrid, LeavesOtherShapesAndEmptySidesToTheSearch) {
     const std::vector<Shape> shapes = triangles();
     Searches searches;
-    const PlaceGrid grid(shapes, 800, searches.find(5)); // the largest triangle's worth
+    const PlaceGrid grid(shapes, 800, searches.find(5), {}); // the largest triangle's worth
     Rng rng(1, StreamPurpose::test, 0);
     SurfacePoint s = random_point(shapes, 0, rng);
     EXPECT_EQ(grid.at(s, s.ng), PlaceGrid::kSearch);
     s.shape = SurfacePoint::kNone;
     EXPECT_EQ(grid.at(s, s.ng), PlaceGrid::kSearch);
-    const PlaceGrid one_sided(shapes, 16'000, [](const Vec3&, const Vec3& n) {
-        return PlaceGrid::Found{n.z > 0 ? 5 : PlaceGrid::kNothing, 9};
-    });
+    const PlaceGrid one_sided(shapes, 16'000,
+                              [](const Vec3&, const Vec3& n) {
+                                  return PlaceGrid::Found{n.z > 0 ? 5 : PlaceGrid::kNothing, 9};
+                              },
+                              {});
     s = random_point(shapes, 0, rng);
     EXPECT_EQ(one_sided.at(s, s.ng), 5u);
     EXPECT_EQ(one_sided.at(s, -s.ng), PlaceGrid::kSearch);
-    const PlaceGrid none(shapes, 32, searches.find(5));
+    const PlaceGrid none(shapes, 32, searches.find(5), {});
     EXPECT_EQ(none.at(s, s.ng), PlaceGrid::kSearch) << "no room for cells";
 }
 

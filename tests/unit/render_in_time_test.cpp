@@ -71,7 +71,7 @@ TEST_P(RenderInTime, IsAsBrightAsTheScene) {
     EXPECT_EQ(result.picture.height, window.height);
     EXPECT_EQ(scene->camera().window().width, window.width);
     EXPECT_EQ(result.settings.seed, s.seed);
-    EXPECT_EQ(result.stats.stages.front().name, "other renders");
+    EXPECT_EQ(result.stats.stages.front().name, "trials");
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, RenderInTime, testing::Values("auto", "mps", "mlt", "pssmlt"),

@@ -1,0 +1,66 @@
+// What two short renders tell of the error of a method.
+#include "render/trial_error.h"
+
+#include "core/rng.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace keyhole {
+namespace {
+
+constexpr int kWidth = 64, kHeight = 48;
+
+/// A picture of a gradient, with grain of relative standard deviation `grain` in each pixel and `blotches` in each
+/// block of 4x4; the upper half is darker by the factor `found`.
+Image noisy(double grain, double blotches, double found, std::uint64_t seed) {
+    Rng rng(seed, StreamPurpose::test, 0);
+    const auto normal = [&] { return std::sqrt(-2 * std::log(1 - rng.next())) * std::cos(6.283185307 * rng.next()); };
+    std::vector<double> of_block(static_cast<std::size_t>(kWidth / 4 * kHeight / 4));
+    for (double& b : of_block) b = 1 + blotches * normal();
+    Image image(kWidth, kHeight, 1);
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            const double truth = (1 + x / 64.0) * (y < kHeight / 2 ? found : 1.0);
+            const double block = of_block[static_cast<std::size_t>(y / 4 * (kWidth / 4) + x / 4)];
+            *image.at(x, y) = static_cast<float>(truth * (block + grain * normal()));
+        }
+    return image;
+}
+
+TrialPictures halves(double grain, double blotches, double found, std::uint64_t seed) {
+    return {noisy(grain, blotches, found, 2 * seed), noisy(grain, blotches, found, 2 * seed + 1)};
+}
+
+TEST(TrialErrors, TellGrainFromBlotches) {
+    const std::vector<TrialPictures> methods{halves(0.3, 0, 1, 1), halves(0.05, 0.2, 1, 2)};
+    const std::vector<TrialError> e = trial_errors(methods);
+    EXPECT_NEAR(e[0].grain, 0.09, 0.015);
+    EXPECT_LT(e[0].blotches, 0.01);
+    EXPECT_NEAR(e[1].blotches, 0.04, 0.012);
+    EXPECT_NEAR(e[1].grain, 0.0025, 0.003);
+    EXPECT_EQ(e[0].missing, 0);
+    EXPECT_EQ(e[1].missing, 0);
+}
+
+TEST(TrialErrors, MissLightThatTwoRendersAgreeNotToFind) {
+    const std::vector<TrialPictures> methods{halves(0.3, 0, 1, 3), halves(0.02, 0, 0.3, 4)};
+    const std::vector<TrialError> e = trial_errors(methods);
+    EXPECT_EQ(e[0].missing, 0);
+    EXPECT_GT(e[1].missing, 0.1) << "half of the picture lacks two thirds of its light";
+}
+
+TEST(TrialErrors, OfBlackPicturesAreThatEverythingIsMissing) {
+    const std::vector<TrialPictures> methods{{Image(kWidth, kHeight, 1), Image(kWidth, kHeight, 1)},
+                                             halves(0.1, 0, 1, 5)};
+    const std::vector<TrialError> e = trial_errors(methods);
+    EXPECT_GT(e[0].missing, 0.5);
+    EXPECT_TRUE(std::isfinite(e[0].grain + e[0].blotches));
+    EXPECT_EQ(e[1].missing, 0);
+    const std::vector<TrialError> alone = trial_errors(std::span(methods).first(1));
+    EXPECT_EQ(alone[0].grain + alone[0].blotches + alone[0].missing, 0);
+}
+
+} // namespace
+} // namespace keyhole
