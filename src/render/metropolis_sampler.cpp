@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace keyhole {
 namespace {
@@ -50,7 +51,6 @@ class MetropolisSampler final : public PhotonSampler {
                                      .guides = c_.user_paths.empty() ? nullptr : &guides_};
         const StageOne one = reports_.measure_brightness(c_.scene, first, stats, context);
         if (!(one.brightness.mean() > 0)) return {};
-        const StageClock clock(stats, "photons");
         return run_chains(first, one, stats, context);
     }
 
@@ -61,7 +61,10 @@ class MetropolisSampler final : public PhotonSampler {
     Photons run_chains(const StageOneSettings& first, const StageOne& one, RenderStats& stats,
                        const RunContext& context) {
         const Settings& s = c_.settings;
+        // Stages whose times follow from different settings, so that what others cost can be foreseen.
+        std::optional<StageClock> clock(std::in_place, stats, "seeds");
         const ChainSeeds seeds = choose_chain_seeds(c_.scene, first, one, s.chains);
+        clock.emplace(stats, "importance");
         const bool delta = c_.caustics;
         const MemoryPlan plan = plan_memory(s, ImportanceUse::beside, delta ? 2 : 1);
         Importons importons = trace_importance(c_.scene,
@@ -77,10 +80,12 @@ class MetropolisSampler final : public PhotonSampler {
         stats.importons = at_d1.map().photons().size() + at_d2.map().photons().size();
         stats.importon_bytes = at_d1.bytes() + at_d2.bytes();
 
+        clock.emplace(stats, "tuning");
         const ProposalContext proposals{&c_.scene, set_, static_cast<int>(s.max_depth)};
         // Told by the seeds of chains that carry no light: those of the others are independent of it.
         const Settings tuned = tuned_proposals(proposals, s, c_.user_paths, seeds.scouts, first.seed);
         const ChainMixtures mixtures(proposals, tuned, c_.user_paths);
+        clock.emplace(stats, "photons");
         const std::size_t caustic = c_.caustics ? caustic_share(one, plan.photons) : 0;
         SampledPhotons photons = sample_photons(seeds, mixtures.mixture,
                                                 {.global = &at_d2,

@@ -39,7 +39,7 @@ PassStart start_pass(const Scene& scene, const Settings& settings, const StageOn
     start.one = reports.measure_brightness(scene, first, stats, context);
     start.whole = start.one.is_whole();
     if (start.is_dark()) return start;
-    const StageClock clock(stats, "chains");
+    const StageClock clock(stats, "seeds");
     start.seeds = choose_seeds(scene, first, start.one, start.one.all_groups(), settings.chains);
     return start;
 }

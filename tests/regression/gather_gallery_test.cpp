@@ -12,6 +12,7 @@ namespace {
 
 Settings small_settings() {
     Settings s;
+    s.method = "ipm"; // `auto` may take a method without a gather
     s.spp = 8;
     s.brightness_samples = 50'000;
     s.importons = 50'000;
