@@ -51,8 +51,6 @@ constexpr std::int64_t kSamplesOfTrial = 4;
 /// A single trial has the window of as many seconds as all would take together.
 constexpr double kTrialsOfATrial = 8;
 
-bool samples_pixels(std::string_view method) { return method == "path" || method == "bdpt"; }
-
 /// Pixels of the window of trials that take so many seconds together: enough to tell errors by, few enough for several
 /// samples of each.
 double trial_pixels(double seconds) { return std::clamp(1800 * seconds, 600.0, 4800.0); }

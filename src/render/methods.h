@@ -17,6 +17,9 @@ inline bool keeps_photons(std::string_view method) {
     return std::ranges::find(methods, method) != methods.end();
 }
 
+/// Whether a method samples pixels one by one and needs nothing before that.
+inline bool samples_pixels(std::string_view method) { return method == "path" || method == "bdpt"; }
+
 /// The method that settings.method names, without render()'s care for renders that are stopped before they have a
 /// picture. The scene's window margin has to be set.
 /// @throws Interrupted, and InputError as render()

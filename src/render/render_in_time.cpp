@@ -33,8 +33,6 @@ constexpr double kLeast = 0.05;
 /// The trial of a method by name: of the time, what it is to take and what it may take.
 constexpr double kTrial = 0.02, kLongestTrial = 0.6, kTrialSeconds = 0.5;
 
-bool samples_pixels(const std::string& method) { return method == "path" || method == "bdpt"; }
-
 /// " key=value" for each setting of `b` that `a` has otherwise.
 std::string differences(const Settings& a, const Settings& b) {
     const auto list = [](const Settings& s) {
@@ -122,7 +120,8 @@ class RenderInTime {
         for (std::size_t k = 0; k < turned_out.size(); ++k) {
             take_over(tried_[k]);
             const auto error = error_of_parts(part);
-            if (!error) return;
+            if (cost_) tried_[k].of = *cost_; // these have shown more
+            if (!error) return take_over(tried_[1 - k]);
             turned_out[k] = *error;
             remarks_.push_back(fmt::format("the error of {} turns out to be {:.2g} where {:.2g} was foreseen", method_,
                                            turned_out[k], tried_[k].predicted));
@@ -134,9 +133,14 @@ class RenderInTime {
     }
 
     /// What two renders of the method, of so many seconds each, tell of the error that all of the time would leave.
+    /// None if they were not done in time.
     std::optional<double> error_of_parts(double seconds) {
-        auto first = render_part(seconds, false),
-             second = context_.stopped() ? std::nullopt : render_part(seconds, false);
+        std::optional<Image> first, second;
+        try {
+            first = render_part(seconds, false);
+            if (first && !context_.stopped()) second = render_part(seconds, false);
+        } catch (const Interrupted&) { // too slow
+        }
         if (!first || !second) return std::nullopt;
         const TrialPictures halves{std::move(*first), std::move(*second)};
         const TrialError e = trial_errors(std::span(&halves, 1)).front();
