@@ -31,7 +31,7 @@ SCENES = {
     "veach-ajar": ("160x90", "mmlt", "references/veach-ajar.a.exr"),
     "cornell-box": ("128x128", "bdpt", "references/cornell-box.exr"),
     "veach-bidir": ("128x128", "bdpt", "references/veach-bidir.exr"),
-    "water-caustic": ("128x128", "bdpt", None),
+    "water-caustic": ("128x128", "ipm", None), # light through water is for photons alone; the given one has another size
     "mps/box": ("320x240", "ipm", "references/mps/box.a.exr"),
     "mps/rooms": ("320x240", "ipm", "references/mps/rooms.a.exr"),
     "mps/lantern": ("320x240", "ipm", "references/mps/lantern.a.exr"),

@@ -22,26 +22,22 @@ struct Candidate {
     std::string_view method;
     double share;
 };
-constexpr std::array kCandidates{Candidate{"path", 0.06},  Candidate{"bdpt", 0.10},  Candidate{"ipm", 0.26},
-                                 Candidate{"mmlt", 0.14},  Candidate{"mps", 0.16},   Candidate{"mlt", 0.12},
-                                 Candidate{"rjmlt", 0.08}, Candidate{"pssmlt", 0.08}};
+constexpr std::array kCandidates{Candidate{"path", 0.05},   Candidate{"bdpt", 0.08}, Candidate{"ipm", 0.30},
+                                 Candidate{"mmlt", 0.12},   Candidate{"mps", 0.16},  Candidate{"mlt", 0.09},
+                                 Candidate{"pssmlt", 0.07}, Candidate{"rjmlt", 0.07}};
 
 /// Of the whole time, at most; and so many seconds with a smaller share of longer times.
 constexpr double kMost = 0.115, kSeconds = 0.55, kShare = 0.03;
 /// Of the whole time, what the survey that methods with photons start with may take.
 constexpr double kPlan = 0.08;
 /// A trial that takes so many times as long as it should is given up.
-constexpr double kPatience = 2.5;
+constexpr double kPatience = 3;
 /// What traces importance costs is told by so many walks.
 constexpr std::int64_t kImportons = 4000;
 /// Number of the first render of a trial, for its seed; those that count have others.
 constexpr std::int64_t kTrialSeed = std::int64_t{1} << 20;
 /// Chains of a trial are too short to show what they never reach: they are believed to be that much worse.
 constexpr double kDoubt = 1.5;
-
-/// What photons and records err falls as this power of the effort at least: often faster while they are few, but two
-/// renders don't tell what both have wrong.
-constexpr double kSlope = 0.7;
 
 /// Of the grain that a trial shows, what stays at least where pixels of the picture are smaller.
 constexpr double kLeastGrain = 0.3;
@@ -96,7 +92,7 @@ Settings trial_settings(const TrialContext& c, const std::string& method, double
 }
 
 struct TrialRender {
-    Image luminance;
+    Image luminance, direct;
     TrialCost of;
 };
 
@@ -117,6 +113,7 @@ std::optional<TrialRender> render_trial(const TrialContext& c, Settings settings
     const Experience cost = in_time ? Experience(settings, effort, pixels, r.stats, start - left())
                                     : Experience::in_rays(settings, effort, pixels, r.stats);
     return TrialRender{luminance_of(r.picture),
+                       luminance_of(r.picture, "direct"),
                        {.cost = cost,
                         .taken = in_time ? start - left() : cost.total(),
                         .samples = r.stats.samples,
@@ -133,6 +130,14 @@ std::optional<TrialRender> render_trial(const TrialContext& c, const Settings& s
     } catch (const Interrupted&) {
         return std::nullopt;
     }
+}
+
+/// The share of the grain that only samples of pixels make less: that of direct light, and of all light on surfaces
+/// that no record serves. Light of photons and records looks like grain as well where pixels are large.
+double by_samples(const TrialContext& c, const TrialRender& first, const TrialRender& second) {
+    const double direct = share_of_grain({first.direct, second.direct}, {first.luminance, second.luminance});
+    const double glossy = c.findings.plan ? std::min(1.0, c.findings.plan->survey.glossy) : 1;
+    return direct + (1 - direct) * glossy;
 }
 
 /// Finds out what methods with photons need to know; false if that takes longer than so many seconds.
@@ -172,9 +177,11 @@ std::optional<TriedMethod> try_method(const TrialContext& c, const std::string& 
     s.seed = seed_of_render(c.settings, kTrialSeed + 1);
     auto second = render_trial(c, s, effort, most);
     if (!second) return std::nullopt;
+    const double samples = keeps_photons(method) ? by_samples(c, *first, *second) : 1;
     TriedMethod tried{.method = method,
                       .pictures = {std::move(first->luminance), std::move(second->luminance)},
                       .narrow = {},
+                      .by_samples = samples,
                       .of = std::move(second->of),
                       .error = {}};
     if (method == "path") {
@@ -203,7 +210,9 @@ double predict(const TriedMethod& t, const TrialContext& c, double left) {
     const double effort = affordable_effort(t.of.cost, s, c.given, t.of.balance, pixels, left);
     s = with_effort(s, effort, static_cast<std::int64_t>(pixels), c.given, t.of.balance);
     const double samples = static_cast<double>(s.spp * s.passes) / t.of.samples;
-    return e.grain / samples + (e.blotches + e.missing) * std::pow(effort / t.of.cost.effort, -kSlope);
+    const double growth = effort / t.of.cost.effort;
+    return e.grain * (t.by_samples / samples + (1 - t.by_samples) / growth) +
+           (e.blotches + e.missing) * std::pow(growth, -kSlope);
 }
 
 /// Rays that light tracing by importance would take with the settings, or else the first of the methods.
@@ -224,9 +233,7 @@ double work_asked_for(const TrialContext& c, std::span<const TriedMethod> tried)
 double variance_within_pixels(std::span<const TriedMethod> tried) {
     const auto path = std::ranges::find_if(tried, [](const TriedMethod& t) { return t.narrow.has_value(); });
     if (path == tried.end()) return 0;
-    const std::array pictures{path->pictures, *path->narrow};
-    const std::vector<TrialError> e = trial_errors(pictures);
-    return std::max(0.0, e[0].grain - e[1].grain) * path->of.samples;
+    return std::max(0.0, variance_of_most(path->pictures) - variance_of_most(*path->narrow)) * path->of.samples;
 }
 
 /// Errors of all, for so much time or work, and the best first.
@@ -289,9 +296,11 @@ std::vector<TriedMethod> try_methods_by_work(const TrialContext& c) {
             s.seed = seed_of_render(c.settings, kTrialSeed + 1);
             auto second = render_trial(c, s, effort, context);
             if (!first || !second) continue;
+            const double samples = keeps_photons(method) ? by_samples(c, *first, *second) : 1;
             tried.push_back({.method = method,
                              .pictures = {std::move(first->luminance), std::move(second->luminance)},
                              .narrow = {},
+                             .by_samples = samples,
                              .of = std::move(second->of),
                              .error = {}});
             if (method != "path") continue;
@@ -326,8 +335,7 @@ std::string describe_choice(std::span<const TriedMethod> tried) {
     std::string text = fmt::format("method {} chosen by trial: squared relative errors in this time would be about",
                                    tried.front().method);
     for (const TriedMethod& t : tried)
-        text += fmt::format("{} {} {:.2g} [{:.2g} {:.2g} {:.2g}; {:.2g} s]", &t == tried.data() ? "" : ",", t.method,
-                            t.predicted, t.error.grain, t.error.blotches, t.error.missing, t.of.taken);
+        text += fmt::format("{} {} {:.2g}", &t == tried.data() ? "" : ",", t.method, t.predicted);
     return text;
 }
 

@@ -29,10 +29,15 @@ struct TriedMethod {
     std::string method;
     TrialPictures pictures;
     std::optional<TrialPictures> narrow; ///< of path tracing, with pixels as small as those of the picture
+    double by_samples = 1;               ///< share of the grain that only samples of pixels make less
     TrialCost of;                        ///< of one of the two renders
     TrialError error;
     double predicted = 0; ///< squared relative error that the render would leave (the measure of relmse_trim)
 };
+
+/// What photons and records err falls as this power of the effort at least: often faster while they are few, but two
+/// renders don't tell what both have wrong.
+constexpr double kSlope = 0.85;
 
 /// What trials are made with. All must outlive it.
 struct TrialContext {

@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace keyhole {
@@ -23,7 +24,12 @@ namespace {
 /// Two methods are close if the one promises less than so many times the error of the other.
 constexpr double kClose = 1.8;
 /// Of the time, each of the two renders of either method that show how large their errors are.
-constexpr double kPart = 0.125;
+constexpr double kPart = 1.0 / 16;
+/// Methods with photons make poor pictures in fewer seconds, and show little more than in a trial.
+constexpr double kLeastForPhotons = 3;
+/// What counts less than this share of the better method's seconds would only cost it its statistics.
+constexpr double kNoWeight = 0.2;
+constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// Of the time for a render with photons or chains that its foreseen cost is to fill. What is left then goes into more
 /// samples of pixels, or more mutations.
@@ -66,7 +72,7 @@ class RenderInTime {
             if (is_close()) spend_in_parts();
             while (mean_.empty() || (left() > kLeast * start_ && !used_up_)) {
                 if (context_.stop->requested() || (context_.stopped() && !samples_pixels(method_))) break;
-                render_part(left(), true);
+                render_rest();
                 if (context_.stopped()) break;
             }
         } catch (const Interrupted&) { // too slow for the time, or somebody doesn't want to wait
@@ -78,8 +84,12 @@ class RenderInTime {
   private:
     double left() const { return context_.stop->seconds_left(); }
     TrialContext trial_context() { return {scene_, settings_, given_, context_, user_paths_, findings_}; }
-    const TriedMethod* runner_up() const { return tried_.size() > 1 ? &tried_[1] : nullptr; }
-    bool is_close() const { return runner_up() != nullptr && tried_[1].predicted < kClose * tried_[0].predicted; }
+    /// Whether two methods are so close that a longer look is worth its time.
+    bool is_close() const {
+        if (tried_.size() < 2 || tried_[1].predicted > kClose * tried_[0].predicted) return false;
+        const bool photons = keeps_photons(tried_[0].method) || keeps_photons(tried_[1].method);
+        return !photons || kPart * left() >= kLeastForPhotons;
+    }
 
     /// The method, and what it costs.
     void choose() {
@@ -110,41 +120,55 @@ class RenderInTime {
     void take_over(const TriedMethod& t) {
         use(t.method);
         cost_ = t.of;
-        weight_ = 1 / std::max(t.predicted, 1e-12);
     }
 
-    /// Half of the time: a quarter by the best, a quarter by the one that comes next. Then the rest is for the better.
+    /// A part of the time by each of the two methods that promise most; the rest is for the one whose error turns out
+    /// smaller. What the other has made counts by its error.
     void spend_in_parts() {
         const double part = kPart * left();
-        std::array<double, 2> turned_out;
-        for (std::size_t k = 0; k < turned_out.size(); ++k) {
+        std::array<Parts, 2> made;
+        for (std::size_t k = 0; k < made.size(); ++k) {
             take_over(tried_[k]);
-            const auto error = error_of_parts(part);
+            made[k] = render_parts(part);
             if (cost_) tried_[k].of = *cost_; // these have shown more
-            if (!error) return take_over(tried_[1 - k]);
-            turned_out[k] = *error;
-            remarks_.push_back(fmt::format("the error of {} turns out to be {:.2g} where {:.2g} was foreseen", method_,
-                                           turned_out[k], tried_[k].predicted));
-            // Not so close after all?
-            if (k == 0 && kClose * turned_out[0] < tried_[1].predicted) return;
+            if (made[k].error < kNever)
+                remarks_.push_back(fmt::format("the error of {} turns out to be {:.2g} where {:.2g} was foreseen",
+                                               method_, made[k].error, tried_[k].predicted));
+            if (k == 0 && kClose * made[0].error < tried_[1].predicted) break; // not so close after all
         }
-        if (turned_out[0] <= turned_out[1]) take_over(tried_[0]);
+        const std::size_t better = made[1].error < made[0].error ? 1 : 0;
+        take_over(tried_[better]);
+        for (std::size_t k = 0; k < made.size(); ++k) {
+            const double weight = k == better ? 1 : made[better].error / made[k].error;
+            if (!made[k].mean.empty() && weight > kNoWeight) mean_.add(made[k].mean.take(), weight * made[k].seconds);
+        }
         remarks_.push_back("the rest of the time went to " + method_);
     }
 
-    /// What two renders of the method, of so many seconds each, tell of the error that all of the time would leave.
-    /// None if they were not done in time.
-    std::optional<double> error_of_parts(double seconds) {
-        std::optional<Image> first, second;
+    /// Two renders of the method, of so many seconds each.
+    struct Parts {
+        MeanRender mean;
+        double seconds = 0;    ///< that they took
+        double error = kNever; ///< that all of the time would leave, by what they differ in
+    };
+    Parts render_parts(double seconds) {
+        Parts parts;
+        std::vector<Image> pictures;
         try {
-            first = render_part(seconds, false);
-            if (first && !context_.stopped()) second = render_part(seconds, false);
+            while (pictures.size() < 2 && !context_.stopped()) {
+                auto part = render_part(seconds, false);
+                if (!part) break;
+                pictures.push_back(luminance_of(part->result.picture));
+                parts.seconds += part->seconds;
+                parts.mean.add(std::move(part->result), part->seconds);
+            }
         } catch (const Interrupted&) { // too slow
         }
-        if (!first || !second) return std::nullopt;
-        const TrialPictures halves{std::move(*first), std::move(*second)};
+        if (pictures.size() < 2) return parts;
+        const TrialPictures halves{std::move(pictures[0]), std::move(pictures[1])};
         const TrialError e = trial_errors(std::span(&halves, 1)).front();
-        return (e.grain + e.blotches) * seconds / at_choice_;
+        parts.error = (e.grain + e.blotches) * std::pow(seconds / at_choice_, keeps_photons(method_) ? kSlope : 1);
+        return parts;
     }
 
     /// Settings that use so many seconds, and of a method whose last stage goes on as long as there is time: more than
@@ -168,8 +192,12 @@ class RenderInTime {
         return s;
     }
 
-    /// A render of so many seconds; the last one goes on to the end of the time. Returns its luminance.
-    std::optional<Image> render_part(double seconds, bool last) {
+    struct Part {
+        RenderResult result;
+        double seconds; ///< that it took
+    };
+    /// A render of so many seconds; the last one goes on to the end of the time. None where it leaves no picture.
+    std::optional<Part> render_part(double seconds, bool last) {
         const double start = left();
         Settings chosen = settings_for(seconds, last);
         RunContext limited = context_;
@@ -190,7 +218,7 @@ class RenderInTime {
         used_up_ = last && samples_pixels(method_) && given_.contains("spp");
         const auto empty = result.stats.values.find("empty pixels");
         const bool holes = empty != result.stats.values.end() && empty->second > 0;
-        if (!has_picture(result) || (holes && !mean_.empty())) {
+        if (!has_picture(result) || (holes && (!last || !mean_.empty()))) {
             mean_.add_time_of(result.stats);
             return std::nullopt;
         }
@@ -201,9 +229,12 @@ class RenderInTime {
         result.settings = chosen;
         if (cost_ && (keeps_photons(method_) || result.stats.complete))
             cost_->cost = Experience(chosen, effort_, pixels_, result.stats, start - left());
-        auto y = luminance_of(result.picture);
-        mean_.add(std::move(result), weight_ * (start - left()));
-        return y;
+        return Part{std::move(result), start - left()};
+    }
+
+    /// The last one, or one of several if there is a limit to what a render can do.
+    void render_rest() {
+        if (auto part = render_part(left(), true)) mean_.add(std::move(part->result), part->seconds);
     }
 
     /// Paths are a noisy picture, not a wrong one; but a method that somebody named isn't replaced in silence.
@@ -216,7 +247,7 @@ class RenderInTime {
                                          method_, start_));
         remarks_.push_back("paths are traced: " + method_ + " was not done in its time");
         use("path");
-        render_part(left(), true);
+        render_rest();
         return mean_.empty() ? first_look(scene_, settings_) : finish();
     }
 
@@ -251,7 +282,6 @@ class RenderInTime {
     std::optional<TrialCost> cost_;  // of the method; none for those that sample pixels
     std::vector<TriedMethod> tried_; // the best first
     double at_choice_ = 0;           // time that was left then [s]
-    double weight_ = 1;              // of a second of the method in the mean
     double effort_ = 0;              // of the render under way
     bool used_up_ = false;           // everything that was asked for by number is done before the time
     std::int64_t renders_ = 0;       // begun

@@ -22,9 +22,9 @@ double mean(const Values& v) {
     return v.empty() ? 0 : std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size());
 }
 
-double trimmed_mean(Values v) {
+double trimmed_mean(Values v, double trimmed) {
     std::ranges::sort(v);
-    v.resize(v.size() - static_cast<std::size_t>(std::ceil(kTrimmed * static_cast<double>(v.size()))));
+    v.resize(v.size() - static_cast<std::size_t>(std::ceil(trimmed * static_cast<double>(v.size()))));
     return mean(v);
 }
 
@@ -78,14 +78,14 @@ Grid difference_of(const TrialPictures& m) {
 }
 
 /// Half the squared difference is the variance of one of two. Relative to `picture`.
-double relative_variance(const Grid& difference, const Grid& picture) {
+double relative_variance(const Grid& difference, const Grid& picture, double trimmed = kTrimmed) {
     const double dark = kDark * mean(picture.values) * mean(picture.values);
     Values v;
     for (std::size_t i = 0; i < difference.values.size(); ++i) {
         const double d = difference.values[i], p = picture.values[i];
         v.push_back(p * p + dark > 0 ? d * d / 2 / (p * p + dark) : 0);
     }
-    return trimmed_mean(v);
+    return trimmed_mean(std::move(v), trimmed);
 }
 
 /// The mean of all, each weighted by the reciprocal of its variance relative to itself.
@@ -124,12 +124,23 @@ struct Parts {
 
 } // namespace
 
-Image luminance_of(const Picture& picture) {
-    const Image& beauty = picture.layers.at("beauty");
+Image luminance_of(const Picture& picture, const std::string& layer) {
+    const Image& beauty = picture.layers.at(layer);
     Image y(beauty.width, beauty.height, 1);
     for (std::size_t i = 0; i < y.data.size(); ++i)
         y.data[i] = static_cast<float>(luminance({beauty.data[3 * i], beauty.data[3 * i + 1], beauty.data[3 * i + 2]}));
     return y;
+}
+
+double variance_of_most(const TrialPictures& pictures) {
+    return relative_variance(difference_of(pictures), mean_of(pictures).smooth(), 0.05);
+}
+
+double share_of_grain(const TrialPictures& part, const TrialPictures& whole) {
+    const Grid picture = mean_of(whole).smooth();
+    const auto grain = [&](const TrialPictures& m) { return relative_variance(difference_of(m), picture); };
+    const double all = grain(whole);
+    return all > 0 ? std::min(1.0, grain(part) / all) : 1;
 }
 
 std::vector<TrialError> trial_errors(std::span<const TrialPictures> methods) {

@@ -4,6 +4,7 @@
 #include "film/picture.h"
 
 #include <span>
+#include <string>
 #include <vector>
 
 namespace keyhole {
@@ -24,8 +25,15 @@ struct TrialError {
     double missing = 0;  ///< of parts of the picture that are darker than another method finds them, beyond chance
 };
 
-/// The luminance of what is looked at.
-Image luminance_of(const Picture& picture);
+/// The luminance of a layer: by default, of what is looked at.
+Image luminance_of(const Picture& picture, const std::string& layer = "beauty");
+
+/// Variance of pixels of one of two renders, relative to their mean, without the twentieth where it is largest: bright,
+/// rare samples say nothing of the rest.
+double variance_of_most(const TrialPictures& pictures);
+
+/// The share of the grain of two renders that a part of their light has: 0 to 1.
+double share_of_grain(const TrialPictures& part, const TrialPictures& whole);
 
 /// One for each of the methods. The picture that errors are relative to is the mean of all, weighted by how well the
 /// two renders of each agree. Two renders agree on what neither found: where all of a method's are darker than another
