@@ -32,12 +32,18 @@ constexpr double kMost = 0.115, kSeconds = 0.55, kShare = 0.03;
 constexpr double kPlan = 0.08;
 /// A trial that takes so many times as long as it should is given up.
 constexpr double kPatience = 3;
+/// Photons need some time however little they are to do: that share of all of it, up to so many seconds. To do without
+/// them may cost a hundred times the error.
+constexpr double kPatienceForPhotons = 0.08, kMostPatience = 0.4;
 /// What traces importance costs is told by so many walks.
 constexpr std::int64_t kImportons = 4000;
 /// Number of the first render of a trial, for its seed; those that count have others.
 constexpr std::int64_t kTrialSeed = std::int64_t{1} << 20;
+/// What photons and records err falls as this power of the effort at least: often faster while they are few, but two
+/// renders don't tell what both have wrong.
+constexpr double kSlope = 0.85;
 /// Chains of a trial are too short to show what they never reach: they are believed to be that much worse.
-constexpr double kDoubt = 1.5;
+constexpr double kDoubt = 1.5, kDoubtOfPhotons = 2;
 
 /// Of the grain that a trial shows, what stays at least where pixels of the picture are smaller.
 constexpr double kLeastGrain = 0.3;
@@ -168,7 +174,10 @@ std::optional<TriedMethod> try_method(const TrialContext& c, const std::string& 
                                       double seconds) {
     const double scale = static_cast<double>(c.scene.camera().window().width) / small.width;
     const WindowScope window(c.scene, c.settings, small);
-    const double half = seconds / 2, most = kPatience * half, effort = effort_of(half);
+    const double half = seconds / 2, effort = effort_of(half);
+    double most = kPatience * half;
+    if (keeps_photons(method))
+        most = std::max(most, std::min(kPatienceForPhotons * c.context.stop->seconds_left(), kMostPatience));
     Settings s = trial_settings(c, method, effort);
     s.seed = seed_of_render(c.settings, kTrialSeed);
     auto first = render_trial(c, s, effort, samples_pixels(method) ? half : most);
@@ -211,8 +220,9 @@ double predict(const TriedMethod& t, const TrialContext& c, double left) {
     s = with_effort(s, effort, static_cast<std::int64_t>(pixels), c.given, t.of.balance);
     const double samples = static_cast<double>(s.spp * s.passes) / t.of.samples;
     const double growth = effort / t.of.cost.effort;
-    return e.grain * (t.by_samples / samples + (1 - t.by_samples) / growth) +
-           (e.blotches + e.missing) * std::pow(growth, -kSlope);
+    return (t.method == "mps" ? kDoubtOfPhotons : 1) *
+           (e.grain * (t.by_samples / samples + (1 - t.by_samples) / growth) +
+            (e.blotches + e.missing) * std::pow(growth, -kSlope));
 }
 
 /// Rays that light tracing by importance would take with the settings, or else the first of the methods.

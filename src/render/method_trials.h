@@ -35,10 +35,6 @@ struct TriedMethod {
     double predicted = 0; ///< squared relative error that the render would leave (the measure of relmse_trim)
 };
 
-/// What photons and records err falls as this power of the effort at least: often faster while they are few, but two
-/// renders don't tell what both have wrong.
-constexpr double kSlope = 0.85;
-
 /// What trials are made with. All must outlive it.
 struct TrialContext {
     Scene& scene;

@@ -25,8 +25,6 @@ namespace {
 constexpr double kClose = 1.8;
 /// Of the time, each of the two renders of either method that show how large their errors are.
 constexpr double kPart = 1.0 / 16;
-/// Methods with photons make poor pictures in fewer seconds, and show little more than in a trial.
-constexpr double kLeastForPhotons = 3;
 /// What counts less than this share of the better method's seconds would only cost it its statistics.
 constexpr double kNoWeight = 0.2;
 constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -84,11 +82,11 @@ class RenderInTime {
   private:
     double left() const { return context_.stop->seconds_left(); }
     TrialContext trial_context() { return {scene_, settings_, given_, context_, user_paths_, findings_}; }
-    /// Whether two methods are so close that a longer look is worth its time.
+    /// Whether two methods are so close that a longer look is worth its time. Several small photon maps are worse than
+    /// a large one, and what they show of it is little.
     bool is_close() const {
-        if (tried_.size() < 2 || tried_[1].predicted > kClose * tried_[0].predicted) return false;
-        const bool photons = keeps_photons(tried_[0].method) || keeps_photons(tried_[1].method);
-        return !photons || kPart * left() >= kLeastForPhotons;
+        return tried_.size() > 1 && tried_[1].predicted < kClose * tried_[0].predicted &&
+               !keeps_photons(tried_[0].method) && !keeps_photons(tried_[1].method);
     }
 
     /// The method, and what it costs.
@@ -167,7 +165,7 @@ class RenderInTime {
         if (pictures.size() < 2) return parts;
         const TrialPictures halves{std::move(pictures[0]), std::move(pictures[1])};
         const TrialError e = trial_errors(std::span(&halves, 1)).front();
-        parts.error = (e.grain + e.blotches) * std::pow(seconds / at_choice_, keeps_photons(method_) ? kSlope : 1);
+        parts.error = (e.grain + e.blotches) * seconds / at_choice_;
         return parts;
     }
 
