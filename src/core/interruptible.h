@@ -29,8 +29,7 @@ template <class Body> void parallel_for(std::int64_t n, const RunContext& contex
 
 /// The same for items that take little time each: `block` of them between two looks.
 /// @throws Interrupted
-template <class Body>
-void parallel_blocks(std::int64_t n, std::int64_t block, const RunContext& context, Body&& body) {
+template <class Body> void parallel_blocks(std::int64_t n, std::int64_t block, const RunContext& context, Body&& body) {
     parallel_for((n + block - 1) / block, context, [&](std::int64_t b) {
         for (std::int64_t i = b * block; i < std::min(n, (b + 1) * block); ++i) body(i);
     });

@@ -34,7 +34,7 @@ constexpr double kPlan = 0.08;
 constexpr double kPatience = 3;
 /// Photons need some time however little they are to do: that share of all of it, up to so many seconds. To do without
 /// them may cost a hundred times the error.
-constexpr double kPatienceForPhotons = 0.08, kMostPatience = 0.4;
+constexpr double kPatienceForPhotons = 0.055, kMostPatience = 0.4;
 /// What traces importance costs is told by so many walks.
 constexpr std::int64_t kImportons = 4000;
 /// Number of the first render of a trial, for its seed; those that count have others.

@@ -9,11 +9,12 @@
 namespace keyhole {
 namespace {
 
-constexpr int kBlock = 4;             // pixels
-constexpr int kParts = 4;             // of the picture, each way, in which light may be missing
-constexpr int kSmooth = 3;            // pixels, each way: a pixel's noise must not be what it is compared with
-constexpr double kDark = 0.01;        // squared mean of the picture that is added to a pixel's square
-constexpr double kTrimmed = 0.001;    // share of the pixels, those with the largest errors, that are left out
+constexpr int kBlock = 4;      // pixels
+constexpr int kParts = 4;      // of the picture, each way, in which light may be missing
+constexpr int kSmooth = 3;     // pixels, each way: a pixel's noise must not be what it is compared with
+constexpr double kDark = 0.01; // squared mean of the picture that is added to a pixel's square
+// Share of the pixels, those with the largest errors, that are left out: more than of a picture, for pixels are larger.
+constexpr double kTrimmed = 0.01;
 constexpr double kStandardErrors = 2; // that two means differ by before light is missing
 
 using Values = std::vector<double>;
