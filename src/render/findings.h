@@ -15,6 +15,12 @@ struct Findings {
     std::optional<SurfacePatches> patches;
     std::optional<RenderPlan> plan;  ///< of methods with photon maps, standard photon mapping apart
     std::optional<ReachFound> reach; ///< where there is no plan
+
+    /// So that how far gather rays come is found out anew where it matters: trials spend few rays on it.
+    void forget_reach() {
+        if (plan && plan->reach) plan.reset();
+        reach.reset();
+    }
 };
 
 } // namespace keyhole

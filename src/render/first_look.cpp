@@ -10,14 +10,14 @@ namespace {
 /// Who stops a render waits a second at most.
 constexpr double kSeconds = 0.5;
 
+double pixels(const Picture& picture) { return static_cast<double>(picture.width) * picture.height; }
+
+} // namespace
+
 double empty_pixels(const RenderResult& result) {
     const auto empty = result.stats.values.find("empty pixels");
     return empty != result.stats.values.end() ? empty->second : 0;
 }
-
-double pixels(const Picture& picture) { return static_cast<double>(picture.width) * picture.height; }
-
-} // namespace
 
 bool has_picture(const RenderResult& result) {
     if (result.picture.layers.empty()) return false; // no unit of a team's

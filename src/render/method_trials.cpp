@@ -93,7 +93,7 @@ Settings trial_settings(const TrialContext& c, const std::string& method, double
     s.importons = std::min(s.importons, kImportons);
     s.save_map.clear();
     s.chain_groups = 1;
-    if (samples_pixels(method)) s.spp = 1 << 24; // ends by `seconds`
+    if (samples_pixels(method)) s.spp = 1 << 24; // as many as the cap leaves time for, unless somebody says how many
     return s;
 }
 
@@ -102,11 +102,6 @@ struct TrialRender {
     TrialCost of;
 };
 
-bool has_holes(const RenderResult& r) {
-    const auto empty = r.stats.values.find("empty pixels");
-    return !has_picture(r) || (empty != r.stats.values.end() && empty->second > 0);
-}
-
 /// A render of the scene's window; none if it leaves holes. @throws Interrupted
 std::optional<TrialRender> render_trial(const TrialContext& c, Settings settings, double effort,
                                         const RunContext& context) {
@@ -114,7 +109,7 @@ std::optional<TrialRender> render_trial(const TrialContext& c, Settings settings
     const bool in_time = std::isfinite(left()) && context.stop != nullptr;
     const double start = left(), pixels = pixels_of(c.scene.camera().window());
     const RenderResult r = render_by_method(c.scene, settings, c.user_paths, context, {}, c.findings);
-    if (has_holes(r)) return std::nullopt;
+    if (!has_picture(r) || empty_pixels(r) > 0) return std::nullopt;
     settings.spp = std::max<std::int64_t>(1, static_cast<std::int64_t>(r.stats.samples));
     const Experience cost = in_time ? Experience(settings, effort, pixels, r.stats, start - left())
                                     : Experience::in_rays(settings, effort, pixels, r.stats);
@@ -169,6 +164,34 @@ void narrow_pixels(Settings& s, double scale) {
 
 double effort_of(double seconds) { return std::min(seconds / kSecondsOfEffort, 0.1); }
 
+/// The two renders of a method with settings `s`, and of path tracing those with narrow pixels; none if one is missing.
+/// `scale`: of the picture over the window. `render(settings, is_first)` makes one.
+template <class Render>
+std::optional<TriedMethod> try_with(const TrialContext& c, Settings s, double scale, const Render& render) {
+    s.seed = seed_of_render(c.settings, kTrialSeed);
+    auto first = render(s, true);
+    if (!first) return std::nullopt;
+    if (samples_pixels(s.method)) s.spp = first->of.cost.settings.spp; // both are to cost the same
+    s.seed = seed_of_render(c.settings, kTrialSeed + 1);
+    auto second = render(s, false);
+    if (!second) return std::nullopt;
+    const double samples = keeps_photons(s.method) ? by_samples(c, *first, *second) : 1;
+    TriedMethod tried{.method = s.method,
+                      .pictures = {std::move(first->luminance), std::move(second->luminance)},
+                      .narrow = {},
+                      .by_samples = samples,
+                      .of = std::move(second->of),
+                      .error = {}};
+    if (s.method == "path") {
+        narrow_pixels(s, scale);
+        auto third = render(s, false);
+        s.seed = seed_of_render(c.settings, kTrialSeed);
+        auto fourth = render(s, false);
+        if (third && fourth) tried.narrow = {std::move(third->luminance), std::move(fourth->luminance)};
+    }
+    return tried;
+}
+
 /// A trial of one method in about so many seconds; none where it is too slow for that.
 std::optional<TriedMethod> try_method(const TrialContext& c, const std::string& method, const ImageWindow& small,
                                       double seconds) {
@@ -178,29 +201,9 @@ std::optional<TriedMethod> try_method(const TrialContext& c, const std::string& 
     double most = kPatience * half;
     if (keeps_photons(method))
         most = std::max(most, std::min(kPatienceForPhotons * c.context.stop->seconds_left(), kMostPatience));
-    Settings s = trial_settings(c, method, effort);
-    s.seed = seed_of_render(c.settings, kTrialSeed);
-    auto first = render_trial(c, s, effort, samples_pixels(method) ? half : most);
-    if (!first) return std::nullopt;
-    if (samples_pixels(method)) s.spp = first->of.cost.settings.spp; // both are to cost the same
-    s.seed = seed_of_render(c.settings, kTrialSeed + 1);
-    auto second = render_trial(c, s, effort, most);
-    if (!second) return std::nullopt;
-    const double samples = keeps_photons(method) ? by_samples(c, *first, *second) : 1;
-    TriedMethod tried{.method = method,
-                      .pictures = {std::move(first->luminance), std::move(second->luminance)},
-                      .narrow = {},
-                      .by_samples = samples,
-                      .of = std::move(second->of),
-                      .error = {}};
-    if (method == "path") {
-        narrow_pixels(s, scale);
-        auto third = render_trial(c, s, effort, most);
-        s.seed = seed_of_render(c.settings, kTrialSeed);
-        auto fourth = render_trial(c, s, effort, most);
-        if (third && fourth) tried.narrow = {std::move(third->luminance), std::move(fourth->luminance)};
-    }
-    return tried;
+    return try_with(c, trial_settings(c, method, effort), scale, [&](const Settings& s, bool is_first) {
+        return render_trial(c, s, effort, is_first && samples_pixels(method) ? half : most);
+    });
 }
 
 /// The squared error in the time that is left, told from that of a trial.
@@ -301,24 +304,8 @@ std::vector<TriedMethod> try_methods_by_work(const TrialContext& c) {
         for (const std::string method : {"path", "bdpt", "ipm", "mps", "mmlt"}) {
             Settings s = trial_settings(c, method, effort);
             if (samples_pixels(method)) s.spp = kSamplesOfTrial;
-            s.seed = seed_of_render(c.settings, kTrialSeed);
-            auto first = render_trial(c, s, effort, context);
-            s.seed = seed_of_render(c.settings, kTrialSeed + 1);
-            auto second = render_trial(c, s, effort, context);
-            if (!first || !second) continue;
-            const double samples = keeps_photons(method) ? by_samples(c, *first, *second) : 1;
-            tried.push_back({.method = method,
-                             .pictures = {std::move(first->luminance), std::move(second->luminance)},
-                             .narrow = {},
-                             .by_samples = samples,
-                             .of = std::move(second->of),
-                             .error = {}});
-            if (method != "path") continue;
-            narrow_pixels(s, scale);
-            auto third = render_trial(c, s, effort, context);
-            s.seed = seed_of_render(c.settings, kTrialSeed);
-            auto fourth = render_trial(c, s, effort, context);
-            if (third && fourth) tried.back().narrow = {std::move(third->luminance), std::move(fourth->luminance)};
+            const auto render = [&](const Settings& of, bool) { return render_trial(c, of, effort, context); };
+            if (auto t = try_with(c, s, scale, render)) tried.push_back(std::move(*t));
         }
     }
     if (!tried.empty()) rank(tried, c, work_asked_for(c, tried));

@@ -39,8 +39,7 @@ bool may_choose(const Settings& s) {
 Settings choose(const TrialContext& c, std::string& choice) {
     const std::vector<TriedMethod> tried = try_methods_by_work(c);
     if (tried.empty()) return c.settings;
-    // How far gather rays come is found out anew, with more rays than trials spend on it, where it matters.
-    if (c.findings.plan && c.findings.plan->reach) c.findings.plan.reset();
+    c.findings.forget_reach();
     choice = describe_choice(tried);
     if (c.findings.plan && !c.findings.plan->photons)
         choice += "; no photon maps: " + c.findings.plan->items.front().why;

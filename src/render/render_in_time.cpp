@@ -110,10 +110,7 @@ class RenderInTime {
         at_choice_ = left();
     }
     /// How far gather rays come is found out anew, with more rays than trials spend on it, where it matters.
-    void forget_rough_findings() {
-        if (findings_.plan && findings_.plan->reach) findings_.plan.reset();
-        findings_.reach.reset();
-    }
+    void forget_rough_findings() { findings_.forget_reach(); }
     void use(const std::string& method) { method_ = method; }
     void take_over(const TriedMethod& t) {
         use(t.method);
@@ -214,8 +211,7 @@ class RenderInTime {
         if (renders_ > 1) chosen.save_map.clear();
         RenderResult result = render_by_method(scene_, chosen, user_paths_, limited, share, findings_);
         used_up_ = last && samples_pixels(method_) && given_.contains("spp");
-        const auto empty = result.stats.values.find("empty pixels");
-        const bool holes = empty != result.stats.values.end() && empty->second > 0;
+        const bool holes = empty_pixels(result) > 0;
         if (!has_picture(result) || (holes && (!last || !mean_.empty()))) {
             mean_.add_time_of(result.stats);
             return std::nullopt;
