@@ -3,7 +3,7 @@
 //
 // usage: gather_bench SCENE [KEY=VALUE ...]      on one thread
 #include "core/parallel.h"
-#include "render/render.h"
+#include "methods/render.h"
 #include "scene/load/load.h"
 
 #include <embree3/rtcore.h>

@@ -1,14 +1,17 @@
 #!/usr/bin/env python3
 """Every method, and what `auto` makes of the time, on scenes that other people made.
 
-usage: bench/outside.py [--keyhole build/keyhole] [--shared ../shared] [--scenes coffee,...] [--times 5,15,60]
+usage: bench/outside.py [--keyhole build/keyhole] [--shared ../shared] [--own] [--scenes coffee,...] [--times 5,15,60]
                         [--methods auto,path,...] [--best N] [--seed 1] [--reference-seconds 240] [-j 2] [--out outside]
+                        [--at-most 1.25]
 
 Renders each scene at the size of its given reference, one thread a render, by `--cpu-time`. The error is the trimmed relative
 squared error free of the references' own noise (`keyhole diff`, cross_trim), against two independent long renders of our own,
 which stay in OUT/references; how far their blocks are from the reference that was given stands in OUT/references.json. Results
 stay in OUT/results.json, so that a run that was interrupted goes on, and more scenes, times or methods add to it. --best N
 leaves out, at all times but the shortest, methods that were not among the N best of the scene at the time before.
+--own takes the scenes of this project instead, those where methods fail among them. With --at-most the status is 1 if auto
+has more than so many times the error of the best method anywhere.
 The table has a row for each scene and time; the last columns are the best method by name and auto over it.
 """
 import argparse
@@ -18,6 +21,7 @@ import os
 import pathlib
 import statistics
 import subprocess
+import sys
 import threading
 import time
 
@@ -36,9 +40,18 @@ SCENES = {
     "mps/rooms": ("320x240", "ipm", "references/mps/rooms.a.exr"),
     "mps/lantern": ("320x240", "ipm", "references/mps/lantern.a.exr"),
 }
+# Of this project; those whose picture is black or a single colour have nothing to compare.
+OWN = {f"own/{name}": ("96x72", method, None) for name, method in {
+    "box": "ipm", "rooms": "ipm", "lantern": "bdpt", "disco": "ipm", "egg": "ipm", "glossy": "ipm", "tube": "ipm", "ball": "path",
+    "failures/grazing": "path", "failures/inside_glass": "ipm", "failures/islands": "mmlt", "failures/keyhole": "mlt",
+    "failures/many_lights": "bdpt", "failures/room": "bdpt", "failures/sds": "ipm", "failures/stadium": "bdpt",
+    "failures/sun_glass": "ipm", "failures/thin_wall": "bdpt", "failures/tiny_caustic": "bdpt"}.items()}
+SCENES |= OWN
 
 
 def scene_file(shared, name):
+    if name in OWN:
+        return str(ROOT / "scenes" / f"{name.removeprefix('own/')}.yaml")
     return f"{shared}/scenes/{name}.pbrt" if name.startswith("mps/") else f"{shared}/scenes/{name}/scene.pbrt"
 
 
@@ -130,13 +143,15 @@ def table(args, results):
             print(f"| {name} | {seconds:g} | " + " | ".join(cells) + f" | {best} | {ratio:.2f} |")
     if ratios:
         print(f"\nauto over best: median {statistics.median(ratios):.2f}, largest {max(ratios):.2f}")
+    return max(ratios, default=0)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--keyhole", default=str(ROOT / "build/keyhole"))
     parser.add_argument("--shared", default=str(ROOT.parent / "shared"))
-    parser.add_argument("--scenes", default=",".join(SCENES))
+    parser.add_argument("--own", action="store_true")
+    parser.add_argument("--scenes")
     parser.add_argument("--times", default="5,15,60")
     parser.add_argument("--methods", default=METHODS)
     parser.add_argument("--best", type=int, default=0)
@@ -144,8 +159,10 @@ def main():
     parser.add_argument("--reference-seconds", type=float, default=240)
     parser.add_argument("-j", "--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--out", default="outside")
+    parser.add_argument("--at-most", type=float, default=float("inf"))
     args = parser.parse_args()
-    args.scenes, args.methods = args.scenes.split(","), args.methods.split(",")
+    args.scenes = args.scenes.split(",") if args.scenes else [name for name in SCENES if (name in OWN) == args.own]
+    args.methods = args.methods.split(",")
     args.times = [float(t) for t in args.times.split(",")]
     folder = pathlib.Path(args.out) / "pictures"
     folder.mkdir(parents=True, exist_ok=True)
@@ -156,8 +173,8 @@ def main():
             wanted = [(name, seconds, m) for name in args.scenes for m in contenders(args, results, name, before)
                       if f"{name} {seconds:g} {m}" not in results.found]
             list(pool.map(lambda w: measure(args, results, folder, *w), wanted))
-    table(args, results)
+    return 1 if table(args, results) > args.at_most else 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -85,7 +85,7 @@ class Bench:
                 acceptance = {p["name"]: p["accepted"] / max(1, p["proposed"]) for p in stats["proposals"]}
                 yield {"scene": scene, "configuration": name, "seed": seed, "error": error(picture, r1, r2),
                        "cpu_seconds": seconds, "acceptance": stats["values"]["chains, acceptance"],
-                       "r_hat": stats["values"].get("chains, agreement (split R-hat)"),
+                       "r_hat": stats["values"].get("chains, split R-hat"),
                        **{f"acceptance {short}": acceptance.get(kind) for kind, short in KINDS.items()}}
 
 

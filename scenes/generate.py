@@ -9,7 +9,7 @@ import sys
 
 sys.dont_write_bytecode = True
 
-from modelling import furniture, lantern, papers, rooms, things  # noqa: E402
+from modelling import furniture, kitchen, lantern, papers, rooms, things  # noqa: E402
 from modelling.detail import Detail  # noqa: E402
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -71,6 +71,23 @@ def paper_meshes(d):
     }
 
 
+def kitchen_meshes(d):
+    window = 1.35, 1.08, 2.95, 2.2
+    return {
+        'cupboard_door': kitchen.front(d, 0.6, 0.115, 0.855),
+        'drawer': kitchen.front(d, 0.6, 0, 0.242),
+        'wall_cupboard_door': kitchen.front(d, 0.6, 0, 0.7),
+        'cupboard_handle': kitchen.handle(d, 0.16),
+        'long_handle': kitchen.handle(d, 0.46),
+        'sink': kitchen.sink(0.46, 0.38, 0.19),
+        'tap': kitchen.tap(d),
+        'pan': kitchen.pan(d),
+        'kettle': kitchen.kettle(d),
+        'window_wall': kitchen.window_wall(4.2, 2.6, *window),
+        'window_frame': kitchen.window_frame(*window),
+    }
+
+
 def write(meshes, folder):
     folder.mkdir(parents=True, exist_ok=True)
     for name, mesh in meshes.items():
@@ -86,7 +103,8 @@ def main():
         write(rooms_meshes(Detail(False)), arguments.low / 'meshes')
         (arguments.low / 'rooms.yaml').write_text((HERE / 'rooms.yaml').read_text())
     else:
-        write(rooms_meshes(Detail(True)) | lantern_meshes(Detail(True)) | paper_meshes(Detail(True)), arguments.out)
+        write(rooms_meshes(Detail(True)) | lantern_meshes(Detail(True)) | paper_meshes(Detail(True)) | kitchen_meshes(Detail(True)),
+              arguments.out)
 
 
 if __name__ == '__main__':

@@ -1,7 +1,7 @@
 #include "cli/beauty.h"
 
 #include "core/error.h"
-#include "film/exr.h"
+#include "film/files/exr.h"
 
 namespace keyhole {
 

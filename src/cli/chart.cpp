@@ -2,10 +2,10 @@
 #include "cli/chart/chart.h"
 #include "cli/chart/runs.h"
 #include "cli/command.h"
-#include "cli/interrupt.h"
+#include "cli/progress/interrupt.h"
 #include "cli/real_range.h"
 #include "core/error.h"
-#include "scene/load/settings_text.h"
+#include "scene/load/yaml/settings_text.h"
 
 #include <fmt/format.h>
 

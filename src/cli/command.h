@@ -8,7 +8,7 @@
 
 namespace keyhole {
 
-class Team;
+class ProcessGroup;
 
 /// Exit codes; InputError and mistakes on the command line give kBadInput, any other exception kInternalError.
 enum ExitCode : int { kSuccess = 0, kInternalError = 1, kBadInput = 2, kNotTrusted = 3, kInterrupted = 130 };
@@ -19,7 +19,7 @@ using Action = std::function<int()>;
 /// Each adds its subcommand to `app`; parsing it sets `action`.
 /// @param command_line for the picture's metadata.
 /// @param team the processes that share a render; null: this one is alone.
-void add_render_command(CLI::App& app, Action& action, const std::string& command_line, Team* team);
+void add_render_command(CLI::App& app, Action& action, const std::string& command_line, ProcessGroup* team);
 void add_merge_command(CLI::App& app, Action& action, const std::string& command_line);
 void add_diff_command(CLI::App& app, Action& action);
 void add_paths_command(CLI::App& app, Action& action);

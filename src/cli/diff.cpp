@@ -1,7 +1,7 @@
 // keyhole diff: error measures as JSON.
 #include "cli/beauty.h"
 #include "cli/command.h"
-#include "film/image_error.h"
+#include "film/errors/image_error.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -1,8 +1,8 @@
 // keyhole info: what a scene consists of, as text or JSON.
 #include "cli/command.h"
 #include "cli/scene_info.h"
-#include "cli/stats_json.h"
-#include "cli/units.h"
+#include "cli/words/stats_json.h"
+#include "cli/words/units.h"
 
 #include <fmt/format.h>
 

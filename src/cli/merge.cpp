@@ -1,7 +1,7 @@
 // keyhole merge: several pictures of one scene made into one.
 #include "cli/command.h"
 #include "cli/outputs.h"
-#include "film/exr.h"
+#include "film/files/exr.h"
 #include "film/join.h"
 
 #include <fmt/format.h>

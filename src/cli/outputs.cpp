@@ -1,9 +1,9 @@
 #include "cli/outputs.h"
 
 #include "core/error.h"
-#include "film/atomic_file.h"
-#include "film/exr.h"
-#include "film/png.h"
+#include "film/files/atomic_file.h"
+#include "film/files/exr.h"
+#include "film/files/png.h"
 
 #include <filesystem>
 

@@ -1,13 +1,13 @@
 // keyhole plan: what a scene holds, what its render leaves out because of that, and what it will cost.
-#include "render/plan.h"
+#include "methods/photons/plan.h"
 
 #include "cli/command.h"
 #include "cli/resolution.h"
-#include "cli/stats_json.h"
-#include "cli/units.h"
+#include "cli/words/stats_json.h"
+#include "cli/words/units.h"
 #include "core/percent.h"
-#include "render/expected_cost.h"
-#include "render/methods.h"
+#include "methods/choice/expected_cost.h"
+#include "methods/method.h"
 #include "scene/load/load.h"
 #include "scene/texture.h"
 

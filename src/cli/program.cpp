@@ -1,8 +1,8 @@
 #include "cli/program.h"
 
 #include "cli/command.h"
-#include "cli/team.h"
-#include "core/input_errors.h"
+#include "cli/process_group.h"
+#include "core/error.h"
 
 #include <fmt/format.h>
 
@@ -38,7 +38,7 @@ int fail(int code, std::string message) {
     return code;
 }
 
-int run(int argc, char** argv, Team* team) {
+int run(int argc, char** argv, ProcessGroup* team) {
     CLI::App app("Metropolis photon sampling: a physically based renderer.", "keyhole");
     app.set_version_flag("--version", "keyhole " KEYHOLE_VERSION);
     app.require_subcommand(1);
@@ -65,7 +65,7 @@ int run(int argc, char** argv, Team* team) {
 
 } // namespace
 
-int run_program(int argc, char** argv, Team* team) {
+int run_program(int argc, char** argv, ProcessGroup* team) {
     try {
         return run(argc, argv, team);
     } catch (const InputErrors& e) {
@@ -73,7 +73,7 @@ int run_program(int argc, char** argv, Team* team) {
         return kBadInput;
     } catch (const InputError& e) {
         return fail(kBadInput, e.what());
-    } catch (const TeamLost& e) {
+    } catch (const ProcessLost& e) {
         return fail(kInternalError, e.what());
     } catch (const std::bad_alloc&) {
         return fail(kBadInput, "not enough memory for what is asked: try fewer pixels, samples or threads");

@@ -2,12 +2,12 @@
 #pragma once
 
 #include "cli/command.h"
-#include "cli/team.h"
+#include "cli/process_group.h"
 
 namespace keyhole {
 
 /// @param team the processes that share `render`; null: this one is alone.
 /// @returns an ExitCode.
-int run_program(int argc, char** argv, Team* team);
+int run_program(int argc, char** argv, ProcessGroup* team);
 
 } // namespace keyhole

@@ -1,23 +1,23 @@
 // keyhole render: from a scene file to pictures.
+#include "cli/checkpoints.h"
 #include "cli/command.h"
-#include "cli/interrupt.h"
-#include "cli/keeping.h"
-#include "cli/live_view.h"
-#include "cli/metadata.h"
 #include "cli/outputs.h"
+#include "cli/process_group.h"
+#include "cli/progress/interrupt.h"
+#include "cli/progress/live_view.h"
+#include "cli/progress/terminal_progress.h"
 #include "cli/real_range.h"
-#include "cli/report.h"
 #include "cli/resolution.h"
-#include "cli/stats_json.h"
-#include "cli/team.h"
-#include "cli/terminal_progress.h"
+#include "cli/words/metadata.h"
+#include "cli/words/report.h"
+#include "cli/words/stats_json.h"
 #include "core/error.h"
 #include "core/parallel.h"
-#include "film/atomic_file.h"
-#include "render/effort.h"
-#include "render/first_look.h"
-#include "render/methods.h"
-#include "render/render_in_time.h"
+#include "film/files/atomic_file.h"
+#include "methods/choice/effort.h"
+#include "methods/choice/first_look.h"
+#include "methods/choice/render_in_time.h"
+#include "methods/method.h"
 #include "sampling/scene_hash.h"
 #include "scene/load/load.h"
 
@@ -42,11 +42,11 @@ struct RenderOptions {
     bool no_png = false, quiet = false, verbose = false, strict = false;
     std::vector<std::string> overrides; ///< key=value, in the order of the command line
     std::string save_map, load_map;
-    Keeping keeping;
+    Checkpoints checkpoints;
     int threads = 0;
     std::optional<double> timeout, cpu_time; ///< [s]
     std::string quality, display_server;
-    Team* team = nullptr; ///< null: this process is alone
+    ProcessGroup* team = nullptr; ///< null: this process is alone
     StopToken::Clock::time_point begun = StopToken::Clock::now();
 
     bool writes() const { return team == nullptr || team->rank() == 0; }
@@ -78,20 +78,20 @@ Picture join_parts(Picture a, Picture b) {
 }
 
 /// Joins what all processes have done, on the first of them.
-void join_team(Team& team, RenderResult& result, const std::string& checkpoint) {
+void join_team(ProcessGroup& team, RenderResult& result, const std::string& checkpoint) {
     Picture all;
     try {
         all = team.collect(std::move(result.picture), join_parts);
-    } catch (const TeamLost& e) {
-        throw TeamLost(fmt::format("{}; {}", e.what(),
-                                   checkpoint.empty() ? "nothing is kept without --checkpoint"
-                                                      : "what is done is in checkpoints: go on with --resume"));
+    } catch (const ProcessLost& e) {
+        throw ProcessLost(fmt::format("{}; {}", e.what(),
+                                      checkpoint.empty() ? "nothing is kept without --checkpoint"
+                                                         : "what is done is in checkpoints: go on with --resume"));
     }
     if (team.rank() > 0) return;
     result.picture = {};
     if (all.metadata["units"].empty()) return;
     result.picture = join_pictures(std::array{NamedPicture{"all parts", std::move(all)}});
-    result.stats.values.erase("empty pixels"); // those of this process' own part, which may have none at all
+    result.stats.no_samples.reset(); // those of this process' own part, which may have none at all
     const auto& metadata = result.picture.metadata;
     result.stats.complete = metadata.at("complete") == "yes";
     result.stats.samples = std::stod(metadata.at("samples"));
@@ -124,18 +124,18 @@ RenderResult render_scene(LoadedScene& loaded, RenderOptions& options, StopToken
     with_threads(options.threads, [&] {
         Scene scene(std::move(loaded.description));
         const std::chrono::duration<double> wall = StopToken::Clock::now() - options.begun;
-        const StageStats loading{"loading", wall.count(), cpu_seconds(), 0};
+        const StageStats loading{&stages::loading, wall.count(), cpu_seconds(), 0};
         start_clock(options, stop);
         const ImageWindow& window = scene.camera().window();
         const std::uint64_t hash = scene_hash(scene);
         const Picture expected{window.width, window.height, {}, render_identity(loaded.settings, hash), {}};
-        Share share = options.keeping.share(options.outputs.exr, expected, loaded.settings, options.team);
+        WorkPartition share = options.checkpoints.share(options.outputs.exr, expected, loaded.settings, options.team);
         const auto progress = make_progress(options.quiet);
         if (options.writes()) view.watch(share);
         const RunContext context{&stop, progress.get()};
         // Parts of a render have to agree on its settings: none can follow from the time. And where passes end by
         // something else, they do.
-        const bool alone = options.team == nullptr && !options.keeping.asked();
+        const bool alone = options.team == nullptr && !options.checkpoints.asked();
         const bool ends_by_time = loaded.settings.passes > 0 && loaded.settings.target_error == 0;
         result = options.in_time() && alone && ends_by_time && loaded.settings.load_map.empty()
                      ? render_in_time(scene, loaded.settings, named_settings(options.overrides), context,
@@ -144,10 +144,10 @@ RenderResult render_scene(LoadedScene& loaded, RenderOptions& options, StopToken
         result.stats.stages.insert(result.stats.stages.begin(), loading);
         const auto identity = render_identity(result.settings, hash);
         result.picture.metadata.insert(identity.begin(), identity.end());
-        if (options.keeping.resume && share.done == nullptr)
+        if (options.checkpoints.resume && share.done == nullptr)
             result.stats.remarks.emplace_back("found no checkpoint to go on from: started from the beginning");
     });
-    if (options.team != nullptr) join_team(*options.team, result, options.keeping.file(options.outputs.exr));
+    if (options.team != nullptr) join_team(*options.team, result, options.checkpoints.file(options.outputs.exr));
     if (!result.picture.layers.empty()) view.show(result.picture);
     return result;
 }
@@ -161,24 +161,27 @@ int run(RenderOptions options) {
     else if (options.outputs.png.empty())
         options.outputs.png = default_png(options.outputs.exr);
     if (options.writes()) options.outputs.check();
-    if (const std::string file = options.keeping.file(options.outputs.exr); !file.empty()) check_writable(file);
+    if (const std::string file = options.checkpoints.file(options.outputs.exr); !file.empty()) check_writable(file);
 
     const InterruptHandler interrupts(stop);
     std::vector<std::string> load_warnings;
     std::set<std::string> named = named_settings(options.overrides);
     // An error to reach asks for as many passes as that takes, unless somebody says how many.
     std::vector<std::string> overrides = options.overrides;
-    const bool in_passes = options.in_time() && (options.team != nullptr || options.keeping.asked());
+    const bool in_passes = options.in_time() && (options.team != nullptr || options.checkpoints.asked());
     if (named.contains("target_error") || in_passes) {
         overrides.insert(overrides.begin(), "passes=0");
         named.insert("passes"); // an effort has no say in it
     }
     LoadedScene loaded = load(options.scene, overrides, &load_warnings);
-    if (!options.quality.empty()) loaded.settings = with_quality(loaded.settings, options.quality, named);
-    if (!options.save_map.empty() && !keeps_photons(loaded.settings.method))
-        throw InputError(fmt::format("--save-map: found method {}, expected one that keeps photons: mps, ipm, pm, pss "
-                                     "or auto",
-                                     loaded.settings.method));
+    if (!options.quality.empty()) {
+        const auto quality = choice_of<Quality>(options.quality);
+        if (!quality) throw InputError("found quality '" + options.quality + "', expected draft, good or final");
+        loaded.settings = with_quality(loaded.settings, *quality, named);
+    }
+    if (!options.save_map.empty() && !loaded.settings.method->keeps_photons)
+        throw InputError(fmt::format("--save-map: found method {}, expected one that keeps photons: {}",
+                                     loaded.settings.method->name, names_of(&Method::keeps_photons)));
     if (options.team != nullptr && options.in_time())
         throw InputError("found --timeout or --cpu-time, which end one process; expected --passes, a number that all "
                          "processes know beforehand");
@@ -205,20 +208,30 @@ int run(RenderOptions options) {
     return options.strict && !result.stats.warnings.empty() ? kNotTrusted : kSuccess;
 }
 
-/// All settings with their defaults, for the end of the help text.
+/// The words that a setting may be, in brackets; empty: it is no choice.
+template <class T> std::string choices_of(const T& /*setting*/) {
+    if constexpr (Choice<T>)
+        return fmt::format(" ({})", fmt::join(words_of(T{}), ", "));
+    else
+        return {};
+}
+
+/// All methods, and all settings with their defaults, for the end of the help text.
 std::string settings_help() {
-    std::string text = "Settings (-D KEY=VALUE, or under `render:` in the scene file) and their defaults:\n";
+    std::string text = "Methods:\n";
+    for (const Method* method : all_methods()) text += fmt::format("  {:<42}{}\n", method->name, method->help);
+    text += "\nSettings (-D KEY=VALUE, or under `render:` in the scene file) and their defaults:\n";
     const Settings defaults;
     visit_settings(defaults, [&](const char* key, const auto& value, const auto&... rest) {
-        text += fmt::format("  {:<42}{}\n", fmt::format("{}={}", key, printable(value)),
-                            std::get<sizeof...(rest) - 1>(std::tie(rest...)));
+        text += fmt::format("  {:<42}{}{}\n", fmt::format("{}={}", key, printable(value)),
+                            std::get<sizeof...(rest) - 1>(std::tie(rest...)), choices_of(value));
     });
     return text;
 }
 
 } // namespace
 
-void add_render_command(CLI::App& app, Action& action, const std::string& command_line, Team* team) {
+void add_render_command(CLI::App& app, Action& action, const std::string& command_line, ProcessGroup* team) {
     CLI::App* command = app.add_subcommand("render", "Render a scene");
     auto o = std::make_shared<RenderOptions>();
     o->command_line = command_line;
@@ -230,7 +243,8 @@ void add_render_command(CLI::App& app, Action& action, const std::string& comman
     command->add_flag("--no-png", o->no_png, "write no tone-mapped picture")->excludes(png);
     command->add_option("--stats", o->outputs.stats, "write statistics to this file (JSON)");
     command->add_option("--resolution", o->resolution, "WIDTHxHEIGHT in pixels");
-    command->add_option("--user-paths", o->user_paths, "user paths for mps, mlt, ipm and auto, instead of the scene's");
+    command->add_option("--user-paths", o->user_paths,
+                        "user paths, instead of the scene's, for " + names_of(&Method::follows_user_paths));
     for (const char* key : {"method", "spp", "mutations", "photons", "passes", "seed"})
         command->add_option_function<std::string>(
             std::string("--") + key,
@@ -252,7 +266,7 @@ void add_render_command(CLI::App& app, Action& action, const std::string& comman
         ->allow_extra_args(false);
     command->add_option("--save-map", o->save_map, "write the photons of the first pass to this file");
     command->add_option("--load-map", o->load_map, "take photons from this file instead of sampling any");
-    o->keeping.add_options(*command);
+    o->checkpoints.add_options(*command);
     command->add_option("-t,--threads", o->threads, "threads; 0: one for each core")->check(CLI::Range(0, 4096));
     auto* timeout = command->add_option("--timeout", o->timeout, "the best picture that can be made in SECONDS")
                         ->check(real_range(1e-3, 1e9));

@@ -3,6 +3,8 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace keyhole {
 
@@ -30,6 +32,24 @@ class InputError : public std::runtime_error {
     explicit InputError(const std::string& message) : std::runtime_error(message) {}
     InputError(const FilePosition& where, const std::string& message)
         : std::runtime_error(where.file.empty() ? message : where.to_string() + ": " + message) {}
+};
+
+/// What is wrong with an input, as far as one look tells. what() has a line for each mistake.
+class InputErrors : public InputError {
+  public:
+    /// @param lines as InputError::what() says them; not empty
+    explicit InputErrors(std::vector<std::string> lines) : InputError(joined(lines)), lines_(std::move(lines)) {}
+
+    const std::vector<std::string>& lines() const { return lines_; }
+
+  private:
+    static std::string joined(const std::vector<std::string>& lines) {
+        std::string text;
+        for (const std::string& line : lines) text += (text.empty() ? "" : "\n") + line;
+        return text;
+    }
+
+    std::vector<std::string> lines_;
 };
 
 } // namespace keyhole

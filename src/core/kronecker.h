@@ -1,6 +1,8 @@
 // Kronecker sequences: the multiples of an irrational number modulo 1, which fill [0,1) evenly however many there are.
 #pragma once
 
+#include "core/rng.h"
+
 #include <array>
 #include <cmath>
 
@@ -15,5 +17,34 @@ inline double kronecker(double shift, double i, double alpha) {
     const double x = shift + i * alpha;
     return x - std::floor(x);
 }
+
+/// The first numbers of sample i come from Kronecker sequences, frac(shift + i alpha), with a random shift of the
+/// pixel's own: position in the pixel (Roberts' R2), lens, and the first choice of a light and a point on it. The
+/// others are random. Every number is uniform whatever i, so estimates stay unbiased; samples of a pixel share out the
+/// work.
+class LatticeSource final : public SampleSource {
+  public:
+    /// `pixel` and `sample` count within a purpose; `rest` is the sample's own stream.
+    LatticeSource(const Rng& pixel, std::uint64_t sample, const Rng& rest)
+        : shift_(pixel), rest_(rest), sample_(static_cast<double>(sample)) {}
+
+    double next() override {
+        if (dimension_ == kAlpha.size()) return rest_.next();
+        return kronecker(shift_.next(), sample_, kAlpha[dimension_++]);
+    }
+
+  private:
+    // R2; square roots of primes, which are independent over the rationals.
+    static constexpr std::array<double, 7> kAlpha{kR2[0],
+                                                  kR2[1],
+                                                  0.4142135623730950,
+                                                  0.7320508075688772,
+                                                  0.6180339887498949,
+                                                  0.6457513110645906,
+                                                  0.3166247903553998};
+    Rng shift_, rest_;
+    double sample_;
+    std::size_t dimension_ = 0;
+};
 
 } // namespace keyhole

@@ -1,18 +1,47 @@
 // What a long computation tells the outside, and how the outside stops it.
 #pragma once
 
-#include "core/cpu_time.h"
-#include "core/crew.h"
-
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <ctime>
 #include <limits>
+#include <stdexcept>
 #include <string_view>
+#include <vector>
 
 namespace keyhole {
+
+/// A process has died, or can't be reached any more. The command line exits with 1.
+class ProcessLost : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
+/// What one process knows of the others that do the same pass: all go through the same stages and call exchange() at
+/// the same places. Each has all results in the end.
+class Communicator {
+  public:
+    virtual ~Communicator() = default;
+
+    virtual int rank() const = 0;
+    virtual int size() const = 0;
+
+    /// The parts of all processes, by rank. `stop`: this one has been asked to stop. @throws ProcessLost
+    virtual std::vector<std::vector<char>> exchange(std::vector<char> part, bool stop) = 0;
+    /// Whether one of them had been asked to stop when exchange() was last called: the same for all, so that all end at
+    /// the same place.
+    virtual bool stopped() const = 0;
+};
+
+/// CPU time that all threads of this process have used so far [s].
+inline double cpu_seconds() noexcept {
+    timespec t{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
 
 /// Asks running stages to finish early and leave a valid result. Thread-safe; `request()` is signal-safe.
 class StopToken {
@@ -57,15 +86,15 @@ class Progress {
 
 /// What a stage needs from its caller besides its input.
 struct RunContext {
-    StopToken* stop = nullptr;    ///< may be null: never stopped
-    Progress* progress = nullptr; ///< may be null: silent
-    double reserve = 0;           ///< of the time until `stop`, what is left to later stages [s]
-    bool whole_round = false;     ///< every pixel gets its first sample even if time is up
-    bool in_overtime = false;     ///< goes on when time is up, until somebody asks for a stop
-    Crew* crew = nullptr;         ///< that does this together: its user throws TeamLost; null: alone
+    StopToken* stop = nullptr;            ///< may be null: never stopped
+    Progress* progress = nullptr;         ///< may be null: silent
+    double reserve = 0;                   ///< of the time until `stop`, what is left to later stages [s]
+    bool whole_round = false;             ///< every pixel gets its first sample even if time is up
+    bool in_overtime = false;             ///< goes on when time is up, until somebody asks for a stop
+    Communicator* communicator = nullptr; ///< that does this together: its user throws ProcessLost; null: alone
 
-    /// Whether to finish early: where there is a crew, by what it has agreed on.
-    bool stopped() const { return crew != nullptr ? crew->stopped() : asked_to_stop(); }
+    /// Whether to finish early: where there is a process group, by what it has agreed on.
+    bool stopped() const { return communicator != nullptr ? communicator->stopped() : asked_to_stop(); }
     /// Whether this process is to.
     bool asked_to_stop() const {
         if (stop == nullptr) return false;
@@ -82,7 +111,7 @@ struct RunContext {
     /// For what each process does by itself.
     RunContext alone() const {
         RunContext c = *this;
-        c.crew = nullptr;
+        c.communicator = nullptr;
         return c;
     }
     /// For the first round of samples.

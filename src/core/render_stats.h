@@ -1,15 +1,18 @@
 // What a render tells about itself.
 #pragma once
 
+#include "core/stage.h"
+
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace keyhole {
 
 struct StageStats {
-    std::string name;
+    const Stage* stage;
     double wall_seconds = 0, cpu_seconds = 0; ///< CPU time of all threads
     std::uint64_t rays = 0;
 };
@@ -23,6 +26,30 @@ struct ProposalStats {
     double deposited = 0; ///< share of all deposits that were left by states of its making
 };
 
+/// How far independent groups of chains agree.
+struct ChainAgreement {
+    double r_hat; ///< split R-hat
+    double error; ///< relative standard error of the brightness of a block of pixels
+};
+
+/// What tells whether the photons of a pass can be trusted. Figures that a pass doesn't have stay as they are here.
+struct PhotonQuality {
+    std::optional<double> of_brightest; ///< share of the power that the brightest 0.1 % carry
+    struct Lookups {
+        double found;     ///< photons, on average
+        double effective; ///< equal ones that would be as good
+        double share;     ///< found, of those asked for
+    };
+    std::optional<Lookups> lookups;
+    struct Cache {
+        double records;
+        double noise;    ///< of their light, in one pass
+        double starving; ///< share of visible points that no record serves
+    };
+    std::optional<Cache> cache;
+    std::optional<double> unconfirmed; ///< share of the picture with caustics that pilot photons don't confirm
+};
+
 struct RenderStats {
     std::string method; ///< the setting's, or what `auto` stood for
     std::vector<StageStats> stages;
@@ -30,7 +57,12 @@ struct RenderStats {
     double brightness = 0, brightness_error = 0; ///< B_eye and its standard error [W/(m^2 sr)]
     std::vector<ProposalStats> proposals;
     std::uint64_t photons_global = 0, photons_caustic = 0, photon_bytes = 0, importons = 0, importon_bytes = 0;
-    std::map<std::string, double> values; ///< further figures, by name
+    std::optional<std::int64_t> passes;
+    std::optional<double> effort;            ///< with_effort()'s, where it was set by the time
+    std::optional<std::uint64_t> no_samples; ///< pixels without any, where the method counts them
+    std::optional<ChainAgreement> agreement;
+    PhotonQuality photon_quality;
+    std::map<std::string, double> values; ///< further figures, which nothing but reports reads
     std::vector<std::string> remarks;     ///< choices that were made, in words
     std::vector<std::string> warnings;    ///< in words
     bool complete = true;                 ///< false after a stop

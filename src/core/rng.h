@@ -50,12 +50,13 @@ enum class StreamPurpose : std::uint64_t {
     failure_study,
     bidirectional,
     survey,
-    bright_spots,
-    reach,
+    hot_spots,
+    coverage,
     reach_trial,
     reach_light,
     image_weight,
     proposal_tuning,
+    learned_emission,
 };
 
 /// PCG32 (O'Neill 2014). One for each chain and each pixel, never for each thread, so that a picture does not

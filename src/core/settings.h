@@ -1,13 +1,16 @@
 // Every setting of a render, in one table: scene files, `-D key=value` and the help text all read it.
 #pragma once
 
+#include "core/choices.h"
+#include "core/proposal_parameter.h"
+
 #include <array>
 #include <charconv>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace keyhole {
 
@@ -16,8 +19,21 @@ struct AutoNumber {
     std::optional<double> value; ///< none: automatic
 };
 
+/// A method of rendering; methods/method.h says what it is. This layer knows no more of it than its name.
+struct Method;
+namespace methods {
+extern const Method automatic; ///< `auto`: whichever suits the scene
+}
+/// All methods, from the table in methods/table.cpp.
+std::span<const Method* const> all_methods();
+std::string_view name_of(const Method& method);
+/// @throws InputError for a name that none has.
+const Method& method_named(std::string_view name);
+
 /// A setting as something that can be printed.
 template <class T> const T& printable(const T& setting) { return setting; }
+template <Choice E> std::string_view printable(const E& setting) { return word_of(setting); }
+inline std::string_view printable(const Method* const& setting) { return name_of(*setting); }
 inline std::string printable(const AutoNumber& setting) {
     if (!setting.value) return "auto";
     std::array<char, 32> text;
@@ -26,13 +42,13 @@ inline std::string printable(const AutoNumber& setting) {
 
 /// Settings of a render. Ranges and meanings stand in visit_settings(), the only other place that lists them.
 struct Settings {
-    std::string method = "auto";
-    std::string plan = "auto";
-    std::string reach = "auto";
+    const Method* method = &methods::automatic;
+    Plan plan = Plan::fitting;
+    bool gather_coverage = true;
     std::int64_t spp = 16;
     std::int64_t seed = 1;
     std::int64_t max_depth = 24;
-    std::string filter = "gaussian";
+    FilterShape filter = FilterShape::gaussian;
     double filter_radius = 0;
     double filter_sigma = 0;
     std::int64_t brightness_samples = 400'000;
@@ -44,8 +60,8 @@ struct Settings {
     std::int64_t light_paths = 1'000'000;
     std::int64_t photons = 0;
     std::int64_t photon_memory = 32 << 20;
-    std::string power = "marginal";
-    std::string paths = "stored";
+    PowerRule power = PowerRule::marginal;
+    SampledPaths paths = SampledPaths::stored;
     bool equalise = false;
     std::int64_t passes = 1;
     double target_error = 0;
@@ -53,42 +69,31 @@ struct Settings {
     std::int64_t nearest = 60;
     std::int64_t light_samples = 4;
     std::int64_t gather_rays = 4;
-    std::string mis = "power";
-    std::string builder = "bidirectional";
-    std::string failures = "reject";
+    MisHeuristic mis = MisHeuristic::power;
+    PathBuilderKind builder = PathBuilderKind::bidirectional;
+    Failures failures = Failures::reject;
     AutoNumber p_large;
-    std::string large_step_mis = "on";
+    bool large_step_mis = true;
     bool irradiance_cache = true;
     double cache_error = 0.3;
     std::int64_t cache_rays = 400;
     bool tune_proposals = true;
-    double p_bidirectional = 0.4;
-    double p_lens_subpath = 0.1;
-    double p_lens_perturbation = 0.4;
-    double p_multi_chain_perturbation = 0.2;
-    double p_caustic_perturbation = 0.2;
-    double p_photon_map = 0.2;
-    double p_user_path = 0.05;
-    double p_guided_path = 0.3;
+    ProposalParameters proposals;
 };
 
 /// One line of the table. `Visitor` is called as visitor(key, member, minimum, maximum, help) for numbers,
-/// visitor(key, member, choices, help) for words and visitor(key, member, help) for switches; an AutoNumber is a number
-/// or `auto`; members are references into `settings`.
+/// visitor(key, member, help) for choices and switches; an AutoNumber is a number or `auto`; members are references
+/// into `settings`, or values where these are constant.
 template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
     using I = std::int64_t;
-    visit("method", s.method,
-          std::vector<std::string_view>{"auto", "mps", "ipm", "pm", "pss", "mlt", "path", "bdpt", "pssmlt", "mmlt",
-                                        "rjmlt"},
-          "rendering method");
-    visit("plan", s.plan, std::vector<std::string_view>{"auto", "all"},
-          "auto: maps, proposals and stages that the scene has no use for are left out");
-    visit("reach", s.reach, std::vector<std::string_view>{"auto", "off"},
-          "auto: light that few gather rays could find is stored where it is seen");
+    visit("method", s.method, "rendering method");
+    visit("plan", s.plan, "auto: maps, proposals and stages that the scene has no use for are left out");
+    visit("gather_coverage", s.gather_coverage,
+          "store light that few gather rays could find where it is seen, if there is much of it");
     visit("spp", s.spp, I{1}, I{1} << 24, "samples per pixel");
     visit("seed", s.seed, I{0}, I{1} << 53, "seed of all random streams");
     visit("max_depth", s.max_depth, I{1}, I{126}, "most scatterings between light and eye");
-    visit("filter", s.filter, std::vector<std::string_view>{"gaussian", "box", "triangle"}, "reconstruction filter");
+    visit("filter", s.filter, "reconstruction filter");
     visit("filter_radius", s.filter_radius, 0.0, 16.0, "its reach in pixels; 0: 0.5 of a box, 1 of the others");
     visit("filter_sigma", s.filter_sigma, 0.0, 16.0, "of a Gaussian, in pixels; 0: its radius");
     visit("brightness_samples", s.brightness_samples, I{1000}, I{1} << 40, "path samples of stage one, at least");
@@ -103,41 +108,25 @@ template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
     visit("photons", s.photons, I{0}, I{1} << 30, "most photons kept in a pass; 0: what the memory holds");
     visit("photon_memory", s.photon_memory, I{1} << 18, I{1} << 44,
           "bytes for photons, their index and importance maps");
-    visit("power", s.power, std::vector<std::string_view>{"marginal", "reciprocal", "literal"},
-          "how mps takes the eye's side out of a photon's power");
-    visit("paths", s.paths, std::vector<std::string_view>{"stored", "all"},
-          "paths that mps samples: those that store a photon, or all");
+    visit("power", s.power, "how mps takes the camera sub-path out of a photon's power");
+    visit("paths", s.paths, "paths that mps samples: those that store a photon, or all");
     visit("equalise", s.equalise, "photons for dark pixels as for bright ones: evens out relative errors");
     visit("passes", s.passes, I{0}, I{1} << 40, "passes of photons and gather; 0: until time or target_error is up");
     visit("target_error", s.target_error, 0.0, 1.0, "relative error at which passes end; 0: none");
     visit("nearest", s.nearest, I{1}, I{10'000}, "photons in a radiance estimate");
     visit("light_samples", s.light_samples, I{1}, I{1} << 16, "samples of emitters per sample of a pixel");
     visit("gather_rays", s.gather_rays, I{1}, I{1} << 16, "gather rays per sample of a pixel");
-    visit("mis", s.mis, std::vector<std::string_view>{"balance", "power", "maximum"},
-          "how the techniques of bidirectional paths share them");
-    visit("builder", s.builder, std::vector<std::string_view>{"path", "endpoints", "bidirectional"},
-          "how pssmlt makes paths");
-    visit("failures", s.failures, std::vector<std::string_view>{"exclude", "reject", "exclude_large", "delay"},
-          "what pssmlt, mmlt and rjmlt do with proposals that make no path; exclude is biased");
+    visit("mis", s.mis, "how the techniques of bidirectional paths share them");
+    visit("builder", s.builder, "how pssmlt makes paths");
+    visit("failures", s.failures, "what pssmlt, mmlt and rjmlt do with proposals that make no path; exclude is biased");
     visit("p_large", s.p_large, 0.0, 1.0, "probability of large steps of pssmlt, mmlt, rjmlt and pss");
-    visit("large_step_mis", s.large_step_mis, std::vector<std::string_view>{"on", "off"},
-          "whether large steps deposit as samples on their own account");
+    visit("large_step_mis", s.large_step_mis, "whether large steps deposit as samples on their own account");
     visit("irradiance_cache", s.irradiance_cache, "cache irradiance on diffuse surfaces");
     visit("cache_error", s.cache_error, 0.01, 1.0, "reach of a cached irradiance over the distance to surroundings");
     visit("cache_rays", s.cache_rays, I{8}, I{1} << 20, "gather rays for a cached irradiance");
-    visit("tune_proposals", s.tune_proposals,
-          "weigh the kinds of proposal of mps, p_..., by how far each moves chains, too");
-    visit("p_bidirectional", s.p_bidirectional, 0.0, 1.0, "relative frequency of bidirectional proposals");
-    visit("p_lens_subpath", s.p_lens_subpath, 0.0, 1.0, "relative frequency of lens sub-path proposals");
-    visit("p_lens_perturbation", s.p_lens_perturbation, 0.0, 1.0, "relative frequency of lens perturbations");
-    visit("p_multi_chain_perturbation", s.p_multi_chain_perturbation, 0.0, 1.0,
-          "relative frequency of multi-chain perturbations");
-    visit("p_caustic_perturbation", s.p_caustic_perturbation, 0.0, 1.0, "relative frequency of caustic perturbations");
-    visit("p_photon_map", s.p_photon_map, 0.0, 1.0, "relative frequency of photon map perturbations");
-    visit("p_user_path", s.p_user_path, 0.0, 1.0,
-          "relative frequency of proposals along user paths, where there are any");
-    visit("p_guided_path", s.p_guided_path, 0.0, 1.0,
-          "relative frequency of whole new paths along user paths, where there are any");
+    visit("tune_proposals", s.tune_proposals, "weigh the kinds of proposal of mps by how far each moves chains, too");
+    for (const ProposalParameter* p : proposal_parameters())
+        visit(p->key, s.proposals[*p], p->minimum, p->maximum, p->help);
 }
 
 } // namespace keyhole

@@ -6,6 +6,7 @@
 #include <Imath/ImathVec.h>
 
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 
 namespace keyhole {
@@ -47,5 +48,13 @@ struct Frame {
     Vec3 to_local(const Vec3& v) const { return {v.dot(s), v.dot(t), v.dot(n)}; }
     Vec3 to_world(const Vec3& v) const { return s * v.x + t * v.y + n * v.z; }
 };
+
+/// The direction of the six along the axes that is nearest to `n`, of any length: x, y, z, -x, -y, -z.
+inline std::size_t facet_of(const Vec3& n) {
+    int axis = 0;
+    for (int i = 1; i < 3; ++i)
+        if (std::abs(n[i]) > std::abs(n[axis])) axis = i;
+    return static_cast<std::size_t>(n[axis] < 0 ? axis + 3 : axis);
+}
 
 } // namespace keyhole

@@ -1,7 +1,5 @@
 #include "film/film.h"
 
-#include "film/pixel_words.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -58,9 +56,9 @@ void Film::clear() {
     for (auto& n : dropped_) n = 0;
 }
 
-PixelWords Film::words() const { return pixel_words(pixels_); }
+AccumulatorState Film::words() const { return accumulator_state(pixels_); }
 
-void Film::set_words(const PixelWords& words) { set_pixels(pixels_, words); }
+void Film::set_words(const AccumulatorState& words) { set_pixels(pixels_, words); }
 
 Picture Film::to_picture() const {
     Picture picture;
@@ -108,7 +106,7 @@ std::uint64_t Film::empty_pixels() const {
 }
 
 void Film::report(RenderStats& stats) const {
-    stats.values["empty pixels"] = static_cast<double>(empty_pixels());
+    stats.no_samples = empty_pixels();
     for (std::size_t i = 0; i < kLayers.size(); ++i) {
         if (dropped(i) == 0) continue;
         stats.warnings.push_back(fmt::format("{} samples were dropped: not finite, or negative, in layer '{}'",

@@ -50,8 +50,8 @@ class Film {
 
     /// The sums as they stand in memory, and back.
     /// @throws InputError for words of another size than this film's.
-    PixelWords words() const;
-    void set_words(const PixelWords& words);
+    AccumulatorState words() const;
+    void set_words(const AccumulatorState& words);
 
     /// The means; "beauty" is direct + indirect + caustic. Pixels without samples are 0.
     Picture to_picture() const;

@@ -6,13 +6,9 @@
 
 namespace keyhole {
 
-PixelFilter::PixelFilter(const Settings& settings)
-    : shape_(settings.filter == "box"        ? Shape::box
-             : settings.filter == "triangle" ? Shape::triangle
-                                             : Shape::gaussian),
-      radius_(settings.filter_radius) {
-    if (radius_ == 0) radius_ = shape_ == Shape::box ? 0.5 : 1.0;
-    if (shape_ != Shape::gaussian) return;
+PixelFilter::PixelFilter(const Settings& settings) : shape_(settings.filter), radius_(settings.filter_radius) {
+    if (radius_ == 0) radius_ = shape_ == FilterShape::box ? 0.5 : 1.0;
+    if (shape_ != FilterShape::gaussian) return;
     const double sigma = settings.filter_sigma > 0 ? settings.filter_sigma : radius_;
     scale_ = 1 / (sigma * std::numbers::sqrt2);
     mass_ = std::erf(radius_ * scale_);
@@ -21,16 +17,16 @@ PixelFilter::PixelFilter(const Settings& settings)
 double PixelFilter::density_1d(double x) const {
     const double r = std::abs(x);
     if (!(r <= radius_)) return 0;
-    if (shape_ == Shape::box) return 0.5 / radius_;
-    if (shape_ == Shape::triangle) return (1 - r / radius_) / radius_;
+    if (shape_ == FilterShape::box) return 0.5 / radius_;
+    if (shape_ == FilterShape::triangle) return (1 - r / radius_) / radius_;
     return scale_ * std::numbers::inv_sqrtpi * std::exp(-r * r * scale_ * scale_) / mass_;
 }
 
 /// Inverse of the distribution function.
 double PixelFilter::sample_1d(double u) const {
     const double target = std::abs(2 * u - 1); // of the mass up to |x|
-    if (shape_ == Shape::box) return std::copysign(target * radius_, u - 0.5);
-    if (shape_ == Shape::triangle) return std::copysign((1 - std::sqrt(1 - target)) * radius_, u - 0.5);
+    if (shape_ == FilterShape::box) return std::copysign(target * radius_, u - 0.5);
+    if (shape_ == FilterShape::triangle) return std::copysign((1 - std::sqrt(1 - target)) * radius_, u - 0.5);
     // The distribution function is concave on [0, radius], so that Newton's method rises from 0 to the root and never
     // passes it but by rounding.
     double x = 0;

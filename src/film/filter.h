@@ -32,11 +32,9 @@ class PixelFilter {
     double density_1d(double x) const;
 
   private:
-    enum class Shape { box, triangle, gaussian };
-
     double sample_1d(double u) const;
 
-    Shape shape_;
+    FilterShape shape_;
     double radius_;
     double scale_ = 0, mass_ = 1; // of a Gaussian: 1 / (sqrt(2) sigma), and its share within the radius
 };

@@ -1,14 +1,14 @@
 #include "film/join.h"
 
 #include "core/error.h"
-#include "core/unit_set.h"
-#include "film/blend.h"
-#include "film/exposure.h"
+#include "core/work_item_set.h"
+#include "film/accumulation_buffer.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <set>
 #include <sstream>
 
@@ -44,18 +44,18 @@ std::map<std::string, std::string> settings_of(const NamedPicture& p) {
     return settings;
 }
 
-Exposure exposure_of(const NamedPicture& p) {
+AccumulationBuffer empty_buffer_for(const NamedPicture& p) {
     const auto& sums = p.picture.sums;
     const bool film = sums.contains("samples"), drawn = sums.contains("drawn");
     return {p.picture.width, p.picture.height, PixelFilter(),
-            film && drawn ? Exposure::Parts::both
-            : film        ? Exposure::Parts::film
-                          : Exposure::Parts::drawn};
+            film && drawn ? AccumulationBuffer::Parts::both
+            : film        ? AccumulationBuffer::Parts::film
+                          : AccumulationBuffer::Parts::drawn};
 }
 
-void set_sums(Exposure& exposure, const NamedPicture& p) {
+void set_sums(AccumulationBuffer& buffer, const NamedPicture& p) {
     try {
-        exposure.set_sums(p.picture.sums);
+        buffer.set_sums(p.picture.sums);
     } catch (const InputError& e) {
         refuse(p, e.what());
     }
@@ -96,9 +96,9 @@ Picture average(const std::vector<NamedPicture>& pictures) {
 
 } // namespace
 
-UnitSet units_of(const NamedPicture& p) {
+WorkItemSet units_of(const NamedPicture& p) {
     try {
-        return UnitSet::parse(attribute(p, "units"));
+        return WorkItemSet::parse(attribute(p, "units"));
     } catch (const InputError& e) {
         refuse(p, e.what());
     }
@@ -127,8 +127,8 @@ void check_same_render(const NamedPicture& a, const NamedPicture& b, SameRender 
 
 Picture join_shares(std::span<const NamedPicture> shares) {
     const NamedPicture& first = shares.front();
-    Exposure all = exposure_of(first), one = exposure_of(first);
-    UnitSet units;
+    AccumulationBuffer all = empty_buffer_for(first), one = empty_buffer_for(first);
+    WorkItemSet units;
     double total = 0;
     std::string warnings;
     for (const NamedPicture& share : shares) {
@@ -168,6 +168,17 @@ Picture join_pictures(std::span<const NamedPicture> pictures) {
     // A share that has all units is the render itself.
     if (result.metadata["complete"] == "yes") result.sums.clear();
     return result;
+}
+
+void blend(Picture& picture, const Picture& other, double weight) {
+    for (auto& [name, image] : picture.layers) {
+        const auto layer = other.layers.find(name);
+        if (layer == other.layers.end() || layer->second.data.size() != image.data.size())
+            throw InputError("found no layer '" + name + "'");
+        std::ranges::transform(image.data, layer->second.data, image.data.begin(), [&](float a, float b) {
+            return static_cast<float>(std::lerp(static_cast<double>(a), static_cast<double>(b), weight));
+        });
+    }
 }
 
 } // namespace keyhole

@@ -1,13 +1,18 @@
 // Several pictures of one scene made into one.
 #pragma once
 
-#include "core/unit_set.h"
+#include "core/work_item_set.h"
 #include "film/picture.h"
 
 #include <span>
 #include <string>
 
 namespace keyhole {
+
+/// Every layer of `picture` becomes (1 - weight) times itself plus `weight` times that of `other`, which has it in the
+/// same size; layers that only `other` has are ignored.
+/// @throws InputError that names a layer which `other` lacks.
+void blend(Picture& picture, const Picture& other, double weight);
 
 /// A picture as `keyhole render` wrote it, with the name that messages call it by.
 struct NamedPicture {
@@ -23,15 +28,15 @@ enum class SameRender { seed, method };
 void check_same_render(const NamedPicture& a, const NamedPicture& b, SameRender same);
 
 /// The units of work in a share. @throws InputError
-UnitSet units_of(const NamedPicture& p);
+WorkItemSet units_of(const NamedPicture& p);
 
 /// The sum of shares of one render, a share itself. There is at least one.
 /// @throws InputError for shares that don't belong together or overlap.
 Picture join_shares(std::span<const NamedPicture> shares);
 
 /// Joins shares of one render, those with the same seed, to what one run would have made, bit for bit: their sums add
-/// up (see Exposure). As long as some of it is missing the result is itself a share. Pictures of different seeds are
-/// averaged with weights as their samples.
+/// up (see AccumulationBuffer). As long as some of it is missing the result is itself a share. Pictures of different
+/// seeds are averaged with weights as their samples.
 /// @throws InputError for pictures that don't belong together, shares that overlap, and a seed that comes twice.
 Picture join_pictures(std::span<const NamedPicture> pictures);
 

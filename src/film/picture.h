@@ -1,6 +1,10 @@
 // Pictures: named layers of pixels with metadata.
 #pragma once
 
+#include "core/bytes.h"
+#include "core/error.h"
+
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -30,18 +34,37 @@ struct Image {
 };
 
 /// What stands in memory for the pixels of a film: `words` words each, first row on top.
-struct PixelWords {
+struct AccumulatorState {
     int words = 0;
     std::vector<std::uint32_t> data;
+
+    auto parts() { return std::tie(words, data); }
 };
+
+template <class Pixel> AccumulatorState accumulator_state(const std::vector<Pixel>& pixels) {
+    static_assert(std::is_trivially_copyable_v<Pixel> && sizeof(Pixel) % sizeof(std::uint32_t) == 0);
+    constexpr std::size_t kWords = sizeof(Pixel) / sizeof(std::uint32_t);
+    AccumulatorState state{static_cast<int>(kWords), std::vector<std::uint32_t>(pixels.size() * kWords)};
+    std::ranges::copy(bytes_of(pixels.data(), pixels.size()), bytes_of(state.data.data(), state.data.size()).begin());
+    return state;
+}
+
+/// @throws InputError if the state is not that of as many pixels of this kind.
+template <class Pixel> void set_pixels(std::vector<Pixel>& pixels, const AccumulatorState& state) {
+    const auto from = bytes_of(state.data.data(), state.data.size());
+    if (from.size() != pixels.size() * sizeof(Pixel))
+        throw InputError("found sums of another film than this picture's");
+    std::ranges::copy(from, bytes_of(pixels.data(), pixels.size()).begin());
+}
 
 /// What a render makes. The layer "beauty" is what is looked at: linear Rec. 709, W/(m^2 sr).
 struct Picture {
     int width = 0, height = 0;
     std::map<std::string, Image> layers;
     std::map<std::string, std::string> metadata;
-    /// Of a picture that others are to be joined with: the sums that its layers are means of, by kind; see Exposure.
-    std::map<std::string, PixelWords> sums;
+    /// Of a picture that others are to be joined with: the sums that its layers are means of, by kind; see
+    /// AccumulationBuffer.
+    std::map<std::string, AccumulatorState> sums;
 };
 
 } // namespace keyhole

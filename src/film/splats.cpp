@@ -1,6 +1,7 @@
 #include "film/splats.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 
@@ -60,6 +61,58 @@ std::array<double, SplatFilm::kPerPixel> SplatFilm::sums(std::size_t pixel) cons
 
 void SplatFilm::clear() {
     for (FixedSum& sum : sums_) sum.take();
+}
+
+SplattedLight::SplattedLight(int width, int height)
+    : pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {}
+
+void SplattedLight::add(const SplatFilm& unit, double scale) {
+    assert(unit.pixels() == pixels_.size());
+    for (std::size_t p = 0; p < pixels_.size(); ++p) {
+        const auto sums = unit.sums(p);
+        for (std::size_t c = 0; c < sums.size(); ++c) pixels_[p].sums.add(c, scale * sums[c]);
+        ++pixels_[p].units;
+    }
+}
+
+void SplattedLight::merge(const SplattedLight& other) {
+    assert(other.pixels_.size() == pixels_.size());
+    for (std::size_t p = 0; p < pixels_.size(); ++p) {
+        pixels_[p].sums.merge(other.pixels_[p].sums);
+        pixels_[p].units += other.pixels_[p].units;
+    }
+}
+
+void SplattedLight::clear() { std::ranges::fill(pixels_, Pixel{}); }
+
+AccumulatorState SplattedLight::words() const { return accumulator_state(pixels_); }
+
+void SplattedLight::set_words(const AccumulatorState& words) { set_pixels(pixels_, words); }
+
+SplattedLight::Means SplattedLight::means(const Pixel& pixel) {
+    Means mean{};
+    if (pixel.units == 0) return mean;
+    for (std::size_t c = 0; c < mean.size(); ++c) mean[c] = pixel.sums.value(c) / static_cast<double>(pixel.units);
+    return mean;
+}
+
+double SplattedLight::mean_luminance(std::size_t pixel) const {
+    const Means m = means(pixels_[pixel]);
+    return luminance(Rgb(m[0] + m[3] + m[6], m[1] + m[4] + m[7], m[2] + m[5] + m[8]));
+}
+
+void SplattedLight::add_to(Picture& picture) const {
+    Image& beauty = picture.layers.at("beauty");
+    const std::array<Image*, 3> layers{&picture.layers.at("direct"), &picture.layers.at("indirect"),
+                                       &picture.layers.at("caustic")};
+    for (std::size_t p = 0; p < pixels_.size(); ++p) {
+        const Means mean = means(pixels_[p]);
+        for (std::size_t c = 0; c < mean.size(); ++c) {
+            const auto value = static_cast<float>(mean[c]);
+            layers[c / 3]->data[p * 3 + c % 3] += value;
+            beauty.data[p * 3 + c % 3] += value;
+        }
+    }
 }
 
 } // namespace keyhole

@@ -1,12 +1,12 @@
-// Where paths land that choose their pixel themselves.
+// Light that chains and light sub-paths draw, which choose their pixels themselves.
 #pragma once
 
-#include "core/fixed_sum.h"
 #include "core/inline_vector.h"
+#include "core/reproducible_sum.h"
 #include "core/vec.h"
 #include "film/filter.h"
 #include "film/picture.h"
-#include "sampling/light_class.h"
+#include "sampling/paths/path_class.h"
 
 #include <array>
 #include <vector>
@@ -57,6 +57,39 @@ class SplatFilm {
     double reach_;
     std::vector<double> filter_; ///< its density at kNodes + 1 even distances from 0 to its reach
     std::vector<FixedSum> sums_; ///< by layer, pixel and channel: a splat meets few cache lines
+};
+
+/// Adds up the pictures that units of work have drawn, each an estimate of the whole; the picture is their mean. It
+/// doesn't depend on their order, nor on how they were shared out among sums that are merged.
+class SplattedLight {
+  public:
+    /// @param width,height in pixels, at least 1.
+    SplattedLight(int width, int height);
+
+    /// Adds scale times what one unit has drawn on a film of this size.
+    void add(const SplatFilm& unit, double scale);
+    /// Adds the units of another sum of this size.
+    void merge(const SplattedLight& other);
+    void clear();
+
+    /// The sums as they stand in memory, and back. @throws InputError for words of another size.
+    AccumulatorState words() const;
+    void set_words(const AccumulatorState& words);
+
+    /// Luminance of the mean; pixels are counted row by row.
+    double mean_luminance(std::size_t pixel) const;
+    /// Adds the mean to the layers "direct", "indirect" and "caustic", and to "beauty".
+    void add_to(Picture& picture) const;
+
+  private:
+    struct Pixel {
+        ReproducibleSums<SplatFilm::kPerPixel> sums;
+        std::uint64_t units = 0;
+    };
+    using Means = std::array<double, SplatFilm::kPerPixel>;
+    static Means means(const Pixel& pixel);
+
+    std::vector<Pixel> pixels_;
 };
 
 } // namespace keyhole

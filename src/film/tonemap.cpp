@@ -19,11 +19,11 @@ Rgb colour(const Image& image, std::size_t pixel) {
 }
 
 /// Scale to the key (equations 1 and 2), and the white point after it.
-struct Exposure {
+struct ToneCurve {
     double scale = 1, white = 1;
 };
 
-Exposure expose(const Image& image) {
+ToneCurve expose(const Image& image) {
     const auto pixels = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
     std::vector<double> lit;
     double log_sum = 0;
@@ -50,13 +50,13 @@ float srgb_encode(float linear) {
 
 std::vector<std::uint8_t> tonemap(const Image& image, const Image& exposed_for) {
     const auto pixels = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
-    const Exposure exposure = expose(exposed_for);
+    const ToneCurve curve = expose(exposed_for);
     std::vector<std::uint8_t> bytes(3 * pixels);
     for (std::size_t i = 0; i < pixels; ++i) {
         const Rgb c = colour(image, i);
-        const double l = std::max(0.0, exposure.scale * luminance(c));
+        const double l = std::max(0.0, curve.scale * luminance(c));
         // Equation 4 over l, so that black needs no exception.
-        const double factor = exposure.scale * (1 + l / (exposure.white * exposure.white)) / (1 + l);
+        const double factor = curve.scale * (1 + l / (curve.white * curve.white)) / (1 + l);
         for (int k = 0; k < 3; ++k)
             bytes[3 * i + static_cast<std::size_t>(k)] =
                 static_cast<std::uint8_t>(std::lround(255 * srgb_encode(static_cast<float>(factor * c[k]))));

@@ -1,7 +1,7 @@
 // Records of the irradiance cache.
 #pragma once
 
-#include "gather/bright_spots.h"
+#include "gather/hot_spots.h"
 #include "gather/irradiance_cache.h"
 #include "gather/visible_point.h"
 
@@ -11,7 +11,7 @@ namespace keyhole {
 
 struct CacheOptions {
     double error = 0.3;     ///< reach of a record over its distance to surrounding surfaces
-    int rays = 400;         ///< of records' hemispheres on average; bright spots get half as many on top
+    int rays = 400;         ///< of records' hemispheres on average; hot spots get half as many on top
     double min_radius = 4;  ///< [pixels], as wide as one is at the record's distance from the eye
     double max_radius = 60; ///< [pixels]
     double overlap = 1;     ///< how many times its radius a record is used
@@ -22,11 +22,11 @@ struct CacheOptions {
 class RecordMaker {
   public:
     /// All must outlive this.
-    RecordMaker(const GatherRays& rays, const BrightSpots& spots, const CacheOptions& options)
+    RecordMaker(const GatherRays& rays, const HotSpots& spots, const CacheOptions& options)
         : rays_(rays), spots_(spots), options_(options) {}
 
     /// Irradiance at `c` by a hemisphere of about `count` rays, from the random stream `stream`. They find what doesn't
-    /// come from bright spots; each of these has rays of its own, in the cone that it fills, so that no record depends
+    /// come from hot spots; each of these has rays of its own, in the cone that it fills, so that no record depends
     /// on whether one of its few hundred rays happens to meet it.
     HemisphereEstimate light(const VisiblePoint& c, int count, std::uint64_t stream) const;
 
@@ -41,7 +41,7 @@ class RecordMaker {
                   HemisphereEstimate& sum) const;
 
     const GatherRays& rays_;
-    const BrightSpots& spots_;
+    const HotSpots& spots_;
     const CacheOptions& options_;
 };
 

@@ -1,8 +1,8 @@
 // Direct light at a vertex, visibility included.
 #pragma once
 
-#include "sampling/direct_light.h"
-#include "sampling/walk.h"
+#include "sampling/paths/direct_light.h"
+#include "sampling/paths/walk.h"
 
 namespace keyhole {
 

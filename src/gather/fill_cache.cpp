@@ -109,7 +109,7 @@ class CacheFill {
 
 constexpr double kFewestRays = 64; // that tell how far a record is good for
 
-/// Rays to look for bright spots by: not many where those that spots would help are few.
+/// Rays to look for hot spots by: not many where those that spots would help are few.
 std::int64_t spot_rays(const CacheOptions& options) {
     return std::clamp<std::int64_t>(std::int64_t{256} * options.rays, 1 << 13, 1 << 16);
 }
@@ -137,7 +137,7 @@ CacheOptions cache_options(const Settings& settings, double shrink, std::uint64_
 IrradianceCache fill_cache(const GatherRays& rays, const CacheOptions& options, const RunContext& context) {
     IrradianceCache cache(static_cast<float>(options.error), static_cast<float>(options.overlap));
     context.begin("irradiance cache", kSteps.size() + 1, "levels");
-    const BrightSpots spots(rays, spot_rays(options), options.seed, context);
+    const HotSpots spots(rays, spot_rays(options), options.seed, context);
     const RecordMaker maker(rays, spots, options);
     CacheFill fill(maker, options, cache);
     std::uint64_t level = 0;

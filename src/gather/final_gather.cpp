@@ -2,7 +2,8 @@
 
 #include "gather/direct_light.h"
 #include "gather/visible_point.h"
-#include "sampling/seen_surface.h"
+#include "sampling/paths/random_walk.h"
+#include "sampling/paths/seen_surface.h"
 
 #include <utility>
 
@@ -28,43 +29,56 @@ FinalGather::Confirmation FinalGather::confirm(const Vec2& image, SampleSource& 
     return {luminance(out.direct + out.indirect + out.caustic), out.unconfirmed};
 }
 
-void FinalGather::draw(const Vec2& image, SampleSource& source, Sample& out) const {
-    const Vertex eye = sample_eye(scene_, source);
-    follow({eye, scene_.camera().ray_direction(eye.point, image), Rgb(1.0), 1}, 0, kSplits, source, out);
-}
+struct FinalGather::EyeWalk : SpecularWalkHooks {
+    const FinalGather& gather;
+    SampleSource& source;
+    Sample& out;
+    double share = 1;         // probability with which a walk that is not split would have come here
+    bool saw_surface = false; // that is not specular
+    int splits = kSplits;     // that are left
+    int scatterings = 0;      // before the last vertex
+    LastTwoVertices vertices{};
 
-void FinalGather::follow(EyeRay ray, int scatterings, int splits, SampleSource& source, Sample& out) const {
-    for (; scatterings <= rays_.max_scatterings(); ++scatterings) {
-        const auto hit = next_vertex(scene_, ray.from, ray.w);
-        if (!hit) return;
+    Vertex& place() { return vertices.place(); }
+
+    bool arrive(const Vertex& v, const WalkRay& ray) {
         const Vec3 back = -ray.w;
-        ray.throughput *= scene_.transmittance(ray.from.point, hit->point);
-        if (scatterings == 0 && hit->point.site != Site::infinite)
-            out.depth = (hit->point.p - ray.from.point.p).length();
-        const Vertex& v = ray.from = *hit;
+        if (scatterings == 0 && v.point.site != Site::infinite) out.depth = (v.point.p - ray.last->p).length();
         if (v.point.is_emitter())
-            out.direct += ray.throughput * scene_.emitter(v.point.emitter).radiance(v.point, back);
-        if (scatterings == rays_.max_scatterings()) return;
+            out.direct += ray.throughput * gather.scene_.emitter(v.point.emitter).radiance(v.point, back);
+        if (scatterings == gather.rays_.max_scatterings()) return false;
+        ++scatterings;
         if (v.bsdf.traits().finite) {
-            if (!std::exchange(ray.saw_surface, true)) note_seen_surface(out, v, back, ray.throughput, ray.share);
-            shade(v, back, ray.throughput, scatterings + 1, source, out);
+            if (!std::exchange(saw_surface, true)) note_seen_surface(out, v, back, ray.throughput, share);
+            gather.shade(v, back, ray.throughput, scatterings, source, out);
         }
         // The finite part is done; only specular events lead on.
-        if (!v.bsdf.traits().delta) return;
-        const auto reflected = v.bsdf.delta(back, Event::reflect), transmitted = v.bsdf.delta(back, Event::transmit);
-        if (splits > 0 && reflected && transmitted) {
-            for (const DeltaScatter& lobe : {*reflected, *transmitted}) {
-                const Rgb weight = lobe.coefficient / (lobe.eta * lobe.eta);
-                follow({v, lobe.to, ray.throughput * weight, ray.share * lobe.probability, ray.saw_surface},
-                       scatterings + 1, splits - 1, source, out);
-            }
-            return;
-        }
-        const auto next = continue_walk(v, back, From::eye, source);
-        if (!next || !is_specular(next->event)) return;
-        ray.throughput *= next->weight;
-        ray.w = next->w;
+        return v.bsdf.traits().delta && !split(v, back, ray.throughput);
     }
+
+  private:
+    /// Follows both ways on from a vertex that reflects and transmits, where splits are left.
+    bool split(const Vertex& v, const Vec3& back, const Rgb& throughput) {
+        const auto reflected = v.bsdf.delta(back, Event::reflect), transmitted = v.bsdf.delta(back, Event::transmit);
+        if (splits == 0 || !reflected || !transmitted) return false;
+        for (const DeltaScatter& lobe : {*reflected, *transmitted}) {
+            const Rgb weight = lobe.coefficient / (lobe.eta * lobe.eta);
+            EyeWalk part{{}, gather, source, out, share * lobe.probability, saw_surface, splits - 1, scatterings};
+            part.follow({&v.point, &v.point, lobe.to, throughput * weight});
+        }
+        return true;
+    }
+
+  public:
+    void follow(const WalkRay& ray) {
+        random_walk(gather.scene_, From::eye, ray, gather.rays_.max_scatterings() + 1 - scatterings, source, *this);
+    }
+};
+
+void FinalGather::draw(const Vec2& image, SampleSource& source, Sample& out) const {
+    const Vertex eye = sample_eye(scene_, source);
+    EyeWalk walk{{}, *this, source, out};
+    walk.follow(eye_ray(scene_, eye.point, image));
 }
 
 void FinalGather::shade(const Vertex& v, const Vec3& back, const Rgb& throughput, int scatterings, SampleSource& source,

@@ -25,11 +25,11 @@ class FinalGather {
     /// Estimates what arrives at the eye through window point `image`. Unbiased but for the maps and the cache.
     PixelSample sample(const Vec2& image, SampleSource& source) const;
 
-    /// Luminance of a sample, and of the caustics in it that scouts don't confirm (unconfirmed_share()).
+    /// Luminance of a sample, and of the caustics in it that pilot photons don't confirm (unconfirmed_share()).
     struct Confirmation {
         double all = 0, unconfirmed = 0;
     };
-    /// Draws a sample, and asks scouts about it.
+    /// Draws a sample, and asks pilot photons about it.
     Confirmation confirm(const Vec2& image, SampleSource& source) const;
 
     /// Share of the questions to the cache, by all samples so far, that it had no record for; 0 before any.
@@ -40,18 +40,11 @@ class FinalGather {
   private:
     /// A sample in the making.
     struct Sample : PixelSample {
-        bool confirm = false;   ///< whether to ask scouts
+        bool confirm = false;   ///< whether to ask pilot photons
         double unconfirmed = 0; ///< luminance of caustics that they don't confirm
     };
-    struct EyeRay {
-        Vertex from;
-        Vec3 w; ///< unit
-        Rgb throughput;
-        double share;             ///< probability with which a walk that is not split would have come here
-        bool saw_surface = false; ///< that is not specular
-    };
-    /// Adds what arrives along the ray. At the first `splits` places that both reflect and transmit both are followed.
-    void follow(EyeRay ray, int scatterings, int splits, SampleSource& source, Sample& out) const;
+    /// A walk from the eye by specular events. At the first glass on its way both ways are followed.
+    struct EyeWalk;
     /// Everything that the finite scattering at the last two vertices seen does: direct light, caustic, gather rays.
     void shade(const Vertex& v, const Vec3& back, const Rgb& throughput, int scatterings, SampleSource& source,
                Sample& out) const;

@@ -1,20 +1,20 @@
 // Gather rays: what arrives at a point along a ray, asked from the photon maps where the ray ends.
 #pragma once
 
-#include "gather/sites.h"
-#include "photonmap/irradiance_map.h"
-#include "sampling/walk.h"
+#include "gather/direct_irradiance_cache.h"
+#include "photonmap/irradiance/irradiance_map.h"
+#include "sampling/paths/walk.h"
 
 namespace keyhole {
 
 /// What stage three asks. Maps may be null: nothing of that kind was found.
 struct GatherMaps {
-    const ScoutedMap* global = nullptr;
-    const IrradianceMap* irradiance = nullptr; ///< of the global map
-    const Sites* sites = nullptr;              ///< direct light where `irradiance` is known; null only if that is
-    const ScoutedMap* caustic = nullptr;
+    const PilotedMap* global = nullptr;
+    const IrradianceMap* irradiance = nullptr;     ///< of the global map
+    const DirectIrradianceCache* direct = nullptr; ///< direct light where `irradiance` is known; null only if that is
+    const PilotedMap* caustic = nullptr;
     const SurfacePatches* patches = nullptr;
-    const Reach* reach = nullptr; ///< beyond which light is not gathered: the caustic map has it; null: nowhere
+    const GatherCoverage* coverage = nullptr; ///< where light is gathered: of the rest the caustic map knows; null: all
 };
 
 struct LookupOptions {
@@ -42,25 +42,20 @@ class GatherRays {
 
     /// Radiance towards `back` that the caustic map gives at a visible point.
     Rgb caustic(const Vertex& v, const Vec3& back) const;
-    /// Share of its luminance that scouts don't confirm (unconfirmed_share()).
+    /// Share of its luminance that pilot photons don't confirm (unconfirmed_share()).
     double unconfirmed_caustic(const Vertex& v, const Vec3& back) const;
 
     const Scene& scene() const { return scene_; }
     int max_scatterings() const { return max_scatterings_; }
 
   private:
-    /// Where a ray comes from, as far as what it meets depends on that.
-    struct Leg {
-        float distance;  ///< from the vertex before [m]
-        int scatterings; ///< between the eye and the vertex it led to, that one included
-        bool secondary;  ///< a ray that was traced on from a near one
-    };
-    Arrival trace(const Vertex& from, const Vec3& w, double pdf, int scatterings, bool secondary,
-                  SampleSource& source) const;
+    struct Leg;
+    struct Walk;
+    Arrival trace(const Vertex& from, const Vec3& w, double pdf, const Leg& start, SampleSource& source) const;
     /// Whether a ray from `leg.distance` away sees the estimate at a place from too near.
     bool too_near(const Leg& leg, std::uint32_t place) const;
     /// Radiance towards `back` that `v` reflects by its finite part.
-    Rgb reflected(const Vertex& v, const Vec3& back, const Leg& leg, SampleSource& source) const;
+    Rgb reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSource& source) const;
     /// What the global map says of light that `v` reflects towards `back`.
     Rgb global(const Vertex& v, const Vec3& back) const;
 

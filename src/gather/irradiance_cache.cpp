@@ -16,7 +16,7 @@ constexpr float kHeight2 = 16;
 
 /// Light that is fainter than this part of the mean counts as if it weren't: it doesn't show.
 constexpr double kDark = 0.1;
-/// Relative error, over the cache's, by which two records may foretell each other wrongly.
+/// Relative error, over the cache's, by which two records may predict each other wrongly.
 constexpr float kDoubt = 1.0f / 3;
 
 Vec3 to_vec(const Rgb& c) { return {static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z)}; }
@@ -81,7 +81,7 @@ IrradianceCache::Answer IrradianceCache::irradiance(const Vec3& position, const 
     return {Rgb(sum.x, sum.y, sum.z), true, covered};
 }
 
-/// What `r` foretells at an offset `to` of it, where normals are turned by `turn`.
+/// What `r` predicts at an offset `to` from it, where normals are turned by `turn`.
 Vec3 IrradianceCache::irradiance_at(const Stored& r, const Vec3& to, const Vec3& turn) {
     Vec3 e = r.irradiance;
     for (int c = 0; c < 3; ++c) {

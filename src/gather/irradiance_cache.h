@@ -30,8 +30,8 @@ class IrradianceCache {
     explicit IrradianceCache(float error, float overlap = 2) : error_(error), overlap_(overlap) {}
 
     /// Clamps the record's radius by its neighbours' and theirs by its: what one of them sees close by is close to the
-    /// others, too, even where their rays missed it. Where one foretells of another's place something else than that
-    /// one found, by more than noise would do, both end where they would be right.
+    /// others, too, even where their rays missed it (neighbour clamping, Krivanek et al. 2006). Where one record's
+    /// gradients contradict what another found by more than noise, both shrink until they agree.
     void insert(const IrradianceRecord& record);
 
     /// Standard error of the light around each record, relative to that light: told by the others that have a say

@@ -1,25 +1,37 @@
 #include "gather/visible_point.h"
 
+#include "sampling/paths/random_walk.h"
+
 namespace keyhole {
+namespace {
+
+struct VisiblePointWalk : SpecularWalkHooks {
+    std::optional<VisiblePoint> found{};
+    LastTwoVertices vertices{};
+    double length = 0;
+    int scatterings = 0;
+
+    Vertex& place() { return vertices.place(); }
+    bool arrive(const Vertex& v, const WalkRay& ray) {
+        if (v.point.site == Site::infinite) return false;
+        ++scatterings;
+        length += (v.point.p - ray.last->p).length();
+        if (v.bsdf.traits().near_lambertian) found = {v, -ray.w, length, scatterings};
+        return !found;
+    }
+};
+
+} // namespace
 
 std::optional<VisiblePoint> visible_point(const GatherRays& rays, const Vec2& image, SampleSource& source) {
     const Scene& scene = rays.scene();
     const Camera& camera = scene.camera();
-    Vertex v = sample_eye(scene, source);
-    Vec3 w = camera.ray_direction(v.point, image);
-    const double pixel = 1 / std::sqrt(camera.direction_pdf(w) * camera.window().pixels());
-    double length = 0;
-    for (int scatterings = 1; scatterings <= rays.max_scatterings(); ++scatterings) {
-        const auto hit = next_vertex(scene, v, w);
-        if (!hit || hit->point.site == Site::infinite) break;
-        length += (hit->point.p - v.point.p).length();
-        v = *hit;
-        if (v.bsdf.traits().near_lambertian) return VisiblePoint{v, -w, pixel * length, scatterings};
-        const auto next = continue_walk(v, -w, From::eye, source);
-        if (!next || !is_specular(next->event)) break;
-        w = next->w;
-    }
-    return std::nullopt;
+    const Vertex eye = sample_eye(scene, source);
+    const WalkRay ray = eye_ray(scene, eye.point, image);
+    VisiblePointWalk walk;
+    random_walk(scene, From::eye, ray, rays.max_scatterings(), source, walk);
+    if (walk.found) walk.found->pixel *= 1 / std::sqrt(camera.direction_pdf(ray.w) * camera.window().pixels());
+    return walk.found;
 }
 
 Vec3 cache_normal(const Vertex& v, const Vec3& back) {

@@ -2,7 +2,7 @@
 // subcommand is run by rank 0 alone.
 #include "cli/program.h"
 #include "core/error.h"
-#include "mpi/mpi_team.h"
+#include "mpi/mpi_process_group.h"
 
 #include <fmt/format.h>
 
@@ -15,12 +15,12 @@ namespace {
 int run(int argc, char** argv) {
     using namespace keyhole;
     try {
-        MpiTeam team;
-        const int code = run_program(argc, argv, &team);
+        MpiProcessGroup group;
+        const int code = run_program(argc, argv, &group);
         if (code != kInternalError && code != kBadInput) return code;
         // Who is cut off from the others can't end them, and would wait for leave to end itself.
         std::fflush(nullptr);
-        if (team.is_cut_off()) std::_Exit(code);
+        if (group.is_cut_off()) std::_Exit(code);
         MPI_Abort(MPI_COMM_WORLD, code); // the others would wait for this one
     } catch (const InputError& e) {
         fmt::print(stderr, "keyhole: {}\n", e.what());

@@ -1,25 +1,26 @@
-// Whether scouts confirm what carriers show.
+// Whether pilot photons confirm what main photons show.
 #pragma once
 
-#include "photonmap/scouted_map.h"
+#include "photonmap/piloted_map.h"
 
 #include <vector>
 
 namespace keyhole {
 
-/// Share [0, 1] of the light of a lookup over `region` of radius `r` [m] that lies in a small part of it, where scouts
-/// don't confirm that it is so bright: a single photon of large power, or the many that a chain leaves which stays
-/// near one path. It lights the whole region, and is seen as a disc. 0 where light is spread, and where scouts are
-/// as dense in the bright part as a caustic's would be. `light(photon)`: the luminance that a carrier brings.
+/// Share [0, 1] of the light of a lookup over `region` of radius `r` [m] that lies in a small part of it, where pilot
+/// photons don't confirm that it is so bright: a single photon of large power, or the many that a chain leaves which
+/// stays near one path. It lights the whole region, and is seen as a disc. 0 where light is spread, and where pilot
+/// photons are as dense in the bright part as a caustic's would be. `light(photon)`: the luminance that a main photon
+/// brings.
 template <class Light>
-double unconfirmed_share(const ScoutedMap& map, const SurfaceRegion& region, float r, Light&& light) {
+double unconfirmed_share(const PilotedMap& map, const SurfaceRegion& region, float r, Light&& light) {
     struct Part {
         Vec3 p;
         double light;
     };
     std::vector<Part> parts;
     double all = 0;
-    map.carriers().for_each_within(region, r, [&](const Photon& photon) {
+    map.main_photons().for_each_within(region, r, [&](const Photon& photon) {
         parts.push_back({photon.position(), light(photon)});
         all += parts.back().light;
     });
@@ -36,14 +37,14 @@ double unconfirmed_share(const ScoutedMap& map, const SurfaceRegion& region, flo
     const auto in_spot = [&](const Vec3& p) { return (p - middle).length2() <= kArea * r * r; };
     double bright = 0;
     for (const Part& part : parts) bright += in_spot(part.p) ? part.light : 0;
-    // One scout more, spread over the region: without any, little is known.
-    double scouts = 1, near = static_cast<double>(kArea);
-    map.scouts().for_each_within(region, r, [&](const Photon& scout) {
-        ++scouts;
-        near += in_spot(scout.position()) ? 1 : 0;
+    // One pilot photon more, spread over the region: without any, little is known.
+    double pilots = 1, near = static_cast<double>(kArea);
+    map.pilots().for_each_within(region, r, [&](const Photon& pilot) {
+        ++pilots;
+        near += in_spot(pilot.position()) ? 1 : 0;
     });
     const double share = bright / all;
-    return share > 0.5 && near / scouts < share / 4 ? share : 0;
+    return share > 0.5 && near / pilots < share / 4 ? share : 0;
 }
 
 } // namespace keyhole

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "photonmap/photon_map.h"
-#include "photonmap/surface_patches.h"
+#include "photonmap/surface/surface_patches.h"
 
 namespace keyhole {
 

@@ -1,6 +1,6 @@
 #include "photonmap/deposit.h"
 
-#include "photonmap/eye_sides.h"
+#include "photonmap/camera_subpath.h"
 
 #include <optional>
 #include <utility>
@@ -26,7 +26,7 @@ bool PathDepositor::Pending::holds(const Path& path, const StoragePoint& at, con
 }
 
 void PathDepositor::deposit(const Path& path, double weight) {
-    const StoragePoint at = options_.set.storage_point(path);
+    const StoragePoint at = path.storage;
     if (at.kind == PhotonKind::none || !(weight > 0)) return;
     tally_.total += weight;
     const auto i = static_cast<std::size_t>(at.vertex);
@@ -50,7 +50,7 @@ void PathDepositor::deposit(const Path& path, double weight) {
     // The path was drawn in proportion to its contribution times its pixel's weight.
     const double literal = weight * literal_factor(path, at.vertex, recent_.flux) / options_.set.weight_at(path.image);
     recent_.literal += literal;
-    recent_.density += literal * eye_side_density(*options_.scene, path, at.vertex);
+    recent_.density += literal * camera_subpath_density(*options_.scene, path, at.vertex);
 }
 
 void PathDepositor::flush() {
@@ -62,8 +62,8 @@ void PathDepositor::store(Pending& pending) {
     const PhotonKind kind = std::exchange(pending.kind, PhotonKind::none);
     const double given = std::exchange(pending.weight, 0);
     if (!(given > 0)) return;
-    store_by_roulette(buffers_, kind, given, thresholds_, rng_, [&](double weight) -> std::optional<Photon> {
-        const Rgb power = options_.role == PhotonRole::scout
+    store_by_roulette(*buffers_, kind, given, thresholds_, rng_, [&](double weight) -> std::optional<Photon> {
+        const Rgb power = options_.role == PhotonRole::pilot
                               ? Rgb(1.0)
                               : power_of(pending, kind == PhotonKind::global, given, weight);
         if (is_black(power)) return std::nullopt;
@@ -82,42 +82,36 @@ Rgb PathDepositor::power_of(const Pending& pending, bool global, double given, d
     return power;
 }
 
-PathDepositor::Marginal PathDepositor::marginal_power(const Pending& pending, const ImportanceMap& map) {
-    const auto e = map.importance(pending.vertex.point, pending.vertex.bsdf, pending.to_light);
-    const double visible = luminance(pending.flux * e.value);
-    return {visible > 0 ? pending.flux / visible : Rgb(0.0), e.trusted(pending.vertex.bsdf)};
-}
-
 Rgb PathDepositor::caustic_power(const Pending& pending) const {
-    const double visible = luminance(pending.flux * pending.seen);
-    return visible > 0 ? pending.flux / visible : marginal_power(pending, *options_.caustic).power;
+    const Rgb power = marginal_power(pending.flux, pending.seen);
+    return is_black(power) ? marginal_power(pending.flux, importance(pending, *options_.caustic).value) : power;
 }
 
 Rgb PathDepositor::global_power(const Pending& pending, double given, double weight) {
-    if (options_.rule == PowerRule::literal) return literal_power(pending, given, weight);
+    if (options_.rule == PowerRule::literal) return to_the_letter(pending, given, weight);
     if (options_.rule == PowerRule::marginal) {
         // The choice follows from the place alone, so each rule is as right as it is by itself.
-        const Marginal marginal = marginal_power(pending, *options_.global);
-        if (marginal.trusted) return marginal.power;
+        const auto e = importance(pending, *options_.global);
+        if (e.trusted(pending.vertex.bsdf)) return marginal_power(pending.flux, e.value);
         ++tally_.untrusted;
     }
-    return reciprocal_power(pending, given);
+    return by_drawing(pending, given);
 }
 
-Rgb PathDepositor::reciprocal_power(const Pending& pending, double given) {
+Rgb PathDepositor::by_drawing(const Pending& pending, double given) {
     if (!(pending.density > 0)) return Rgb(0.0);
-    // Without a bound a place that no eye side leaves would hold up the render for ever; what it costs is counted.
+    // Without a bound a place that no camera sub-path leaves would hold up the render for ever; what it costs is
+    // counted.
     constexpr std::int64_t most = 100'000;
     const auto draws = draws_until_valid(*options_.scene, pending.vertex, pending.to_light,
                                          options_.max_scatterings - pending.scatterings, most, rng_);
     tally_.draws += static_cast<std::uint64_t>(draws.value_or(most));
-    return draws ? pending.flux * (pending.density / given * static_cast<double>(*draws)) : Rgb(0.0);
+    return draws ? reciprocal_power(pending.flux, pending.density / given, *draws) : Rgb(0.0);
 }
 
-Rgb PathDepositor::literal_power(const Pending& pending, double given, double weight) {
-    const Rgb power = pending.flux * (pending.literal / given);
-    const auto e = options_.global->importance(pending.vertex.point, pending.vertex.bsdf, pending.to_light);
-    tally_.visible += weight * luminance(power * e.value);
+Rgb PathDepositor::to_the_letter(const Pending& pending, double given, double weight) {
+    const Rgb power = literal_power(pending.flux, pending.literal / given);
+    tally_.visible += weight * luminance(power * importance(pending, *options_.global).value);
     tally_.visible_weight += weight;
     return power;
 }

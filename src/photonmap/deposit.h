@@ -1,22 +1,15 @@
 // From sampled paths to photons.
 #pragma once
 
+#include "core/choices.h"
 #include "core/statistics.h"
-#include "photonmap/importance_map.h"
+#include "photonmap/importance/importance_map.h"
 #include "photonmap/map_stores.h"
-#include "sampling/path.h"
+#include "photonmap/power.h"
+#include "sampling/paths/path_set.h"
 #include "scene/scene.h"
 
 namespace keyhole {
-
-/// How the eye's side is taken out of a photon's power; docs/photon-maps.md compares them.
-enum class PowerRule {
-    marginal,   ///< divided by the importance map's E: consistent, and every photon weighs the same where it is asked;
-                ///< `reciprocal` where importons are too few to say, or where some may lie behind a wall:
-                ///< 1 / E would have a heavy tail
-    reciprocal, ///< weighed by a density of eye sides, normalised by drawing them until one is valid: unbiased
-    literal,    ///< MPS 3.2 to the letter, brought to the right total: for comparison only
-};
 
 /// What the power of photons is computed from. The caustic map's photons are `marginal` under every rule: from d1 there
 /// is one edge to the eye and nothing to draw. Where no mirror or lens gives the eye a second way to d1, that edge's
@@ -25,31 +18,32 @@ struct DepositOptions {
     const ImportanceMap* global = nullptr;  ///< at d2; null under `reciprocal`
     const ImportanceMap* caustic = nullptr; ///< at d1
     PowerRule rule = PowerRule::marginal;
-    const Scene* scene = nullptr;          ///< that eye sides are drawn in; must be given
-    PathSet set{};                         ///< that the paths are of: where each stores
-    int max_scatterings = 24;              ///< of a whole path
-    PhotonRole role = PhotonRole::carrier; ///< a scout's power is never asked for
+    const Scene* scene = nullptr;              ///< that camera sub-paths are drawn in; must be given
+    PathSet set{};                             ///< that the paths are of, evaluated for it
+    int max_scatterings = 24;                  ///< of a whole path
+    PhotonRole role = PhotonRole::main_photon; ///< a pilot photon's power is never asked for
 };
 
 /// Collects the photons of one chain: under `marginal` power f_map / Y(f_map E) for each path, times its weight. Times
 /// B/N this makes the sum of power over a region the flux that arrives there. Not thread-safe: one for each chain.
 class PathDepositor {
   public:
-    PathDepositor(const DepositOptions& options, const Rng& rng) : options_(options), rng_(rng) {}
+    /// Photons go to `buffers`, which must outlive this.
+    PathDepositor(const DepositOptions& options, const Rng& rng, MapBuffers& buffers)
+        : options_(options), rng_(rng), buffers_(&buffers) {}
 
     /// Weights below these, those of the stores that the buffers go to, are sent through the roulette at once: what
     /// doesn't survive costs nothing more.
     void set_thresholds(const MapStores::Thresholds& thresholds) { thresholds_ = thresholds; }
 
     /// Adds `weight` of `path`. Paths that share a stored sub-path and come close together make one photon: a chain's
-    /// state and its candidates take turns, and proposals that change the eye side alone keep it.
+    /// state and its candidates take turns, and proposals that change the camera sub-path alone keep it.
     void deposit(const Path& path, double weight);
 
     /// Stores what is still held back. To be called at the end.
     void flush();
 
     PhotonRole role() const { return options_.role; }
-    MapBuffers& buffers() { return buffers_; }
 
     /// What came of the deposits, for statistics and for scales.
     struct Tally {
@@ -59,7 +53,7 @@ class PathDepositor {
         double visible_weight = 0;   ///< ... this: their ratio is the scale that the rule leaves open
         RunningStats power;          ///< luminance of the global photons' power for weight 1
         RunningStats literal_power;  ///< what MPS 3.2 would have given the same photons
-        std::uint64_t draws = 0;     ///< eye sides drawn
+        std::uint64_t draws = 0;     ///< camera sub-paths drawn
         std::uint64_t untrusted = 0; ///< photons for which `marginal` turned to `reciprocal`
 
         void merge(const Tally& o);
@@ -80,28 +74,26 @@ class PathDepositor {
         int scatterings = 0; ///< of the stored sub-path, its end included
         double weight = 0;
         double literal = 0; ///< sum of weight times literal_factor()
-        double density = 0; ///< sum of weight times literal_factor() times eye_side_density()
+        double density = 0; ///< sum of weight times literal_factor() times camera_subpath_density()
 
         bool holds(const Path& path, const StoragePoint& at, const Rgb& its_flux) const;
     };
 
     void store(Pending& pending);
-    struct Marginal {
-        Rgb power;
-        bool trusted;
-    };
     // Power for weight 1; black where it is lost. `given` is the weight that the sums of `pending` are over.
     Rgb power_of(const Pending& pending, bool global, double given, double weight);
     Rgb global_power(const Pending& pending, double given, double weight);
     Rgb caustic_power(const Pending& pending) const;
-    static Marginal marginal_power(const Pending& pending, const ImportanceMap& map);
-    Rgb reciprocal_power(const Pending& pending, double given);
-    Rgb literal_power(const Pending& pending, double given, double weight);
+    static ImportanceMap::Importance importance(const Pending& pending, const ImportanceMap& map) {
+        return map.importance(pending.vertex.point, pending.vertex.bsdf, pending.to_light);
+    }
+    Rgb by_drawing(const Pending& pending, double given);
+    Rgb to_the_letter(const Pending& pending, double given, double weight);
 
     DepositOptions options_;
     Rng rng_;
     MapStores::Thresholds thresholds_;
-    MapBuffers buffers_;
+    MapBuffers* buffers_;
     Pending recent_, older_;
     Tally tally_;
 };

@@ -2,7 +2,8 @@
 
 #include "core/shared_work.h"
 #include "photonmap/map_stores.h"
-#include "sampling/guided_light.h"
+#include "photonmap/power.h"
+#include "sampling/guidance/guided_light.h"
 
 #include <algorithm>
 #include <limits>
@@ -11,39 +12,39 @@ namespace keyhole {
 namespace {
 
 /// Photons of a block of paths, and what the weighing of later ones learns from them.
-struct Block {
-    MapBuffers scouts, carriers;
+struct EmissionBlock {
+    MapBuffers pilots, main_photons;
     PhotonWeights weights;
     std::uint64_t arrivals = 0;
 
-    void learn(const Block& o) {
+    void learn(const EmissionBlock& o) {
         weights += o.weights;
         arrivals += o.arrivals;
     }
-    auto parts() { return std::tie(scouts, carriers, weights, arrivals); }
+    auto parts() { return std::tie(pilots, main_photons, weights, arrivals); }
 };
 
 /// Receives the arrivals of one light path after the other.
 class Collector {
   public:
-    Collector(const PhotonWeighing& weighing, const MapStores::Thresholds& scouts,
-              const MapStores::Thresholds& carriers, const StorageRule& rule)
-        : weighing_(weighing), scouts_(scouts), carriers_(carriers), rule_(rule) {}
+    Collector(const PhotonWeighing& weighing, const MapStores::Thresholds& pilots,
+              const MapStores::Thresholds& main_photons, const StorageRule& rule)
+        : weighing_(weighing), pilots_(pilots), main_photons_(main_photons), rule_(rule) {}
 
     void begin(PhotonRole role, Rng& rng) {
         role_ = role;
         rng_ = &rng;
     }
 
-    bool arrival(const Vertex& v, const Vec3& to_light, const Rgb& power, const LightPast& past) {
+    bool arrival(Vertex& v, const Vec3& to_light, const Rgb& power, const LightPast& past) {
         if (!v.bsdf.traits().finite) return true;
-        const StorageRule::Kinds kinds = rule_(v.point, to_light, past.scatterings + 1, past);
+        const StorageRule::Kinds kinds = rule_(v, to_light, past);
         if (kinds.global) store(PhotonKind::global, v, to_light, power);
         if (kinds.caustic) store(PhotonKind::caustic, v, to_light, power);
         return true;
     }
 
-    Block block;
+    EmissionBlock block;
 
   private:
     void store(PhotonKind kind, const Vertex& v, const Vec3& to_light, const Rgb& power) {
@@ -51,51 +52,60 @@ class Collector {
         const PhotonWeighing::Weight weight = weighing_(kind, v, to_light, power);
         ++block.arrivals;
         block.weights.add(kind, weight, luminance(power));
-        const bool scout = role_ == PhotonRole::scout;
-        store_by_roulette(
-            scout ? block.scouts : block.carriers, kind, weight.value, scout ? scouts_ : carriers_, *rng_,
-            [&](double /*kept*/) { return Photon(v.point.p, v.point.ng, to_light, power / weight.value); });
+        const bool pilot = role_ == PhotonRole::pilot;
+        store_by_roulette(pilot ? block.pilots : block.main_photons, kind, weight.value,
+                          pilot ? pilots_ : main_photons_, *rng_, [&](double /*kept*/) {
+                              return Photon(v.point.p, v.point.ng, to_light, emitted_power(power, weight.value));
+                          });
     }
 
     PhotonWeighing weighing_;
-    MapStores::Thresholds scouts_, carriers_;
+    MapStores::Thresholds pilots_, main_photons_;
     StorageRule rule_;
-    PhotonRole role_ = PhotonRole::carrier;
+    PhotonRole role_ = PhotonRole::main_photon;
     Rng* rng_ = nullptr;
 };
 
-constexpr std::int64_t kBlock = 64;   // paths
-constexpr std::int64_t kPilot = 8192; // paths
+constexpr std::int64_t kPathsOfBlock = 64; // paths
+constexpr std::int64_t kPilot = 8192;      // paths
 
-Block trace_block(const Scene& scene, const EmissionOptions& options, Range paths, Collector collector) {
+void trace_one(const Scene& scene, const EmissionOptions& options, Rng& rng, Collector& collector) {
+    const int depth = options.rule.max_scatterings;
+    if (options.learned == nullptr || !options.user_paths.empty())
+        trace_light_path(scene, options.user_paths, depth, rng, collector);
+    else if (const auto light = options.learned->sample(rng))
+        trace_light_path(scene, *light, depth, rng, collector);
+}
+
+EmissionBlock trace_block(const Scene& scene, const EmissionOptions& options, Range paths, Collector collector) {
     for (std::int64_t i = paths.begin; i < paths.end; ++i) {
         Rng rng(options.seed, StreamPurpose::emission, static_cast<std::uint64_t>(i));
         collector.begin(role_of_sample(i), rng);
-        trace_light_path(scene, options.user_paths, options.rule.max_scatterings, rng, collector);
+        trace_one(scene, options, rng, collector);
     }
     return std::move(collector.block);
 }
 
 /// Traces a range of paths in blocks, in parallel.
-std::vector<Block> trace_blocks(const Scene& scene, const EmissionOptions& options, Range paths,
-                                const Collector& collector, const RunContext& context) {
-    std::vector<Block> blocks(static_cast<std::size_t>((paths.size() + kBlock - 1) / kBlock));
+std::vector<EmissionBlock> trace_blocks(const Scene& scene, const EmissionOptions& options, Range paths,
+                                        const Collector& collector, const RunContext& context) {
+    std::vector<EmissionBlock> blocks(static_cast<std::size_t>((paths.size() + kPathsOfBlock - 1) / kPathsOfBlock));
     shared_for(blocks, context, [&](std::int64_t b) {
-        const std::int64_t begin = paths.begin + b * kBlock;
+        const std::int64_t begin = paths.begin + b * kPathsOfBlock;
         blocks[static_cast<std::size_t>(b)] =
-            trace_block(scene, options, {begin, std::min(begin + kBlock, paths.end)}, collector);
+            trace_block(scene, options, {begin, std::min(begin + kPathsOfBlock, paths.end)}, collector);
     });
     return blocks;
 }
 
 /// Weights of the first paths; nothing is stored.
-Block learn_from_pilot(const Scene& scene, const EmissionGuide& guide, const EmissionOptions& options,
-                       const RunContext& context) {
+EmissionBlock learn_from_pilot(const Scene& scene, const EmissionGuide& guide, const EmissionOptions& options,
+                               const RunContext& context) {
     const double infinity = std::numeric_limits<double>::infinity();
     const MapStores::Thresholds never{infinity, infinity};
-    Block sum;
-    for (const Block& b : trace_blocks(scene, options, {0, std::min(kPilot, options.paths)},
-                                       Collector({guide, 1}, never, never, options.rule), context))
+    EmissionBlock sum;
+    for (const EmissionBlock& b : trace_blocks(scene, options, {0, std::min(kPilot, options.paths)},
+                                               Collector({guide, 1}, never, never, options.rule), context))
         sum.learn(b);
     sum.arrivals = 0;
     return sum;
@@ -107,22 +117,23 @@ EmittedPhotons emit_photons(const Scene& scene, const EmissionGuide& guide, cons
                             const RunContext& context) {
     EmittedPhotons out;
     if (scene.emitter_distribution().empty()) return out;
-    Block learnt = learn_from_pilot(scene, guide, options, context);
+    EmissionBlock learnt = learn_from_pilot(scene, guide, options, context);
     const std::size_t for_caustic = options.rule.caustics ? learnt.weights.for_caustic(options.photons) : 0;
     MapStores stores(options.photons - for_caustic, for_caustic, {}, options.seed);
 
     // In rounds, so that buffers stay small beside the stores, and thresholds follow what is stored.
     const std::int64_t round =
-        std::clamp<std::int64_t>(static_cast<std::int64_t>(options.photons) / 32 / kBlock, 4, 512) * kBlock;
+        std::clamp<std::int64_t>(static_cast<std::int64_t>(options.photons) / 32 / kPathsOfBlock, 4, 512) *
+        kPathsOfBlock;
     context.begin("photons", static_cast<std::uint64_t>(options.paths), "light paths");
     while (out.paths < options.paths && !(context.stopped() && out.paths > 0)) {
         const Range range{out.paths, std::min(options.paths, out.paths + round)};
         const PhotonWeighing weighing{guide, learnt.weights.unknown_scale()};
-        const Collector collector(weighing, stores.thresholds(PhotonRole::scout),
-                                  stores.thresholds(PhotonRole::carrier), options.rule);
-        for (Block& b : trace_blocks(scene, options, range, collector, context)) {
-            stores.absorb(PhotonRole::scout, b.scouts);
-            stores.absorb(PhotonRole::carrier, b.carriers);
+        const Collector collector(weighing, stores.thresholds(PhotonRole::pilot),
+                                  stores.thresholds(PhotonRole::main_photon), options.rule);
+        for (EmissionBlock& b : trace_blocks(scene, options, range, collector, context)) {
+            stores.absorb(PhotonRole::pilot, b.pilots);
+            stores.absorb(PhotonRole::main_photon, b.main_photons);
             learnt.learn(b);
         }
         out.paths = range.end;
@@ -130,8 +141,8 @@ EmittedPhotons emit_photons(const Scene& scene, const EmissionGuide& guide, cons
     }
     context.end();
     out.arrivals = learnt.arrivals;
-    const std::int64_t carriers = out.paths - out.paths / kScoutEvery;
-    const double scale = 1 / static_cast<double>(carriers);
+    const std::int64_t main_photons = out.paths - out.paths / kPilotEvery;
+    const double scale = emission_scale(main_photons);
     out.bytes = stores.bytes();
     static_cast<Photons&>(out) = stores.release(scale, scale);
     return out;

@@ -4,7 +4,8 @@
 #include "core/progress.h"
 #include "photonmap/photon_weighing.h"
 #include "photonmap/photons.h"
-#include "sampling/light_guides.h"
+#include "sampling/guidance/guided_subpath.h"
+#include "sampling/guidance/learned_emission.h"
 #include "scene/scene.h"
 
 #include <cstdint>
@@ -16,7 +17,8 @@ struct EmissionOptions {
     std::size_t photons; ///< ceiling for both maps together; they share it as they share the weight of what arrives
     StorageRule rule{};
     std::uint64_t seed;
-    LightGuides user_paths{}; ///< that half of the light paths follow, where there are any
+    LightGuides user_paths{};                 ///< that half of the light paths follow, where there are any
+    const LearnedEmission* learned = nullptr; ///< where light paths begin if there are no user paths; null: by power
 };
 
 struct EmittedPhotons : Photons {
@@ -27,7 +29,7 @@ struct EmittedPhotons : Photons {
 
 /// Traces light paths and stores a photon at every vertex where a map can be asked (see docs/photon-maps.md): in the
 /// global map unless light came straight from the emitter, and, if it came through specular vertices only or from
-/// beyond the reach of gather rays, in the caustic map as well; each map is complete by itself.
+/// outside the coverage of gather rays, in the caustic map as well; each map is complete by itself.
 ///
 /// With a guide a photon is kept with probability min(1, Y(Phi E) / t), and weighed by the reciprocal (after Keller and
 /// Wald 2000); t follows from the ceilings. E decides what is kept and nothing else: its errors bias no expectation.

@@ -7,8 +7,8 @@ namespace keyhole {
 MapStores::Pair MapStores::make_pair(std::size_t global, std::size_t caustic, const Thresholds& initial,
                                      std::uint64_t seed, PhotonRole role) {
     const auto share = [&](std::size_t ceiling) {
-        const std::size_t scouts = ceiling / kScoutEvery;
-        return role == PhotonRole::scout ? scouts : ceiling - scouts;
+        const std::size_t pilots = ceiling / kPilotEvery;
+        return role == PhotonRole::pilot ? pilots : ceiling - pilots;
     };
     const std::uint64_t stream = 2 * static_cast<std::uint64_t>(role);
     return {PhotonStore(share(global), initial.global, Rng(seed, StreamPurpose::thinning, stream)),
@@ -16,8 +16,8 @@ MapStores::Pair MapStores::make_pair(std::size_t global, std::size_t caustic, co
 }
 
 MapStores::MapStores(std::size_t global, std::size_t caustic, const Thresholds& initial, std::uint64_t seed)
-    : scouts_(make_pair(global, caustic, initial, seed, PhotonRole::scout)),
-      carriers_(make_pair(global, caustic, initial, seed, PhotonRole::carrier)) {}
+    : pilots_(make_pair(global, caustic, initial, seed, PhotonRole::pilot)),
+      main_photons_(make_pair(global, caustic, initial, seed, PhotonRole::main_photon)) {}
 
 void MapStores::absorb(PhotonRole role, MapBuffers& buffers) {
     of(role).global.absorb(buffers.global);
@@ -25,17 +25,18 @@ void MapStores::absorb(PhotonRole role, MapBuffers& buffers) {
 }
 
 MapStores::Thresholds MapStores::thresholds(PhotonRole role) const {
-    const Pair& pair = role == PhotonRole::scout ? scouts_ : carriers_;
+    const Pair& pair = role == PhotonRole::pilot ? pilots_ : main_photons_;
     return {pair.global.threshold(), pair.caustic.threshold()};
 }
 
 Photons MapStores::release(double global_scale, double caustic_scale) {
-    return {{scouts_.global.release(1), carriers_.global.release(global_scale)},
-            {scouts_.caustic.release(1), carriers_.caustic.release(caustic_scale)}};
+    return {{pilots_.global.release(1), main_photons_.global.release(global_scale)},
+            {pilots_.caustic.release(1), main_photons_.caustic.release(caustic_scale)}};
 }
 
 std::size_t MapStores::bytes() const {
-    return scouts_.global.bytes() + scouts_.caustic.bytes() + carriers_.global.bytes() + carriers_.caustic.bytes();
+    return pilots_.global.bytes() + pilots_.caustic.bytes() + main_photons_.global.bytes() +
+           main_photons_.caustic.bytes();
 }
 
 std::size_t photons_for_caustic(double share, std::size_t photons) {

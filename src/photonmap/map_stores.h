@@ -1,9 +1,10 @@
-// The stores of both photon maps, for scouts and carriers.
+// The stores of both photon maps, for pilot photons and main photons.
 #pragma once
 
+#include "core/shared_work.h"
 #include "photonmap/photon_store.h"
 #include "photonmap/photons.h"
-#include "sampling/path.h"
+#include "sampling/paths/path.h"
 
 #include <cstdint>
 #include <optional>
@@ -27,11 +28,17 @@ class MapStores {
         double of(PhotonKind kind) const { return kind == PhotonKind::global ? global : caustic; }
     };
 
-    /// Ceilings in photons, scouts included. `initial`: as PhotonStore's.
+    /// Ceilings in photons, pilot photons included. `initial`: as PhotonStore's.
     MapStores(std::size_t global, std::size_t caustic, const Thresholds& initial, std::uint64_t seed);
 
     /// Adds the photons of the buffers and empties them.
     void absorb(PhotonRole role, MapBuffers& buffers);
+    /// The same for those of all chains, in their order; a process group shares chains out, each process has filled the
+    /// buffers of its own_part(). role_of(c) is the role of chain c.
+    template <class RoleOf> void absorb(std::vector<MapBuffers>& buffers, RoleOf&& role_of, const RunContext& context) {
+        exchange_parts(buffers, context);
+        for (std::size_t c = 0; c < buffers.size(); ++c) absorb(role_of(c), buffers[c]);
+    }
 
     /// Weights below these won't stay whole.
     Thresholds thresholds(PhotonRole role) const;
@@ -48,9 +55,9 @@ class MapStores {
     };
     static Pair make_pair(std::size_t global, std::size_t caustic, const Thresholds& initial, std::uint64_t seed,
                           PhotonRole role);
-    Pair& of(PhotonRole role) { return role == PhotonRole::scout ? scouts_ : carriers_; }
+    Pair& of(PhotonRole role) { return role == PhotonRole::pilot ? pilots_ : main_photons_; }
 
-    Pair scouts_, carriers_;
+    Pair pilots_, main_photons_;
 };
 
 /// Puts a photon of weight `weight` into its buffer if it survives the roulette of its store: what doesn't costs

@@ -1,6 +1,6 @@
 #include "photonmap/photon_map.h"
 
-#include "core/facet.h"
+#include "core/vec.h"
 #include "photonmap/kd_tree.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "photonmap/photon.h"
-#include "photonmap/surface_region.h"
+#include "photonmap/surface/surface_region.h"
 
 #include <cstdint>
 #include <functional>

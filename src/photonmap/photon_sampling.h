@@ -4,7 +4,7 @@
 #include "core/progress.h"
 #include "photonmap/deposit.h"
 #include "sampling/brightness.h"
-#include "sampling/chain_set.h"
+#include "sampling/markov/chain_set.h"
 
 #include <vector>
 
@@ -24,10 +24,10 @@ struct SampledPhotons : Photons {
     PathDepositor::Tally tally; ///< of all chains
 };
 
-/// Where chains start. Scouts and carriers come from different samples of stage one.
+/// Where chains start. Pilot photons and main photons come from different samples of stage one.
 struct ChainSeeds {
-    std::vector<Path> scouts, carriers;
-    double brightness = 0; ///< B_eye [W/(m^2 sr)] by the samples that the carriers' seeds come from
+    std::vector<Path> pilots, main_photons;
+    double brightness = 0; ///< B_eye [W/(m^2 sr)] by the samples that the main photons' seeds come from
 };
 
 /// Seeds for so many chains from a finished stage one.

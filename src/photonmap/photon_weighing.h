@@ -1,9 +1,9 @@
 // What a photon is worth where it arrives: light tracing keeps photons by it, chains of light paths seek it.
 #pragma once
 
-#include "photonmap/importance_guide.h"
-#include "sampling/light_tracer.h"
-#include "sampling/reach.h"
+#include "photonmap/importance/importance_guide.h"
+#include "sampling/paths/gather_coverage.h"
+#include "sampling/paths/light_tracer.h"
 
 #include <cstddef>
 
@@ -15,23 +15,28 @@ struct EmissionGuide {
     const ImportanceGuide* caustic = nullptr; ///< at d1
 };
 
-/// Which map light goes to that arrives at a vertex, as PathSet::storage_point() has it for whole paths.
+/// Which maps light goes to that arrives at a vertex, whatever the camera sub-path: stored_kind() for all paths that
+/// begin so.
 struct StorageRule {
     int max_scatterings = 24;
-    bool caustics = true;         ///< whether there is a caustic map
-    const Reach* reach = nullptr; ///< of gather rays; null: they come everywhere
+    bool caustics = true;                     ///< whether there is a caustic map
+    const GatherCoverage* coverage = nullptr; ///< of gather rays; null: they come everywhere
 
     struct Kinds {
         bool global, caustic;
     };
-    /// Of light that reached finite vertex `v` from `to_light` as its `arrival`-th vertex, counted from 1.
-    Kinds operator()(const SurfacePoint& v, const Vec3& to_light, int arrival, const LightPast& past) const {
-        const auto reached = [&](const Vec3& p, const Vec3& n) { return reach == nullptr || reach->comes_to(p, n); };
-        // Beyond reach its last scattering makes this the first one seen.
-        const bool unreached = past.last && !reached(past.last->p, past.last->n);
-        // From d2 light still has to be scattered at d1.
-        return {arrival > 1 && arrival < max_scatterings && reached(v.p, facing(v.ng, to_light)),
-                caustics && (past.specular_only() || unreached)};
+    /// Of light that reached finite vertex `v` from `to_light`.
+    Kinds operator()(Vertex& v, const Vec3& to_light, const LightPast& past) const {
+        const int here = past.scatterings + 1; // from the light's end
+        const LightClass as_d1 = light_class({here, past.last ? past.last->index : 0});
+        const LightClass as_d2 = light_class({here + 1, here}); // light still has to be scattered at d1
+        const auto covered = [&] { return is_covered(coverage, v, to_light); };
+        const auto last_covered = [&] {
+            if (coverage == nullptr || past.last->covered) return coverage == nullptr || *past.last->covered;
+            return coverage->comes_to(past.last->p, past.last->n);
+        };
+        return {here < max_scatterings && stores_in(PhotonKind::global, as_d2, covered),
+                caustics && stores_in(PhotonKind::caustic, as_d1, last_covered)};
     }
 };
 

@@ -1,8 +1,7 @@
 #include "sampling/brightness.h"
 
-#include "core/interruptible.h"
-#include "core/leading_blocks.h"
-#include "sampling/image_lattice.h"
+#include "core/shared_work.h"
+#include "sampling/paths/image_lattice.h"
 #include "scene/ray_counter.h"
 
 #include <algorithm>
@@ -19,9 +18,6 @@ template <class Sink> struct BesideGuides {
     const GuidedPaths& guides;
     Sink& sink;
 
-    void arrival(const Vertex& v, const Vec3& to_eye, const Rgb& throughput, int finite) {
-        sink.arrival(v, to_eye, throughput, finite);
-    }
     void contribution(const Rgb& value, PhotonKind kind, auto&& make_path) {
         const Path path = make_path();
         const double guided = guides.density(path);
@@ -35,16 +31,16 @@ void trace_sample(const Scene& scene, const StageOneSettings& settings, Techniqu
                   auto& sink) {
     Rng rng(settings.seed, StreamPurpose::brightness, static_cast<std::uint64_t>(i));
     const Vec2 image = lattice_image_point(settings.seed, StreamPurpose::brightness, i);
-    if (settings.guides == nullptr)
-        return trace_independent(technique, scene, image, settings.max_scatterings, settings.set, rng, sink);
+    const ConnectionRule wanted{settings.max_scatterings, settings.set};
+    if (settings.guides == nullptr) return trace_independent(technique, scene, image, wanted, rng, sink);
     assert(technique == Technique::bidirectional);
     BesideGuides<std::remove_reference_t<decltype(sink)>> rest{*settings.guides, sink};
-    trace_independent(technique, scene, image, settings.max_scatterings, settings.set, rng, rest);
+    trace_independent(technique, scene, image, wanted, rng, rest);
     settings.guides->sample(image, rng, [&](const Path& path) {
         const double guided = settings.guides->density(path);
         if (!(guided > 0)) return; // rounding carried it out of cones or openings
-        sink.contribution(path.contribution / (guided + bidirectional_density(path)),
-                          settings.set.storage_point(path).kind, [&]() -> const Path& { return path; });
+        sink.contribution(path.contribution / (guided + bidirectional_density(path)), path.storage.kind,
+                          [&]() -> const Path& { return path; });
     });
 }
 
@@ -58,7 +54,6 @@ struct EstimateSink {
     const PathSet& set;
     double sum = 0, caustic = 0;
 
-    void arrival(const Vertex&, const Vec3&, const Rgb&, int) {}
     void contribution(const Rgb& value, PhotonKind kind, auto&& make_path) {
         const double found = target(set, value, make_path);
         sum += found;
@@ -72,14 +67,15 @@ struct SeedSink {
     double left; // of the mark
     std::optional<Path> found{};
 
-    void arrival(const Vertex&, const Vec3&, const Rgb&, int) {}
     void contribution(const Rgb& value, PhotonKind, auto&& make_path) {
         if (left < 0 && found) return;
         left -= target(set, value, make_path);
         if (left >= 0 && found) return; // any path will do should rounding leave the mark unreached
         Path path = make_path();
         path.target = set.target(path.contribution, path.image);
-        if (path.target > 0) found = path;
+        if (!(path.target > 0)) return;
+        set.find_storage(path);
+        found = path;
     }
 };
 

@@ -5,8 +5,8 @@
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/statistics.h"
-#include "sampling/guided_paths.h"
-#include "sampling/independent_paths.h"
+#include "sampling/guidance/guided_paths.h"
+#include "sampling/paths/independent_paths.h"
 #include "scene/scene.h"
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 #include "sampling/scene_hash.h"
 
-#include "core/hash.h"
-#include "sampling/light_tracer.h"
+#include "core/bytes.h"
+#include "sampling/paths/light_tracer.h"
 
 namespace keyhole {
 namespace {

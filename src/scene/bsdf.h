@@ -5,11 +5,8 @@
 #include "scene/bsdfs/coated_conductor.h"
 #include "scene/bsdfs/coated_diffuse.h"
 #include "scene/bsdfs/conductor.h"
+#include "scene/bsdfs/dielectric.h"
 #include "scene/bsdfs/diffuse.h"
-#include "scene/bsdfs/glass.h"
-#include "scene/bsdfs/mirror.h"
-#include "scene/bsdfs/rough_dielectric.h"
-#include "scene/bsdfs/sheets.h"
 #include "scene/scattering.h"
 #include "scene/surface_point.h"
 

@@ -23,6 +23,7 @@ struct ImageWindow {
         return {(pixel.x + margin) / (static_cast<float>(width) + 2 * margin),
                 (pixel.y + margin) / (static_cast<float>(height) + 2 * margin)};
     }
+    double size() const { return static_cast<double>(width) * height; } ///< pixels of the film
     /// Window area in pixels; a mean over the window times this is a sum over pixels.
     double pixels() const {
         return (static_cast<double>(width) + 2.0 * margin) * (static_cast<double>(height) + 2.0 * margin);

@@ -38,6 +38,15 @@ struct DeltaScatter {
     double eta;         ///< refractive index on the side of `to` over that on the side of `from`; 1 for reflection
 };
 
+/// The direction that a smooth surface reflects `w` to.
+inline Vec3 mirrored(const Vec3& w) { return {-w.x, -w.y, w.z}; }
+
+/// A direction drawn by a finite part with that density; none where it has none.
+inline std::optional<BsdfSample> finite_sample(const Vec3& to, double pdf) {
+    if (!(pdf > 0)) return std::nullopt;
+    return BsdfSample{to, Event::finite, pdf};
+}
+
 /// What the renderer may leave out for a BSDF that lacks it.
 struct BsdfTraits {
     bool finite = false;          ///< has a D part

@@ -1,8 +1,7 @@
 #include "scene/scene.h"
 
 #include "core/error.h"
-#include "scene/emitters/area.h"
-#include "scene/emitters/environment.h"
+#include "scene/emitters/emitters.h"
 #include "scene/geometry.h"
 #include "scene/ray_counter.h"
 

@@ -1,4 +1,5 @@
-// The scene: geometry behind Embree, materials, emitters and the camera. Immutable once built.
+// The scene: geometry behind Embree, materials, emitters and the camera. Immutable once built, but for the camera's
+// window: trials set that of a smaller picture, before and after what renders it.
 #pragma once
 
 #include "scene/camera.h"
@@ -52,6 +53,7 @@ class Scene {
     }
 
     const Camera& camera() const { return camera_; }
+    /// Not while anybody renders.
     void set_window(const ImageWindow& window) { camera_ = Camera(camera_.parameters(), window); }
 
     const std::vector<std::unique_ptr<Emitter>>& emitters() const { return emitters_; }

@@ -12,7 +12,7 @@ constexpr int kRuns = 4;
 
 Settings base(const char* method) {
     Settings s;
-    s.method = method;
+    s.method = &method_named(method);
     s.max_depth = 8;
     s.spp = 8;
     s.brightness_samples = 30'000;

@@ -1,6 +1,7 @@
 // Metropolis light transport and path tracing make the same picture.
+#include "methods/method.h"
 #include "sampling/proposals/registry.h"
-#include "scene/load/scene_yaml.h"
+#include "scene/load/load_yaml.h"
 #include "support/agreement.h"
 #include "support/test_scenes.h"
 #include "support/user_paths.h"
@@ -28,11 +29,11 @@ TEST_P(Mlt_AgreesWithPathTracing, BlockByBlock) {
     const auto scene = GetParam().make();
     scene->set_window({96, 64, 0});
     Settings path;
-    path.method = "path";
+    path.method = &methods::path;
     path.spp = GetParam().path_spp;
     path.seed = 1000;
     Settings mlt;
-    mlt.method = "mlt";
+    mlt.method = &methods::mlt;
     mlt.spp = 8;
     mlt.brightness_samples = 50'000;
     mlt.chains = 400;
@@ -40,9 +41,10 @@ TEST_P(Mlt_AgreesWithPathTracing, BlockByBlock) {
     UserPathFile user_paths;
     if (GetParam().user_paths != nullptr) {
         user_paths = GetParam().user_paths(*scene);
-        mlt.p_user_path = 1;
+        mlt.proposals[proposals::user_path.weight] = 1;
         mlt.brightness_error = 0; // or stage one takes most of the time
-        for (const ProposalKind& kind : proposal_kinds()) mlt.*kind.weight /= 1.3; // their sum is 1.3
+        for (const ProposalKind* kind : proposal_kinds())
+            if (!kind->needs_user_paths) mlt.proposals[kind->weight] /= 1.3; // their sum is 1.3
     }
     const test::Blocks reference = test::render_blocks(*scene, path, 4);
     const test::Disagreement d =

@@ -1,23 +1,32 @@
 // Metropolis photon sampling and path tracing make the same picture.
-#include "scene/load/scene_yaml.h"
+#include "methods/method.h"
+#include "scene/load/load_yaml.h"
 #include "support/agreement.h"
+#include "support/chance.h"
 
 #include <gtest/gtest.h>
 
 namespace keyhole {
 namespace {
 
-class Mps_AgreesWithPathTracing : public testing::TestWithParam<const char*> {};
+struct MpsCase {
+    const char* scene;
+    int noisy = 0; ///< blocks of which nothing can be told
+};
+
+void PrintTo(const MpsCase& c, std::ostream* out) { *out << c.scene; }
+
+class Mps_AgreesWithPathTracing : public testing::TestWithParam<MpsCase> {};
 
 TEST_P(Mps_AgreesWithPathTracing, BlockByBlock) {
-    Scene scene(load_scene(std::string(KEYHOLE_SOURCE_DIR "/scenes/") + GetParam() + ".yaml").description);
+    Scene scene(load_scene(std::string(KEYHOLE_SOURCE_DIR "/scenes/") + GetParam().scene + ".yaml").description);
     scene.set_window({96, 64, 0});
     Settings paths; // from both ends: through a door those from the eye alone would be noise
-    paths.method = "bdpt";
+    paths.method = &methods::bdpt;
     paths.spp = 24;
     paths.seed = 1000;
     Settings mps;
-    mps.method = "mps";
+    mps.method = &methods::mps;
     mps.spp = 4;
     mps.brightness_samples = 200'000;
     mps.importons = 200'000;
@@ -25,13 +34,16 @@ TEST_P(Mps_AgreesWithPathTracing, BlockByBlock) {
     mps.photons = 60'000;
     const test::Blocks reference = test::render_blocks(scene, paths, 4);
     const test::Disagreement d = test::compare(test::render_blocks(scene, mps, 4), reference, 0.03);
-    RecordProperty("ratio", std::to_string(d.ratio));
-    RecordProperty("largest_error", std::to_string(d.largest_error));
     EXPECT_EQ(d.rejected, 0) << d.report << "mean brightness ratio " << d.ratio;
+    EXPECT_NEAR(d.quiet_ratio, 1, 0.05) << "whole picture " << d.ratio;
+    EXPECT_LE(d.noisy, GetParam().noisy) << "the test couldn't see a difference; largest error " << d.largest_error;
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Mps_AgreesWithPathTracing, testing::Values("box", "rooms", "lantern"),
-                         [](const auto& info) { return std::string(info.param); });
+// Where the lamp of the lantern is seen, its light through the glass has a heavy tail: now and then one sample is as
+// bright as the whole picture, and the block of it says nothing.
+INSTANTIATE_TEST_SUITE_P(Scenes, Mps_AgreesWithPathTracing,
+                         testing::Values(MpsCase{"box"}, MpsCase{"rooms"}, MpsCase{"lantern", 1}),
+                         [](const auto& info) { return std::string(info.param.scene); });
 
 TEST(StudentPValue, AgreesWithTables) {
     EXPECT_NEAR(test::student_p_value(2.228, 10), 0.05, 1e-4);

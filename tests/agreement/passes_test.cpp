@@ -1,6 +1,6 @@
 // Passes: their mean converges to what path tracing finds, within the memory of one.
-#include "film/image_error.h"
-#include "render/render.h"
+#include "film/errors/image_error.h"
+#include "methods/method.h"
 #include "support/agreement.h"
 #include "support/test_scenes.h"
 
@@ -13,7 +13,7 @@ class Passes : public testing::TestWithParam<const char*> {
   protected:
     static Settings settings() {
         Settings s;
-        s.method = GetParam();
+        s.method = &method_named(GetParam());
         s.spp = 1;
         s.gather_rays = 1;
         s.irradiance_cache = false; // interpolation has an error of its own
@@ -22,7 +22,7 @@ class Passes : public testing::TestWithParam<const char*> {
         s.mutations = 20'000;
         s.brightness_samples = 10'000;
         s.importons = 20'000;
-        s.power = "reciprocal"; // of mps: passes can't average the error of an importance map away
+        s.power = PowerRule::reciprocal; // of mps: passes can't average the error of an importance map away
         return s;
     }
 };
@@ -30,7 +30,7 @@ class Passes : public testing::TestWithParam<const char*> {
 TEST_P(Passes, ConvergeToPathTracing) {
     const auto scene = test::diffuse_box();
     Settings path;
-    path.method = "path";
+    path.method = &methods::path;
     path.spp = 256;
     path.seed = 1000;
     Settings passes = settings();
@@ -46,11 +46,11 @@ TEST_P(Passes, SayHowFarTheyAre) {
     s.passes = 0;
     s.target_error = 0.25;
     const RenderResult result = render(*scene, s, {});
-    EXPECT_GE(result.stats.values.at("passes"), 4);
+    EXPECT_GE(result.stats.passes, 4);
     EXPECT_LE(result.stats.values.at("relative error"), 0.25);
     EXPECT_GT(result.stats.values.at("relative error"), 0.15) << "passes were wasted";
     Settings path; // its error is a small part of what is to be told
-    path.method = "path";
+    path.method = &methods::path;
     path.spp = 1024;
     path.seed = 77;
     const Picture reference = render(*scene, path, {}).picture;

@@ -1,4 +1,5 @@
 // Bidirectional path tracing and the chains in primary sample space make the picture that path tracing makes.
+#include "methods/method.h"
 #include "support/agreement.h"
 #include "support/test_scenes.h"
 
@@ -19,7 +20,10 @@ void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 
 /// A method with the setting that this scene tries with it. Every value of each meets some scene.
 struct Variant {
-    const char *method, *builder, *failures, *mis;
+    const Method* method;
+    PathBuilderKind builder;
+    Failures failures;
+    MisHeuristic mis;
 };
 
 constexpr int kRuns = 4;
@@ -37,23 +41,25 @@ class PrimarySampleSpace_AgreesWithPathTracing : public testing::TestWithParam<s
 TEST_P(PrimarySampleSpace_AgreesWithPathTracing, BlockByBlock) {
     const auto& [scene_case, shift] = GetParam();
     const auto scene = scene_case.make();
-    Settings path = base();
-    path.method = "path";
-    path.spp = 32;
-    path.seed = 1000;
-    const test::Blocks reference = test::render_blocks(*scene, path, kRuns);
+    Settings independent = base();
+    independent.method = &methods::path;
+    independent.spp = 32;
+    independent.seed = 1000;
+    const test::Blocks reference = test::render_blocks(*scene, independent, kRuns);
 
-    constexpr std::array failures{"reject", "exclude_large", "delay"};
-    constexpr std::array heuristics{"balance", "power", "maximum"};
-    const auto pick = [&](const auto& words, int i) {
-        return words[static_cast<std::size_t>(shift + i) % words.size()];
+    using enum PathBuilderKind;
+    constexpr std::array failures{Failures::reject, Failures::exclude_large, Failures::delay};
+    constexpr std::array heuristics{MisHeuristic::balance, MisHeuristic::power, MisHeuristic::maximum};
+    const auto pick = [&](const auto& choices, int i) {
+        return choices[static_cast<std::size_t>(shift + i) % choices.size()];
     };
-    for (const Variant& v :
-         {Variant{"bdpt", "path", "reject", pick(heuristics, 0)}, Variant{"pssmlt", "path", pick(failures, 0), "power"},
-          Variant{"pssmlt", "endpoints", pick(failures, 1), pick(heuristics, 1)},
-          Variant{"pssmlt", "bidirectional", pick(failures, 2), pick(heuristics, 2)},
-          Variant{"mmlt", "path", pick(failures, 0), pick(heuristics, 0)},
-          Variant{"rjmlt", "path", pick(failures, 1), shift == 1 ? "balance" : "power"}}) {
+    for (const Variant& v : {Variant{&methods::bdpt, path, Failures::reject, pick(heuristics, 0)},
+                             Variant{&methods::pssmlt, path, pick(failures, 0), MisHeuristic::power},
+                             Variant{&methods::pssmlt, endpoints, pick(failures, 1), pick(heuristics, 1)},
+                             Variant{&methods::pssmlt, bidirectional, pick(failures, 2), pick(heuristics, 2)},
+                             Variant{&methods::mmlt, path, pick(failures, 0), pick(heuristics, 0)},
+                             Variant{&methods::rjmlt, path, pick(failures, 1),
+                                     shift == 1 ? MisHeuristic::balance : MisHeuristic::power}}) {
         Settings s = base();
         s.method = v.method;
         s.builder = v.builder;
@@ -62,8 +68,9 @@ TEST_P(PrimarySampleSpace_AgreesWithPathTracing, BlockByBlock) {
         s.spp = 6;
         s.mutations = 60'000;
         const test::Disagreement d = test::compare(test::render_blocks(*scene, s, kRuns), reference, 0.03);
-        EXPECT_EQ(d.rejected, 0) << fmt::format("{} {} {} {}\n{}mean brightness ratio {}", v.method, v.builder,
-                                                v.failures, v.mis, d.report, d.ratio);
+        EXPECT_EQ(d.rejected, 0) << fmt::format("{} {} {} {}\n{}mean brightness ratio {}", name_of(*v.method),
+                                                word_of(v.builder), word_of(v.failures), word_of(v.mis), d.report,
+                                                d.ratio);
     }
 }
 

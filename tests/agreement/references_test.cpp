@@ -1,6 +1,6 @@
 // Pictures by other renderers of the same files, where ../shared is there: brightness, and the means of 16 x 16 blocks.
-#include "film/exr.h"
-#include "render/render.h"
+#include "film/files/exr.h"
+#include "methods/render.h"
 #include "scene/load/load.h"
 #include "support/agreement.h"
 

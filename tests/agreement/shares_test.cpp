@@ -2,7 +2,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "film/join.h"
-#include "render/render.h"
+#include "methods/render.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ class Shares : public testing::TestWithParam<const char*> {
   protected:
     static Settings settings() {
         Settings s;
-        s.method = GetParam();
+        s.method = &method_named(GetParam());
         s.passes = 4;
         s.spp = 2;
         s.brightness_samples = 10'000;
@@ -26,7 +26,7 @@ class Shares : public testing::TestWithParam<const char*> {
         s.photons = 5'000;
         return s;
     }
-    static RenderResult make(const Share& share, int threads = 2) {
+    static RenderResult make(const WorkPartition& share, int threads = 2) {
         RenderResult result;
         with_threads(threads, [&] {
             const auto scene = test::mirror_glass_box();
@@ -38,7 +38,7 @@ class Shares : public testing::TestWithParam<const char*> {
         return result;
     }
     static NamedPicture passes(std::int64_t begin, std::int64_t end, int threads) {
-        Share share;
+        WorkPartition share;
         share.first_pass = begin;
         share.end_pass = end;
         share.keep_sums = true;
@@ -65,19 +65,19 @@ TEST_P(Shares, JoinedAreTheWhole) {
 
 TEST_P(Shares, OfABrokenOffRenderAreGoneOnFrom) {
     std::vector<Picture> saved;
-    Share saving;
+    WorkPartition saving;
     saving.save = [&](const Picture& p) { saved.push_back(p); };
     saving.save_every = 0;
     const RenderResult whole = make(saving);
     expect_same(whole.picture, make({}).picture);
     ASSERT_GE(saved.size(), 5u);
     for (const Picture& done : {saved[0], saved[saved.size() / 2], saved.back()}) {
-        Share resuming;
+        WorkPartition resuming;
         resuming.done = &done;
         const RenderResult rest = make(resuming, 3);
         expect_same(rest.picture, whole.picture);
         EXPECT_TRUE(rest.stats.complete);
-        EXPECT_EQ(rest.stats.values.at("passes"), 4);
+        EXPECT_EQ(rest.stats.passes, 4);
         EXPECT_EQ(rest.stats.values.at("relative error"), whole.stats.values.at("relative error"));
     }
 }

@@ -1,6 +1,6 @@
 // The same scene, settings and seed make the same picture, bit for bit, on any number of threads.
 #include "core/parallel.h"
-#include "render/render.h"
+#include "methods/render.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ class Picture_IsTheSameOnAnyNumberOfThreads : public testing::TestWithParam<cons
 
 TEST_P(Picture_IsTheSameOnAnyNumberOfThreads, BitForBit) {
     Settings settings;
-    settings.method = GetParam();
+    settings.method = &method_named(GetParam());
     settings.spp = 2;
     settings.brightness_samples = 50'000;
     settings.importons = 20'000;

@@ -1,8 +1,5 @@
 // Points and rays of emitters against the densities they claim.
-#include "scene/emitters/distant.h"
-#include "scene/emitters/environment.h"
-#include "scene/emitters/image_environment.h"
-#include "scene/emitters/spot.h"
+#include "scene/emitters/emitters.h"
 #include "support/chi_squared.h"
 #include "support/test_scenes.h"
 

@@ -1,5 +1,5 @@
 // Directions through openings against the density they claim.
-#include "sampling/portal.h"
+#include "sampling/guidance/portal.h"
 #include "support/chi_squared.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Maps from the unit square, and the rays of camera and area lights, against the densities they claim.
 #include "scene/camera.h"
-#include "scene/emitters/area.h"
+#include "scene/emitters/emitters.h"
 #include "scene/shape.h"
 #include "scene/warp.h"
 #include "support/chi_squared.h"

@@ -1,38 +1,85 @@
-// Closed box of albedo rho whose walls emit 1 W/(m^2 sr): radiance is 1 / (1 - rho) everywhere, by every method.
-#include "render/render.h"
+// Closed boxes of albedo rho whose walls emit 1 W/(m^2 sr): radiance is 1 / (1 - rho) everywhere, by every method.
+#include "methods/method.h"
+#include "methods/render.h"
+#include "support/agreement.h"
+#include "support/chance.h"
 #include "support/test_scenes.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 namespace keyhole {
 namespace {
 
-class Furnace_HasItsClosedForm : public testing::TestWithParam<const char*> {};
+constexpr double kRho = 0.5;
 
-TEST_P(Furnace_HasItsClosedForm, InEveryBlock) {
-    constexpr double rho = 0.5;
-    const auto scene = test::furnace(rho);
-    Settings settings;
-    settings.method = GetParam();
-    settings.spp = 16;
-    settings.mutations = 200'000;
-    settings.photons = 100'000;
-    settings.importons = 200'000;
-    settings.brightness_samples = 200'000;
-    const Picture picture = render(*scene, settings, {}).picture;
-    const Image& image = picture.layers.at("beauty");
-    constexpr int block = 8;
-    for (int y = 0; y < image.height; y += block) {
-        for (int x = 0; x < image.width; x += block) {
-            double sum = 0;
-            for (int i = 0; i < block * block; ++i) sum += image.at(x + i % block, y + i / block)[1];
-            EXPECT_NEAR(sum / (block * block), 1 / (1 - rho), 0.03 / (1 - rho)) << "block at " << x << ", " << y;
-        }
-    }
+struct FurnaceCase {
+    const char* name;
+    std::unique_ptr<Scene> (*make)();
+    bool caustics;
+};
+
+void PrintTo(const FurnaceCase& c, std::ostream* out) { *out << c.name; }
+
+const FurnaceCase kFurnaces[] = {
+    {"Diffuse", [] { return test::furnace(kRho); }, false},
+    {"WithoutLoss", [] { return test::furnace(kRho, true); }, true}, // a mirror and a glass ball that swallow nothing
+};
+
+struct MethodCase {
+    const char* method;
+    int runs = 8;
+    bool photons = false; ///< then indirect light is looked at alone where there is no caustic: direct light hides it
+};
+
+void PrintTo(const MethodCase& c, std::ostream* out) { *out << c.method; }
+
+Settings settings(const std::string& method) {
+    Settings s;
+    s.method = &method_named(method);
+    s.spp = s.method->samples_pixels ? 4 : 1;
+    s.gather_rays = 1;
+    s.mutations = method == "mlt" || method == "pssmlt" ? 20'000 : 40'000;
+    s.chains = 100;
+    s.light_paths = 20'000;
+    s.photons = 10'000;
+    s.importons = 20'000;
+    s.brightness_samples = 10'000;
+    return s;
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, Furnace_HasItsClosedForm, testing::Values("mps", "path"),
-                         [](const auto& info) { return std::string(info.param); });
+class Furnace_HasItsClosedForm : public testing::TestWithParam<std::tuple<MethodCase, FurnaceCase>> {};
+
+TEST_P(Furnace_HasItsClosedForm, InEveryBlock) {
+    const auto& [method, furnace] = GetParam();
+    const auto scene = furnace.make();
+
+    const bool indirect = method.photons && !furnace.caustics;
+    const double expected = 1 / (1 - kRho) - (indirect ? 1 + kRho : 0);
+    const test::Blocks blocks =
+        test::render_blocks(*scene, settings(method.method), method.runs, indirect ? "indirect" : "beauty");
+    const auto n = static_cast<int>(blocks.size());
+    double largest = 0;
+    for (int b = 0; b < n; ++b) {
+        const RunningStats& block = blocks[static_cast<std::size_t>(b)];
+        EXPECT_TRUE(test::has_mean(block, expected, n)) << "block " << b;
+        largest = std::max(largest, block.standard_error() / expected);
+    }
+    const double bound = test::most_errors(n, method.runs) * largest;
+    fmt::print("{} {}: bound {:.4f}\n", method.method, furnace.name, bound);
+    EXPECT_LT(bound, 0.08) << "power off by a tenth would go unnoticed";
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, Furnace_HasItsClosedForm,
+                         testing::Combine(testing::Values(MethodCase{"path"}, MethodCase{"bdpt"}, MethodCase{"mlt"},
+                                                          MethodCase{"pssmlt"}, MethodCase{"mmlt", 16},
+                                                          MethodCase{"rjmlt", 16}, MethodCase{"mps", 16, true},
+                                                          MethodCase{"ipm", 8, true}, MethodCase{"pm", 8, true},
+                                                          MethodCase{"pss", 8, true}, MethodCase{"auto", 6}),
+                                          testing::ValuesIn(kFurnaces)),
+                         [](const auto& info) {
+                             return fmt::format("{}_{}", std::get<0>(info.param).method, std::get<1>(info.param).name);
+                         });
 
 } // namespace
 } // namespace keyhole

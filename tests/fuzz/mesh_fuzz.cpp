@@ -2,7 +2,7 @@
 // the format.
 // build-fuzz/tests/mesh_fuzz CORPUS tests/data/meshes
 #include "junk_file.h"
-#include "scene/load/mesh_import.h"
+#include "scene/load/load_mesh.h"
 
 #include <array>
 

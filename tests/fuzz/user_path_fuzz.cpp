@@ -2,7 +2,7 @@
 // can read again from what is written.
 // build-fuzz/tests/user_path_fuzz CORPUS userpaths
 #include "junk_file.h"
-#include "scene/load/user_path_file.h"
+#include "scene/load/yaml/user_path_file.h"
 
 #include <cstdlib>
 

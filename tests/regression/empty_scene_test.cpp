@@ -1,8 +1,7 @@
 // Scenes without geometry are pictures of their environment, by every method.
 #include "core/error.h"
-#include "render/render.h"
-#include "scene/emitters/environment.h"
-#include "scene/emitters/point.h"
+#include "methods/render.h"
+#include "scene/emitters/emitters.h"
 #include "scene/load/load.h"
 #include "support/scratch_directory.h"
 #include "support/test_scenes.h"
@@ -24,7 +23,7 @@ TEST_P(EmptyScene_ShowsItsEnvironment, Everywhere) {
         m.camera({far, 1, 2}, {far, 1, 0}, 40).window(16, 12);
         const auto scene = m.build();
         Settings s;
-        s.method = GetParam();
+        s.method = &method_named(GetParam());
         s.spp = 4;
         s.brightness_samples = 5000;
         s.importons = 5000;

@@ -1,9 +1,9 @@
 // Scenes where methods fail: every method is right there, or says that it isn't. docs/failures.md has the matrix.
 #include "core/error.h"
 #include "core/statistics.h"
-#include "render/render.h"
+#include "methods/render.h"
 #include "scene/load/load.h"
-#include "scene/load/user_path_file.h"
+#include "scene/load/yaml/user_path_file.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

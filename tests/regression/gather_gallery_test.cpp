@@ -1,6 +1,6 @@
 // The classic artefacts of photon maps and irradiance caches, each a tiny scene with a number that must stay small.
-#include "render/render.h"
-#include "scene/emitters/point.h"
+#include "methods/method.h"
+#include "scene/emitters/emitters.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 Settings small_settings() {
     Settings s;
-    s.method = "ipm"; // `auto` may take a method without a gather
+    s.method = &methods::ipm; // `auto` may take a method without a gather
     s.spp = 8;
     s.brightness_samples = 50'000;
     s.importons = 50'000;
@@ -159,7 +159,7 @@ TEST(Gallery, GatherRaysThatHardlyFindLightSaySo) {
         m.camera({0.3f, 1, -0.8f}, {2, 1, 0.3f}, 60).window(24, 16);
         const auto scene = m.build();
         Settings settings = small_settings();
-        settings.reach = "off";
+        settings.gather_coverage = false;
         settings.light_paths = 100'000;
         return warns(*scene, settings, "so few gather rays find light");
     };
@@ -203,7 +203,7 @@ class CausticEdges : public testing::TestWithParam<const char*> {
 TEST_P(CausticEdges, AreSharpAndNeitherDarkNorBright) {
     const auto scene = make();
     Settings settings = small_settings();
-    settings.method = GetParam();
+    settings.method = &method_named(GetParam());
     settings.light_paths = 2'000'000;
     settings.mutations = 2'000'000;
     settings.photons = 200'000;

@@ -3,7 +3,7 @@
 // its own.
 #include "cli/program.h"
 #include "core/settings.h"
-#include "film/exr.h"
+#include "film/files/exr.h"
 #include "support/mutation.h"
 #include "support/scratch_directory.h"
 

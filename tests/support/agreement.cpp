@@ -1,6 +1,7 @@
 #include "support/agreement.h"
 
-#include "render/render.h"
+#include "methods/render.h"
+#include "support/chance.h"
 
 #include <fmt/format.h>
 
@@ -12,31 +13,9 @@ namespace keyhole::test {
 namespace {
 
 constexpr int kBlock = 16;
-
-/// Regularised incomplete beta function I_x(a, b) by its continued fraction (Lentz).
-double incomplete_beta(double a, double b, double x) {
-    if (x <= 0) return 0;
-    if (x >= 1) return 1;
-    if (x > (a + 1) / (a + b + 2)) return 1 - incomplete_beta(b, a, 1 - x);
-    const double front =
-        std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x)) / a;
-    double f = 1, c = 1, d = 0;
-    for (int i = 0; i <= 300; ++i) {
-        const int m = i / 2;
-        double numerator = 1;
-        if (i > 0 && i % 2 == 0) numerator = m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m));
-        if (i % 2 == 1) numerator = -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1));
-        d = 1 / (1 + numerator * d);
-        c = 1 + numerator / c;
-        f *= c * d;
-        if (std::abs(1 - c * d) < 1e-12) break;
-    }
-    return front * (f - 1);
-}
+constexpr double kNoisy = 0.25;
 
 } // namespace
-
-double student_p_value(double t, double dof) { return incomplete_beta(dof / 2, 0.5, dof / (dof + t * t)); }
 
 int blocks_across(int pixels) { return (pixels + kBlock - 1) / kBlock; }
 
@@ -69,7 +48,7 @@ Blocks render_blocks(Scene& scene, Settings settings, int runs, const std::strin
 Disagreement compare(const Blocks& a, const Blocks& b, double tolerance) {
     Disagreement d;
     std::vector<double> p(a.size());
-    double sum_a = 0, sum_b = 0;
+    double sum_a = 0, sum_b = 0, quiet_a = 0, quiet_b = 0;
     for (std::size_t i = 0; i < a.size(); ++i) {
         const double va = a[i].variance() / static_cast<double>(a[i].count());
         const double vb = b[i].variance() / static_cast<double>(b[i].count());
@@ -80,11 +59,17 @@ Disagreement compare(const Blocks& a, const Blocks& b, double tolerance) {
             (va * va / static_cast<double>(a[i].count() - 1) + vb * vb / static_cast<double>(b[i].count() - 1));
         p[i] = va + vb > 0 ? student_p_value(excess / std::sqrt(va + vb), dof) : (excess > 0 ? 0.0 : 1.0);
         d.worst = std::max(d.worst, reference > 0 ? difference / reference : 0.0);
-        d.largest_error = std::max(d.largest_error, reference > 0 ? std::sqrt(va) / reference : 0.0);
+        const double error = reference > 0 ? std::sqrt(va) / reference : 0.0;
+        d.largest_error = std::max(d.largest_error, error);
+        const bool noisy = error > kNoisy;
+        d.noisy += noisy ? 1 : 0;
+        quiet_a += noisy ? 0 : a[i].mean();
+        quiet_b += noisy ? 0 : reference;
         sum_a += a[i].mean();
         sum_b += b[i].mean();
     }
     d.ratio = sum_a / sum_b;
+    d.quiet_ratio = quiet_a / quiet_b;
     std::vector<std::size_t> order(a.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return p[i] < p[j]; });

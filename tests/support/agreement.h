@@ -4,7 +4,7 @@
 #include "core/settings.h"
 #include "core/statistics.h"
 #include "film/picture.h"
-#include "scene/load/user_path_file.h"
+#include "scene/load/yaml/user_path_file.h"
 #include "scene/scene.h"
 
 #include <string>
@@ -30,14 +30,13 @@ struct Disagreement {
     double worst = 0;         ///< largest relative difference of a block
     double largest_error = 0; ///< largest relative standard error of a block of the first picture
     double ratio = 1;         ///< of mean brightness
+    int noisy = 0;            ///< blocks of the first picture with a relative standard error above a quarter
+    double quiet_ratio = 1;   ///< of mean brightness in the others
     std::string report;       ///< blocks that were rejected
 };
 
 /// Tests each block of `a` against `b` for a difference beyond `tolerance` times b (Welch's t-test, Holm's correction
 /// at a family-wise level of 1 %).
 Disagreement compare(const Blocks& a, const Blocks& b, double tolerance);
-
-/// Two-sided p-value of a t-distributed statistic.
-double student_p_value(double t, double degrees_of_freedom);
 
 } // namespace keyhole::test

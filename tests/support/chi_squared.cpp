@@ -96,8 +96,6 @@ double Histogram::p_value(double pool) const {
     return cells < 2 ? 1.0 : chi_squared_p_value(statistic, cells - 1);
 }
 
-double sidak_threshold(int tests, double significance) { return 1 - std::pow(1 - significance, 1.0 / tests); }
-
 Histogram direction_histogram(const DirectionSampler& sample, const DirectionDensity& density, std::uint64_t stream,
                               const SphereTest& test) {
     const auto cells = static_cast<std::size_t>(test.cosines * test.angles);

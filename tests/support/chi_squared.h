@@ -3,6 +3,7 @@
 
 #include "core/rng.h"
 #include "core/vec.h"
+#include "support/chance.h"
 
 #include <functional>
 #include <optional>
@@ -22,10 +23,6 @@ struct Histogram {
     /// nothing but holds samples gives 0.
     double p_value(double pool = 5) const;
 };
-
-/// Threshold for the p-value of one of `tests` tests, that all of them together reject the truth with probability
-/// `significance` (Sidak 1967).
-double sidak_threshold(int tests, double significance = 0.01);
 
 /// Draws a direction; none where the routine drew nothing.
 using DirectionSampler = std::function<std::optional<Vec3>(SampleSource&)>;

@@ -1,6 +1,7 @@
 #include "support/invariance.h"
 
 #include "core/parallel.h"
+#include "support/chance.h"
 
 #include <fmt/format.h>
 
@@ -9,18 +10,18 @@
 namespace keyhole::test {
 namespace {
 
-constexpr std::size_t kStatistics = 15;
+constexpr int kStatistics = 15;
 constexpr std::array<const char*, kStatistics> kNames{
     "vertices", "specular", "image left", "image top", "image diagonal", "light x",     "light next z", "stored x",
     "stored y", "stored z", "d1 x",       "d1 z",      "caustic",        "transmitted", "redness"};
 
-std::array<double, kStatistics> statistics(const PathSet& set, const Path& path) {
+std::array<double, kStatistics> statistics(const Path& path) {
     double specular = 0, transmitted = 0;
     for (const Vertex& v : path.x) {
         specular += v.specular() ? 1 : 0;
         transmitted += v.event == Event::transmit ? 1 : 0;
     }
-    const StoragePoint storage = set.storage_point(path);
+    const StoragePoint& storage = path.storage;
     const Vec3 s = path.x[static_cast<std::size_t>(storage.vertex)].point.p;
     const Vec3 d1 = path.x[static_cast<std::size_t>(nth_finite_from_eye(path, 1))].point.p;
     const double y = luminance(path.contribution);
@@ -49,21 +50,20 @@ struct Sink {
     Ledger ledger{};
     std::uint64_t paths = 0;
 
-    void arrival(const Vertex&, const Vec3&, const Rgb&, int) {}
-
     void contribution(const Rgb& value, PhotonKind, auto&& make_path) {
         const double weight = luminance(value);
         if (!(weight > 0)) return;
         Path x = make_path();
+        set.find_storage(x);
         x.target = luminance(x.contribution);
         if (!(x.target > 0)) return;
         ++paths;
-        const auto before = statistics(set, x);
+        const auto before = statistics(x);
         std::array<double, kStatistics> step{}; // expected values after it, less those before
         for (std::size_t k = 0; k < kStatistics; ++k) step[k] = -before[k];
         Chain<Path> chain(x, mixture, Rng(rng.below(1u << 31), StreamPurpose::test, rng.below(1u << 31)));
         chain.step([&](const Path& p, double w) {
-            const auto after = statistics(set, p);
+            const auto after = statistics(p);
             for (std::size_t k = 0; k < kStatistics; ++k) step[k] += w * after[k];
         });
         // What a step can't change, such as the place of a point light, comes back rounded.
@@ -87,7 +87,7 @@ Invariance measure_invariance(const Scene& scene, const Mixture<Path>& mixture, 
             Rng rng(seed, StreamPurpose::test, static_cast<std::uint64_t>(i));
             Sink sink{mixture, set, Rng(seed + 1, StreamPurpose::test, static_cast<std::uint64_t>(i))};
             const Vec2 image(static_cast<float>(rng.next()), static_cast<float>(rng.next()));
-            trace_independent(technique, scene, image, max_scatterings, set, rng, sink);
+            trace_independent(technique, scene, image, {max_scatterings, set}, rng, sink);
             for (std::size_t k = 0; k < kStatistics; ++k) part.lines[k].change.add(sink.change[k]);
             merge(part.ledger, sink.ledger);
             part.paths += sink.paths;
@@ -107,6 +107,8 @@ double Invariance::worst() const {
     for (const Line& l : lines) z = std::max(z, std::abs(l.z()));
     return z;
 }
+
+double Invariance::bound() { return most_errors(kStatistics); }
 
 std::string Invariance::report() const {
     std::string s = fmt::format("{} paths\n", paths);

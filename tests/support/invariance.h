@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/statistics.h"
-#include "sampling/chain.h"
-#include "sampling/independent_paths.h"
+#include "sampling/markov/chain.h"
+#include "sampling/paths/independent_paths.h"
 #include "sampling/proposals/registry.h"
 #include "scene/scene.h"
 
@@ -23,7 +23,9 @@ struct Invariance {
     Ledger ledger;
     std::uint64_t paths = 0;
 
+    /// Largest z of the lines, and what chance may make of it.
     double worst() const;
+    static double bound();
     std::string report() const;
 };
 

@@ -1,7 +1,7 @@
 // Scenes of pbrt's format for tests, from strings.
 #pragma once
 
-#include "scene/pbrt/load_pbrt.h"
+#include "scene/load/load_pbrt.h"
 #include "support/scratch_directory.h"
 
 #include <string>

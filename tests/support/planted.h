@@ -1,7 +1,7 @@
 // Proposals with a mistake in their densities, to see that the tests would notice.
 #pragma once
 
-#include "sampling/path.h"
+#include "sampling/paths/path.h"
 #include "sampling/proposals/edit.h"
 #include "sampling/proposals/registry.h"
 

@@ -1,9 +1,6 @@
 #include "support/test_scenes.h"
 
-#include "scene/emitters/distant.h"
-#include "scene/emitters/environment.h"
-#include "scene/emitters/point.h"
-#include "scene/emitters/spot.h"
+#include "scene/emitters/emitters.h"
 
 namespace keyhole::test {
 
@@ -170,9 +167,11 @@ std::unique_ptr<Scene> glass_wall_box() {
     return m.build();
 }
 
-std::unique_ptr<Scene> furnace(double rho) {
+std::unique_ptr<Scene> furnace(double rho, bool specular) {
     SceneMaker m;
     m.room({-1, -1, -1}, {1, 1, 1}, make_diffuse(Rgb(rho)), Rgb(1.0));
+    if (specular)
+        m.sphere({-0.5f, 0.1f, -0.5f}, 0.35f, make_mirror(Rgb(1.0))).sphere({0.4f, 0, 0}, 0.35f, make_glass(1.5));
     m.camera({0, 0, 0.9f}, {0, 0, -1}, 60).window(32, 32);
     return m.build();
 }

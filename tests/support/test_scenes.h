@@ -47,8 +47,9 @@ std::unique_ptr<Scene> invisible_lamp_box();
 /// diffuse_box() with a pane of glass across it, between its light at the rear and the eye.
 std::unique_ptr<Scene> glass_wall_box();
 
-/// Closed box of albedo `rho` whose walls all emit 1 W/(m^2 sr): radiance is 1 / (1 - rho) everywhere.
-std::unique_ptr<Scene> furnace(double rho);
+/// Closed box of albedo `rho` whose walls all emit 1 W/(m^2 sr): radiance is 1 / (1 - rho) everywhere. `specular`: with
+/// a mirror ball and a glass ball that swallow nothing, and so change nothing.
+std::unique_ptr<Scene> furnace(double rho, bool specular = false);
 
 /// Two diffuse rooms joined by a slit of the given width [m]; the light is in the far one. `thin`: what parts them is a
 /// plane, in which an opening lies as well.

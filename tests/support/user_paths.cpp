@@ -1,7 +1,7 @@
 #include "support/user_paths.h"
 
-#include "sampling/light_ray.h"
-#include "sampling/nearest_emitter.h"
+#include "sampling/guidance/light_ray.h"
+#include "sampling/guidance/nearest_emitter.h"
 #include "support/test_scenes.h"
 
 namespace keyhole::test {

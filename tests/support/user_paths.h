@@ -1,7 +1,7 @@
 // User paths for the scenes that tests share.
 #pragma once
 
-#include "sampling/user_paths.h"
+#include "sampling/guidance/user_paths.h"
 
 #include <memory>
 #include <span>

@@ -1,5 +1,5 @@
-// Joints of sub-paths against the paths that they stand for, measured vertex by vertex.
-#include "sampling/bidirectional_tracer.h"
+// Connections of sub-paths against the paths that they stand for, measured vertex by vertex.
+#include "sampling/paths/bidirectional_tracer.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -30,27 +30,27 @@ double expected_weight(const Path& path, int s, MisHeuristic heuristic) {
     return 1 / sum;
 }
 
-/// Joints that were compared, and those that differ by more than single precision can explain: directions at joints
-/// follow from positions.
+/// Connections that were compared, and those that differ by more than single precision can explain: directions at
+/// connections follow from positions.
 struct Tally {
-    int joints = 0, wrong = 0, wrong_class = 0, wrong_ratios = 0, undecided = 0;
+    int connections = 0, wrong = 0, wrong_class = 0, wrong_ratios = 0, undecided = 0;
 };
 
-void compare(const Joint& as_made, const TracedSubPath& eye, Tally& tally) {
+void compare(const Connection& as_made, const TracedSubPath& eye, Tally& tally) {
     const Path path = as_made.path();
     if (light_class(path) != as_made.light_class()) ++tally.wrong_class;
     const double own = technique_density(path, as_made.s());
     if (!(own > 0) || eye.vertices.empty()) return;
     for (const auto heuristic : {MisHeuristic::balance, MisHeuristic::power, MisHeuristic::maximum}) {
-        Joint joint = as_made;
-        const double value = luminance(joint.value(heuristic)), free = luminance(path.contribution) / own;
-        const double expected = free * expected_weight(path, joint.s(), heuristic);
+        Connection connection = as_made;
+        const double value = luminance(connection.value(heuristic)), free = luminance(path.contribution) / own;
+        const double expected = free * expected_weight(path, connection.s(), heuristic);
         for (int k = 0; k < path.vertices(); ++k) {
-            const double ratio = technique_density(path, k) / own, told = joint.density_ratio(k);
+            const double ratio = technique_density(path, k) / own, told = connection.density_ratio(k);
             if (value > 0 && std::abs(told - ratio) > 1e-3 * std::max(told, ratio)) ++tally.wrong_ratios;
         }
         const bool borderline = heuristic == MisHeuristic::maximum && (value > 0) != (expected > 0);
-        ++tally.joints;
+        ++tally.connections;
         if (borderline) ++tally.undecided;
         if (!borderline && std::abs(value - expected) > 1e-3 * std::max(value, expected) + 1e-9) ++tally.wrong;
     }
@@ -58,7 +58,7 @@ void compare(const Joint& as_made, const TracedSubPath& eye, Tally& tally) {
 
 using MakeScene = std::function<std::unique_ptr<Scene>()>;
 
-TEST(Joint, CarriesWhatItsPathMeasures) {
+TEST(Connection, CarriesWhatItsPathMeasures) {
     for (const MakeScene& make : {MakeScene(test::diffuse_box), MakeScene([] { return test::mirror_glass_box(0.05f); }),
                                   MakeScene(test::point_light_box), MakeScene(test::hazy_box), MakeScene(test::sky_box),
                                   MakeScene(test::spot_scene)}) {
@@ -72,15 +72,15 @@ TEST(Joint, CarriesWhatItsPathMeasures) {
             trace_light_subpath(*scene, 6, rng, nullptr, light);
             for (int t = 1; t <= eye.size(); ++t)
                 for (int s = t == 1 ? 1 : 0; s <= light.size(); ++s) {
-                    const Joint joint(*scene, light, s, eye, t, image);
-                    if (joint.possible() && joint.visible()) compare(joint, eye, tally);
+                    const Connection connection(*scene, light, s, eye, t, image);
+                    if (connection.possible() && connection.visible()) compare(connection, eye, tally);
                 }
         }
-        EXPECT_GT(tally.joints, 1000);
+        EXPECT_GT(tally.connections, 1000);
         EXPECT_EQ(tally.wrong_class, 0);
-        EXPECT_LE(tally.wrong, tally.joints / 500);
-        EXPECT_LE(tally.wrong_ratios, tally.joints / 250);
-        EXPECT_LE(tally.undecided, tally.joints / 500);
+        EXPECT_LE(tally.wrong, tally.connections / 500);
+        EXPECT_LE(tally.wrong_ratios, tally.connections / 250);
+        EXPECT_LE(tally.undecided, tally.connections / 500);
     }
 }
 

@@ -1,4 +1,4 @@
-#include "render/chain_report.h"
+#include "methods/chain_report.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The program from outside: time budgets, the picture so far, plans, charts that go on where they stopped.
-#include "film/exr.h"
+#include "film/files/exr.h"
 #include "support/program.h"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
 // Long renders, from outside: killed and gone on with, done in shares, and not to be trusted.
-#include "film/exr.h"
+#include "film/files/exr.h"
 #include "support/program.h"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
 // keyhole-mpi: any number of processes makes the picture that one makes.
-#include "film/exr.h"
+#include "film/files/exr.h"
 #include "support/program.h"
 
 #include <gmock/gmock.h>

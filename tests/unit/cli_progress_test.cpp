@@ -1,7 +1,7 @@
 // What the command line prints: progress, numbers, statistics.
-#include "cli/stats_json.h"
-#include "cli/terminal_progress.h"
-#include "cli/units.h"
+#include "cli/progress/terminal_progress.h"
+#include "cli/words/stats_json.h"
+#include "cli/words/units.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -122,11 +122,12 @@ TEST(Units, HaveThreeDigits) {
 
 TEST(StatsJson, HoldsEveryFigure) {
     RenderStats s;
-    s.stages = {{"gather", 1.5, 3.0, 42}};
+    s.stages = {{&stages::gather, 1.5, 3.0, 42}};
     s.proposals = {{"lens", 10, 1, 2, 3, 4, {{"blocked", 0}}, 0.5}};
     s.brightness = NAN;
     s.warnings = {"careful"};
     s.values["chains"] = 7;
+    s.agreement = {1.25, 0.5};
     s.complete = false;
     const auto json = nlohmann::json::parse(stats_json(s).dump());
     EXPECT_EQ(json["stages"][0]["rays"], 42);
@@ -135,5 +136,6 @@ TEST(StatsJson, HoldsEveryFigure) {
     EXPECT_TRUE(json["brightness"].is_null());
     EXPECT_EQ(json["warnings"][0], "careful");
     EXPECT_EQ(json["values"]["chains"], 7);
+    EXPECT_EQ(json["values"]["chains, agreement (split R-hat)"], 1.25);
     EXPECT_EQ(json["complete"], false);
 }

@@ -1,9 +1,9 @@
-// Spots of light that chains make, and scouts don't confirm.
+// Spots of light that chains make, and pilot photons don't confirm.
 #include "photonmap/confirmation.h"
 
 #include "gather/final_gather.h"
+#include "methods/photons/photon_report.h"
 #include "photon_support.h"
-#include "render/photon_report.h"
 #include "support/test_scenes.h"
 
 #include <gmock/gmock.h>
@@ -17,16 +17,16 @@ const SurfaceRegion kRegion{Vec3(0.5f, 0.5f, 0), Vec3(0, 0, 1)};
 constexpr float kRadius = 0.4f;
 const Rectangle kSpot{{0.3f, 0.3f, 0}, {0.02f, 0, 0}, {0, 0.02f, 0}};
 
-/// Spread evenly over the unit square, three carriers for a scout.
+/// Spread evenly over the unit square, three main photons for a pilot photon.
 PhotonSet even(Rng& rng) {
     PhotonSet set;
-    throw_photons(kUnitSquare, 40, rng, set.scouts);
-    throw_photons(kUnitSquare, 120, rng, set.carriers);
+    throw_photons(kUnitSquare, 40, rng, set.pilots);
+    throw_photons(kUnitSquare, 120, rng, set.main_photons);
     return set;
 }
 
 double share(PhotonSet set) {
-    return unconfirmed_share(ScoutedMap(std::move(set)), kRegion, kRadius,
+    return unconfirmed_share(PilotedMap(std::move(set)), kRegion, kRadius,
                              [](const Photon& p) { return luminance(p.power()); });
 }
 
@@ -40,22 +40,22 @@ TEST(UnconfirmedShare, IsZeroWhereLightIsSpread) {
 TEST(UnconfirmedShare, FindsOnePhotonAmongMany) {
     Rng rng = make_rng(1);
     PhotonSet set = even(rng);
-    throw_photons(kSpot, 1, rng, set.carriers, Rgb(200.0));
+    throw_photons(kSpot, 1, rng, set.main_photons, Rgb(200.0));
     EXPECT_GT(share(set), 0.6);
 }
 
 TEST(UnconfirmedShare, FindsTheManyOfOneChain) {
     Rng rng = make_rng(2);
     PhotonSet set = even(rng);
-    throw_photons(kSpot, 200, rng, set.carriers);
+    throw_photons(kSpot, 200, rng, set.main_photons);
     EXPECT_GT(share(set), 0.6);
 }
 
-TEST(UnconfirmedShare, IsZeroForACausticThatScoutsFindToo) {
+TEST(UnconfirmedShare, IsZeroForACausticThatPilotsFindToo) {
     Rng rng = make_rng(3);
     PhotonSet set = even(rng);
-    throw_photons(kSpot, 200, rng, set.carriers);
-    throw_photons(kSpot, 67, rng, set.scouts);
+    throw_photons(kSpot, 200, rng, set.main_photons);
+    throw_photons(kSpot, 67, rng, set.pilots);
     EXPECT_EQ(share(set), 0);
 }
 
@@ -65,16 +65,16 @@ std::vector<std::string> warnings(int spots, std::int64_t passes) {
     const Rectangle floor{{-1, 0, 3}, {2, 0, 0}, {0, 0, -4}};
     Rng rng = make_rng(4);
     PhotonSet set;
-    throw_photons(floor, 20'000, rng, set.scouts);
-    if (spots == 0) throw_photons(floor, 60'000, rng, set.carriers, Rgb(1e-3));
-    for (int i = 0; i < spots; ++i) throw_photons(floor, 1, rng, set.carriers, Rgb(60.0 / spots));
-    const ScoutedMap map(std::move(set));
+    throw_photons(floor, 20'000, rng, set.pilots);
+    if (spots == 0) throw_photons(floor, 60'000, rng, set.main_photons, Rgb(1e-3));
+    for (int i = 0; i < spots; ++i) throw_photons(floor, 1, rng, set.main_photons, Rgb(60.0 / spots));
+    const PilotedMap map(std::move(set));
     const SurfacePatches patches(scene->shapes());
     const GatherRays rays(*scene, {.caustic = &map, .patches = &patches}, {.max_radius = 0.1f, .caustic_radius = 0.1f},
                           24);
     const FinalGather gather(rays, nullptr, {.light = 4, .rays = 1});
     RenderStats stats;
-    stats.photons_caustic = map.carriers().photons().size();
+    stats.photons_caustic = map.main_photons().photons().size();
     report_false_spots(gather, 1, stats);
     warn_of_photons(stats, passes);
     return stats.warnings;

@@ -1,7 +1,7 @@
 // What of a chain's stay becomes one photon.
 #include "photonmap/deposit.h"
 
-#include "sampling/path_tracer.h"
+#include "sampling/paths/path_tracer.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -16,8 +16,8 @@ struct LongPath {
 
     bool arrival(const EyeWalk& /*walk*/, const Rgb& /*throughput*/, int /*finite*/) { return true; }
     void contribution(const EyeWalk& walk, const Vertex& x0, const Rgb& /*value*/, LightClass /*light*/) {
-        const Path path = complete_path(scene, walk, x0, {0.5f, 0.5f});
-        const StoragePoint at = PathSet::stored.storage_point(path);
+        Path path = complete_path(scene, walk, x0, {0.5f, 0.5f});
+        const StoragePoint at = PathSet::stored.find_storage(path);
         if (at.kind == PhotonKind::global && at.vertex >= 2) found = path;
     }
 };
@@ -36,13 +36,14 @@ class Deposit : public testing::Test {
         options.rule = PowerRule::reciprocal;
         options.scene = scene.get();
         options.set = PathSet::stored;
-        PathDepositor depositor(options, Rng(2, StreamPurpose::test, 1));
+        MapBuffers buffers;
+        PathDepositor depositor(options, Rng(2, StreamPurpose::test, 1), buffers);
         for (int i = 0; i < 3; ++i) {
             depositor.deposit(a, 1);
             depositor.deposit(b, 2);
         }
         depositor.flush();
-        return depositor.buffers().global;
+        return buffers.global;
     }
 
     std::unique_ptr<Scene> scene;

@@ -1,8 +1,5 @@
 // The light tree's choice: probabilities that add up, are those of the samples, and follow the effect.
-#include "scene/emitters/distant.h"
-#include "scene/emitters/environment.h"
-#include "scene/emitters/point.h"
-#include "scene/emitters/spot.h"
+#include "scene/emitters/emitters.h"
 #include "scene/light_tree.h"
 #include "support/chi_squared.h"
 #include "support/test_scenes.h"

@@ -17,7 +17,7 @@ TEST(FailureStudy, ReproducesThePublishedErrors) { // their table 2
     EXPECT_NEAR(published(0.6, Failures::exclude).rmse, 0.00773, 0.05 * 0.00773);
 }
 
-TEST(FailureStudy, SecondTriesBeatLeavingOut) {
+TEST(FailureStudy, DelayedRejectionBeatsLeavingOut) {
     for (const double failure : {0.4, 0.6})
         EXPECT_LT(published(failure, Failures::delay).rmse, 0.95 * published(failure, Failures::exclude).rmse);
 }

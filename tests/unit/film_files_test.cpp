@@ -1,8 +1,8 @@
 // Pictures on disk: EXR, PNG, and what happens when the disk does not play along.
 #include "core/error.h"
-#include "film/atomic_file.h"
-#include "film/exr.h"
-#include "film/png.h"
+#include "film/files/atomic_file.h"
+#include "film/files/exr.h"
+#include "film/files/png.h"
 #include "film/tonemap.h"
 #include "support/scratch_directory.h"
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kBins = 16;
 
-PixelFilter make(const std::string& kind, double radius = 0, double sigma = 0) {
+PixelFilter make(FilterShape kind, double radius = 0, double sigma = 0) {
     Settings settings;
     settings.filter = kind;
     settings.filter_radius = radius;
@@ -35,9 +35,11 @@ double bin_mass(const PixelFilter& filter, int bx, int by) {
 
 class EveryFilter : public testing::TestWithParam<int> {
   protected:
-    PixelFilter filter = std::array{
-        make("gaussian"), make("gaussian", 1.5, 0.5), make("box"),
-        make("box", 2),   make("triangle"),           make("triangle", 2.5)}[static_cast<std::size_t>(GetParam())];
+    PixelFilter
+        filter = std::array{make(FilterShape::gaussian), make(FilterShape::gaussian, 1.5, 0.5),
+                            make(FilterShape::box),      make(FilterShape::box, 2),
+                            make(FilterShape::triangle), make(FilterShape::triangle, 2.5)}[static_cast<std::size_t>(
+            GetParam())];
 };
 
 } // namespace
@@ -101,12 +103,16 @@ TEST_P(EveryFilter, OffsetInvertsTheDistributionFunction) {
 INSTANTIATE_TEST_SUITE_P(Kinds, EveryFilter, testing::Range(0, 6));
 
 TEST(PixelFilter, HasTheShapeOfItsKind) {
-    EXPECT_NEAR(make("gaussian").density({0.5f, 0}) / make("gaussian").density({0, 0}), std::exp(-0.125), 1e-6);
-    EXPECT_NEAR(make("gaussian").density({1, 1}) / make("gaussian").density({0, 0}), std::exp(-1.0), 1e-6);
-    EXPECT_NEAR(make("gaussian", 1.5, 0.5).density({1, 0}) / make("gaussian", 1.5, 0.5).density({0, 0}), std::exp(-2.0),
+    EXPECT_NEAR(make(FilterShape::gaussian).density({0.5f, 0}) / make(FilterShape::gaussian).density({0, 0}),
+                std::exp(-0.125), 1e-6);
+    EXPECT_NEAR(make(FilterShape::gaussian).density({1, 1}) / make(FilterShape::gaussian).density({0, 0}),
+                std::exp(-1.0), 1e-6);
+    EXPECT_NEAR(make(FilterShape::gaussian, 1.5, 0.5).density({1, 0}) /
+                    make(FilterShape::gaussian, 1.5, 0.5).density({0, 0}),
+                std::exp(-2.0), 1e-6);
+    EXPECT_NEAR(make(FilterShape::triangle, 2).density({1, 0}) / make(FilterShape::triangle, 2).density({0, 0}), 0.5,
                 1e-6);
-    EXPECT_NEAR(make("triangle", 2).density({1, 0}) / make("triangle", 2).density({0, 0}), 0.5, 1e-6);
-    EXPECT_NEAR(make("box").density({0.4f, -0.3f}), 1, 1e-6);
+    EXPECT_NEAR(make(FilterShape::box).density({0.4f, -0.3f}), 1, 1e-6);
 }
 
 /// A splat's weights over all pixels average to 1 over the film: splatting neither makes nor loses light.

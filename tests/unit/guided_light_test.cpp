@@ -2,7 +2,8 @@
 #include "core/parallel.h"
 #include "core/statistics.h"
 #include "sampling/brightness.h"
-#include "sampling/guided_light.h"
+#include "sampling/guidance/guided_light.h"
+#include "support/chance.h"
 #include "support/test_scenes.h"
 #include "support/user_paths.h"
 
@@ -18,11 +19,6 @@ class AlongUserPaths : public testing::TestWithParam<std::size_t> {
     std::unique_ptr<Scene> scene = test::guided_scenes()[GetParam()].make();
     UserPaths paths = bind_user_paths(*scene, test::guided_scenes()[GetParam()].paths(*scene));
 };
-
-/// What two estimates of one number differ by, in standard errors.
-double z(const RunningStats& a, const RunningStats& b) {
-    return (a.mean() - b.mean()) / std::hypot(a.standard_error(), b.standard_error());
-}
 
 constexpr int kDepth = 8;
 constexpr std::size_t kParts = 16; // of the scene, along its diagonal; twice: before and after a specular vertex
@@ -64,7 +60,7 @@ TEST_P(AlongUserPaths, LightArrivesWithThePowerThatItHasWithoutThem) {
     });
     for (std::size_t k = 0; k < free.size(); ++k) {
         if (!(free[k].mean() > 20 * free[k].standard_error())) continue; // too little light to say
-        EXPECT_LT(std::abs(z(free[k], guided[k])), 4.5)
+        EXPECT_TRUE(test::same_mean(free[k], guided[k], 2 * kParts))
             << "part " << k << ", ratio " << guided[k].mean() / free[k].mean();
         ++led;
     }
@@ -78,10 +74,10 @@ TEST_P(AlongUserPaths, StageOneFindsTheSameBrightness) {
     settings.seed = 4;
     settings.guides = &guides;
     const StageOne with = run_stage_one(*scene, settings, {});
-    EXPECT_LT(std::abs(z(with.brightness, without.brightness)), 4)
+    EXPECT_TRUE(test::same_mean(with.brightness, without.brightness, 2))
         << with.brightness.mean() / without.brightness.mean();
     if (without.caustic.mean() > 20 * without.caustic.standard_error()) {
-        EXPECT_LT(std::abs(z(with.caustic, without.caustic)), 4) << with.caustic.mean() / without.caustic.mean();
+        EXPECT_TRUE(test::same_mean(with.caustic, without.caustic, 2)) << with.caustic.mean() / without.caustic.mean();
     }
 }
 
@@ -100,7 +96,7 @@ TEST(ShortPaths, HaveTheBrightnessThatTheyHaveWithoutUserPaths) {
         settings.seed = 4;
         settings.guides = &guides;
         const StageOne with = run_stage_one(*scene, settings, {});
-        EXPECT_LT(std::abs(z(with.brightness, without.brightness)), 4)
+        EXPECT_TRUE(test::same_mean(with.brightness, without.brightness, 2))
             << "depth " << depth << ": " << with.brightness.mean() / without.brightness.mean();
     }
 }
@@ -116,7 +112,7 @@ TEST(ThroughASlit, UserPathsFindLightThatIsHardToFind) {
     settings.guides = &guides;
     const StageOne with = run_stage_one(*scene, settings, {});
     EXPECT_LT(with.brightness.standard_error(), 0.5 * without.brightness.standard_error());
-    EXPECT_LT(std::abs(z(with.brightness, without.brightness)), 4);
+    EXPECT_TRUE(test::same_mean(with.brightness, without.brightness, 2));
 
     const auto beyond = [&](auto&& trace_one) {
         RunningStats power;
@@ -139,7 +135,7 @@ TEST(ThroughASlit, UserPathsFindLightThatIsHardToFind) {
     const RunningStats led =
         beyond([&](Rng& rng, auto& sink) { trace_guided_light_path(*scene, light, kDepth, rng, sink); });
     EXPECT_LT(led.standard_error(), 0.5 * free.standard_error());
-    EXPECT_LT(std::abs(z(led, free)), 4);
+    EXPECT_TRUE(test::same_mean(led, free, 2));
 }
 
 /// Light that creeps along the wall into the door's corners carries no more than other light.

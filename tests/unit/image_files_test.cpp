@@ -11,7 +11,7 @@
 namespace keyhole {
 namespace {
 
-void expect_same(const Image& a, const Image& b) {
+void expect_same(const TextureImage& a, const TextureImage& b) {
     EXPECT_EQ(a.width, b.width);
     EXPECT_EQ(a.height, b.height);
     EXPECT_EQ(a.channels, b.channels);
@@ -65,7 +65,7 @@ TEST(ImageFiles, TruncatedTgaIsAnError) {
 
 TEST(ImageFiles, JpegIsReadAsOpenImageIoDoes) {
     const std::string path = std::string(KEYHOLE_SOURCE_DIR) + "/tests/data/ramp.jpg";
-    const Image image = read_jpeg_image(path);
+    const TextureImage image = read_jpeg_image(path);
     EXPECT_EQ(image.width, 40);
     expect_same(image, read_other_image(path));
 }

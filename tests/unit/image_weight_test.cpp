@@ -1,8 +1,8 @@
 // Weights of pixels: dark parts of a picture count as much as bright ones.
-#include "sampling/image_weight.h"
+#include "sampling/paths/image_weight.h"
 
 #include "core/statistics.h"
-#include "sampling/path_tracer.h"
+#include "sampling/paths/path_tracer.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>

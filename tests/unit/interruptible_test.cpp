@@ -1,7 +1,7 @@
 // Stages that end when it is time, and renders that are stopped before they have a picture.
-#include "core/interruptible.h"
-#include "render/first_look.h"
-#include "render/methods.h"
+#include "core/shared_work.h"
+#include "methods/choice/first_look.h"
+#include "methods/method.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ class StoppedAtOnce : public testing::TestWithParam<const char*> {};
 TEST_P(StoppedAtOnce, RendersLeaveALook) {
     const auto scene = test::mirror_glass_box();
     Settings s;
-    s.method = GetParam();
+    s.method = &method_named(GetParam());
     StopToken stop;
     stop.request();
     RunContext context;

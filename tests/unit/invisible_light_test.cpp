@@ -1,8 +1,8 @@
 // Area lights of opacity 0: no ray meets them, and light sampling finds what they would send if they were seen.
 #include "core/statistics.h"
-#include "photonmap/surface_patches.h"
-#include "sampling/direct_light.h"
-#include "sampling/measure.h"
+#include "photonmap/surface/surface_patches.h"
+#include "sampling/paths/direct_light.h"
+#include "sampling/paths/measure.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>

@@ -166,7 +166,7 @@ IrradianceRecord peak_record(float x) {
     return r;
 }
 
-TEST(IrradianceCache, GetsFinerWhereGradientsForetellWrongly) {
+TEST(IrradianceCache, GetsFinerWhereGradientsContradictEachOther) {
     IrradianceCache cache(0.3f);
     std::size_t flat = 0, curved = 0;
     for (const float step : {0.4f, 0.2f, 0.1f, 0.05f, 0.02f, 0.01f})

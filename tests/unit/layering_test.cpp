@@ -1,50 +1,34 @@
-// The house keeps its order: rooms include only what lies to their left, only the command line talks, files stay short,
-// and nothing depends on which thread runs it.
+// The architecture: layers and the folders of sampling include only what lies to their left, only the command line
+// talks, files stay short, and nothing depends on which thread runs it.
+#include "source_files.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
-#include <fstream>
 #include <regex>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace {
 
-using Strings = std::vector<std::string>;
-namespace fs = std::filesystem;
+using keyhole::source_test::all_sources;
+using keyhole::source_test::Source;
+using keyhole::source_test::Strings;
 
-constexpr std::array<std::string_view, 9> kRooms{"core", "scene",  "sampling", "photonmap", "gather",
-                                                 "film", "render", "cli",      "mpi"};
+constexpr std::array<std::string_view, 10> kLayers{"core", "scene",   "sampling", "photonmap", "gather",
+                                                   "film", "session", "methods",  "cli",       "mpi"};
+/// Folders of sampling: chains and their proposals know nothing of paths, paths nothing of who moves them. What lies in
+/// sampling itself stands beside proposals.
+constexpr std::array<std::string_view, 6> kSampling{"sampling/markov",    "sampling/paths", "sampling/guidance",
+                                                    "sampling/proposals", "sampling",       "sampling/primary"};
 constexpr std::size_t kMostLines = 400;
 
-/// A source file; `path` is relative to src.
-struct Source {
-    std::string path;
-    Strings lines;
-
-    std::string room() const { return path.substr(0, path.find('/')); }
-};
-
-std::ptrdiff_t rank(std::string_view room) { return std::ranges::find(kRooms, room) - kRooms.begin(); }
-bool is_room(std::string_view room) { return std::ranges::find(kRooms, room) != kRooms.end(); }
+std::ptrdiff_t rank(std::string_view layer) { return std::ranges::find(kLayers, layer) - kLayers.begin(); }
+bool is_layer(std::string_view layer) { return std::ranges::find(kLayers, layer) != kLayers.end(); }
 
 std::string without_comment(const std::string& line) { return line.substr(0, line.find("//")); }
-
-std::vector<Source> all_sources() {
-    const fs::path root = fs::path(KEYHOLE_SOURCE_DIR) / "src";
-    std::vector<Source> sources;
-    for (const auto& entry : fs::recursive_directory_iterator(root)) {
-        if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
-        Source& source = sources.emplace_back(Source{entry.path().lexically_relative(root).generic_string(), {}});
-        std::ifstream file(entry.path());
-        for (std::string line; std::getline(file, line);) source.lines.push_back(line);
-    }
-    return sources;
-}
 
 /// `path:line: text` of the lines that `is_wrong`.
 template <class IsWrong> Strings wrong_lines(const Source& source, IsWrong&& is_wrong) {
@@ -57,24 +41,50 @@ template <class IsWrong> Strings wrong_lines(const Source& source, IsWrong&& is_
     return found;
 }
 
-/// Includes of a room further right, and of files that are named other than from the root of src.
+/// Includes of a layer further right, and of files that are named other than from the root of src.
 Strings wrong_includes(const Source& source) {
     static const std::regex include("^\\s*#\\s*include\\s*\"(([^/\"]*)/)?([^\"]*)\"");
     return wrong_lines(source, [&](const std::string& line) {
         std::smatch m;
         if (!std::regex_search(line, m, include)) return false;
-        const std::string room = m[2];
-        if (!is_room(room)) return true;
-        return rank(room) > rank(source.room());
+        const std::string layer = m[2];
+        if (!is_layer(layer)) return true;
+        return rank(layer) > rank(source.layer());
     });
 }
+
+/// Includes in sampling of a folder further right.
+Strings wrong_folders(const Source& source) {
+    static const std::regex include("^#include \"(.*)/[^/]*\"");
+    const auto folder = std::ranges::find(kSampling, source.folder());
+    return wrong_lines(source, [&](const std::string& line) {
+        std::smatch m;
+        if (folder == kSampling.end() || !std::regex_search(line, m, include)) return false;
+        const auto other = std::ranges::find(kSampling, m[1].str());
+        return other != kSampling.end() && other > folder;
+    });
+}
+
+/// The files of `lines`, as wrong_lines() makes them, once each.
+Strings files_of(const Strings& lines) {
+    Strings files;
+    for (const std::string& line : lines) files.push_back(line.substr(0, line.find(':')));
+    std::ranges::sort(files);
+    files.erase(std::unique(files.begin(), files.end()), files.end());
+    return files;
+}
+
+/// Files that still look to the right. A list that only gets shorter.
+const Strings kBackwards{"sampling/guidance/guided_subpath.cpp", "sampling/guidance/guided_subpath.h",
+                         "sampling/guidance/suggest_paths.cpp",  "sampling/guidance/suggest_paths.h",
+                         "sampling/markov/chain_set.h",          "sampling/paths/bidirectional_connection.h"};
 
 /// Output and exits; only the command line does either, and the main() of the program with MPI.
 Strings wrong_talk(const Source& source) {
     static const std::regex talk(
         R"(\b(cout|cerr|clog)\b|\b(f?printf|puts|fputs|perror)\s*\(|\bfmt::print|)"
         R"(#\s*include\s*<(iostream|CLI/[^>]*)>|\b(exit|_Exit|quick_exit|abort|terminate)\s*\()");
-    if (source.room() == "cli" || source.path == "mpi/main.cpp") return {};
+    if (source.layer() == "cli" || source.path == "mpi/main.cpp") return {};
     return wrong_lines(source, [](const std::string& l) { return std::regex_search(without_comment(l), talk); });
 }
 
@@ -96,14 +106,19 @@ template <class Rule> Strings over_all(Rule&& rule) {
 
 TEST(Layering, IncludesPointToTheLeftOnly) { EXPECT_THAT(over_all(wrong_includes), testing::IsEmpty()); }
 
+TEST(Layering, FoldersOfSamplingPointToTheLeftOnly) {
+    const Strings wrong = over_all(wrong_folders);
+    EXPECT_EQ(files_of(wrong), kBackwards) << testing::PrintToString(wrong);
+}
+
 TEST(Layering, OnlyTheCommandLineTalksOrExits) { EXPECT_THAT(over_all(wrong_talk), testing::IsEmpty()); }
 
 TEST(Layering, NothingDependsOnThreadsOrChance) { EXPECT_THAT(over_all(wrong_randomness), testing::IsEmpty()); }
 
-TEST(Layering, EveryFileLiesInARoom) {
+TEST(Layering, EveryFileLiesInALayer) {
     const auto sources = all_sources();
     ASSERT_GT(sources.size(), 50u) << "sources not found under " KEYHOLE_SOURCE_DIR;
-    for (const Source& source : sources) EXPECT_TRUE(is_room(source.room())) << source.path;
+    for (const Source& source : sources) EXPECT_TRUE(is_layer(source.layer())) << source.path;
 }
 
 TEST(Layering, FilesStayShort) {
@@ -117,6 +132,8 @@ TEST(Layering, RulesCatchWhatTheyForbid) {
                         "std::random_device device;"}};
     EXPECT_EQ(wrong_includes(wrong).size(), 3u);
     EXPECT_EQ(wrong_talk(wrong).size(), 3u);
+    EXPECT_EQ(wrong_folders({"sampling/markov/a.h", {"#include \"sampling/paths/path.h\""}}).size(), 1u);
+    EXPECT_EQ(wrong_folders({"sampling/paths/a.h", {"#include \"sampling/markov/chain.h\""}}).size(), 0u);
     EXPECT_EQ(wrong_randomness(wrong).size(), 2u);
 }
 

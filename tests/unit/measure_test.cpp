@@ -1,5 +1,5 @@
 // The path tracer carries throughputs along; measure() takes a finished path apart. They must tell the same story.
-#include "sampling/path_tracer.h"
+#include "sampling/paths/path_tracer.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>

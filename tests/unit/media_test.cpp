@@ -1,9 +1,8 @@
 // Absorption, boundaries without a surface, and holes.
-#include "sampling/bidirectional_tracer.h"
-#include "sampling/direct_light.h"
-#include "sampling/light_tracer.h"
-#include "scene/emitters/distant.h"
-#include "scene/emitters/environment.h"
+#include "sampling/paths/bidirectional_tracer.h"
+#include "sampling/paths/direct_light.h"
+#include "sampling/paths/light_tracer.h"
+#include "scene/emitters/emitters.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Materials, textures, spectra, lights and media of pbrt's format: each becomes the model that docs/pbrt.md names.
 #include "core/error.h"
-#include "scene/pbrt/spectrum.h"
+#include "scene/load/pbrt/spectrum.h"
 #include "support/pbrt_scenes.h"
 
 #include <gmock/gmock.h>
@@ -206,8 +206,8 @@ TEST(PbrtLights, PointSpotDistantInfinite) {
     EXPECT_EQ(spot.emitter().radiance(at, {0, 0, -1}), Rgb(1.0));
     EXPECT_EQ(spot.emitter().radiance(at, {0, 0, 1}), Rgb(0.0));
     EXPECT_EQ(PbrtScene("LightSource \"distant\" " + kPbrtTriangle).scene.description.emitters.size(), 1u);
-    const PbrtScene two("LightSource \"infinite\" LightSource \"infinite\" \"rgb L\" [ 2 2 2 ] " + kPbrtTriangle);
-    EXPECT_EQ(two.scene.description.emitters.size(), 1u) << "a miss meets them all";
+    PbrtScene two("LightSource \"infinite\" LightSource \"infinite\" \"rgb L\" [ 2 2 2 ] " + kPbrtTriangle);
+    EXPECT_EQ(Scene(std::move(two.scene.description)).emitters().size(), 1u) << "a miss meets them all";
     EXPECT_TRUE(
         PbrtScene("LightSource \"point\" \"rgb I\" [ 0 0 0 ] " + kPbrtTriangle).scene.description.emitters.empty());
 }

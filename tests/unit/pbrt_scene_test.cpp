@@ -114,12 +114,12 @@ TEST(PbrtOptions, BecomeSettings) {
 TEST(PbrtOptions, FiltersKeepTheirKindAndReach) {
     const auto settings = [](const std::string& filter) { return PbrtScene(kTriangle, filter).scene.settings; };
     const Settings usual = settings("");
-    EXPECT_EQ(usual.filter, "gaussian");
+    EXPECT_EQ(usual.filter, FilterShape::gaussian);
     EXPECT_EQ(usual.filter_radius, 1.5);
     EXPECT_EQ(usual.filter_sigma, 0.5);
     EXPECT_EQ(settings("PixelFilter \"box\"").filter_radius, 0.5);
     const Settings wide = settings("PixelFilter \"triangle\" \"float xradius\" 3 \"float yradius\" 3");
-    EXPECT_EQ(wide.filter, "triangle");
+    EXPECT_EQ(wide.filter, FilterShape::triangle);
     EXPECT_EQ(wide.filter_radius, 3);
     EXPECT_EQ(settings("PixelFilter \"gaussian\" \"float alpha\" 2 \"float xwidth\" 2 \"float ywidth\" 2").filter_sigma,
               0.5)

@@ -1,6 +1,6 @@
 // Tokens, directives and blocks of pbrt's format, and the mistakes in them.
 #include "core/error.h"
-#include "scene/pbrt/directive.h"
+#include "scene/load/pbrt/syntax/directive.h"
 #include "support/pbrt_scenes.h"
 
 #include <gmock/gmock.h>

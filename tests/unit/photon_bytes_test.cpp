@@ -1,7 +1,7 @@
 // What a photon costs, by what the allocator gave away: itself and its index, and what is computed beforehand for it.
-#include "gather/sites.h"
+#include "gather/direct_irradiance_cache.h"
 #include "photonmap/emission.h"
-#include "photonmap/irradiance_map.h"
+#include "photonmap/irradiance/irradiance_map.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ double allocated() {
 
 class PhotonBytes : public testing::TestWithParam<std::size_t> {};
 
-TEST_P(PhotonBytes, AreAtMost32WithIndexIrradianceAndSites) {
+TEST_P(PhotonBytes, AreAtMost32WithIndexIrradianceAndDirectLight) {
 #ifdef KEYHOLE_FOREIGN_ALLOCATOR
     GTEST_SKIP() << "the sanitizer's allocator keeps no such account";
 #endif
@@ -38,23 +38,24 @@ TEST_P(PhotonBytes, AreAtMost32WithIndexIrradianceAndSites) {
     const auto stored = static_cast<double>(photons.global.size() + photons.caustic.size());
     EXPECT_GT(stored, 0.85 * static_cast<double>(n)) << "the test wants full stores";
     const double bytes_of_stores = static_cast<double>(photons.bytes);
-    const ScoutedMap global(std::move(photons.global)), caustic(std::move(photons.caustic));
+    const PilotedMap global(std::move(photons.global)), caustic(std::move(photons.caustic));
     const double with_index = (allocated() - before) / static_cast<double>(n);
     // Few photons in an estimate: what they cost is time.
-    const IrradianceMap irradiance(global.scouts(), global.carriers(),
+    const IrradianceMap irradiance(global.pilots(), global.main_photons(),
                                    {.k = 4, .max_radius = 0.02f, .patches = &patches, .scene = scene.get()}, {});
-    const Sites sites(*scene, irradiance.places(), {.direct_samples = 1}, {});
+    const DirectIrradianceCache direct(*scene, irradiance.places(), {.direct_samples = 1}, {});
     const double per_photon = (allocated() - before) / static_cast<double>(n);
     RecordProperty("bytes_per_photon_with_index", std::to_string(with_index));
     RecordProperty("bytes_per_photon", std::to_string(per_photon));
     RecordProperty("bytes_per_photon_stored", std::to_string(per_photon * static_cast<double>(n) / stored));
     RecordProperty("bytes_per_photon_in_stores", std::to_string(bytes_of_stores / static_cast<double>(n)));
-    std::cout << with_index << " bytes a photon with its index, " << per_photon << " with irradiance and sites\n";
+    std::cout << with_index << " bytes a photon with its index, " << per_photon
+              << " with irradiance, indirect and direct\n";
     EXPECT_LE(per_photon, 32 + 49152 / static_cast<double>(n)) << "32 each, and what a dozen blocks round up to";
     EXPECT_GT(with_index, 24) << "the allocator was asked, and not some other";
     EXPECT_LE(bytes_of_stores, 32 * static_cast<double>(n));
     // And by what the maps say of themselves, which the ceiling on memory goes by.
-    const double said = static_cast<double>(global.bytes() + caustic.bytes() + irradiance.bytes() + sites.bytes());
+    const double said = static_cast<double>(global.bytes() + caustic.bytes() + irradiance.bytes() + direct.bytes());
     EXPECT_NEAR(said / static_cast<double>(n), per_photon, 0.1 + 65536 / static_cast<double>(n));
 }
 

@@ -1,6 +1,6 @@
 // Saved photon maps: the same picture, or a refusal in words.
 #include "core/error.h"
-#include "render/render.h"
+#include "methods/method.h"
 #include "support/scratch_directory.h"
 #include "support/test_scenes.h"
 
@@ -17,7 +17,7 @@ using testing::HasSubstr;
 
 Settings small_settings() {
     Settings s;
-    s.method = "pm";
+    s.method = &methods::pm;
     s.spp = 1;
     s.light_paths = 5'000;
     return s;
@@ -41,7 +41,7 @@ class SavedMap : public testing::Test {
     }
     Settings loading() const {
         Settings s = small_settings();
-        s.method = "auto"; // not asked: the photons are there
+        s.method = &methods::automatic; // not asked: the photons are there
         s.load_map = file_;
         return s;
     }
@@ -80,8 +80,8 @@ TEST_F(SavedMap, IsRefusedForAnotherDepth) {
 
 TEST_F(SavedMap, IsRefusedForAnotherReach) {
     Settings s = loading();
-    s.plan = "all"; // also light beyond the reach of gather rays, which the map gathers
-    EXPECT_THAT(refusal(*scene_, s), HasSubstr("nothing beyond the reach of gather rays"));
+    s.plan = Plan::all; // also light outside the coverage of gather rays, which the map gathers
+    EXPECT_THAT(refusal(*scene_, s), HasSubstr("nothing outside the coverage of gather rays"));
 }
 
 TEST_F(SavedMap, IsRefusedWhereItIsNoWholeMap) {

@@ -1,5 +1,5 @@
 // The ceiling on the memory of photons holds, by what was allocated, and thins without bias.
-#include "render/render.h"
+#include "methods/render.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@ namespace {
 
 Settings settings_for(const char* method, std::int64_t memory) {
     Settings s;
-    s.method = method;
+    s.method = &method_named(method);
     s.photon_memory = memory;
     s.spp = 1;
     s.gather_rays = 1;
@@ -31,8 +31,8 @@ TEST_P(PhotonMemory_StaysUnderItsCeiling, AtEverySize) {
             EXPECT_LE(stats.photon_bytes, static_cast<std::uint64_t>(kib) * 1024);
             const auto photons = stats.photons_global + stats.photons_caustic;
             EXPECT_GT(photons, 1000u);
-            // Small budgets are used up: a photon, its index and its part of the sites take 30 bytes, and the
-            // importance map takes its share.
+            // Small budgets are used up: a photon, its index and its part of the direct irradiance take 30 bytes, and
+            // the importance map takes its share.
             if (kib == 256) {
                 EXPECT_GT(photons * 30, 256u * 1024 / 4);
             }

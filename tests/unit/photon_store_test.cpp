@@ -2,6 +2,7 @@
 
 #include "core/statistics.h"
 #include "photon_support.h"
+#include "support/chance.h"
 
 #include <gtest/gtest.h>
 
@@ -52,8 +53,7 @@ TEST(PhotonStore, KeepsTheExpectationOfEveryRegionUnderItsCeiling) {
             for (std::size_t i = 0; i < kRegions; ++i) power[i].add(sum[i]);
         }
         for (std::size_t i = 0; i < kRegions; ++i) {
-            EXPECT_LT(std::abs(power[i].mean() - expected[i] * scale), 4 * power[i].standard_error())
-                << "region " << i << ": " << power[i].mean() << " for " << expected[i] * scale;
+            EXPECT_TRUE(test::has_mean(power[i], expected[i] * scale, kRegions)) << "region " << i;
             EXPECT_LT(power[i].standard_error(), 0.1 * power[i].mean());
         }
     }

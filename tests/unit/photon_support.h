@@ -5,6 +5,7 @@
 #include "core/statistics.h"
 #include "photonmap/photon.h"
 #include "scene/shape.h"
+#include "support/chance.h"
 
 #include <gtest/gtest.h>
 
@@ -15,10 +16,9 @@ namespace keyhole::photon_test {
 
 inline Rng make_rng(std::uint64_t index) { return {1, StreamPurpose::test, index}; }
 
-/// The mean is within 4 standard errors, and these are below 2 % of it.
+/// The mean is right up to chance, and its standard error is below 2 % of it.
 inline void expect_mean(const RunningStats& stats, double expected) {
-    EXPECT_LT(std::abs(stats.mean() - expected), 4 * stats.standard_error())
-        << stats.mean() << " +- " << stats.standard_error() << ", expected " << expected;
+    EXPECT_TRUE(test::has_mean(stats, expected));
     EXPECT_LT(stats.standard_error(), 0.02 * std::abs(expected)) << "too noisy to mean anything";
 }
 

@@ -1,7 +1,7 @@
 // "Model no more than a scene needs": what is left out is left out, by the statistics, and nothing else is.
-#include "render/effort.h"
-#include "render/plan.h"
-#include "render/render.h"
+#include "methods/choice/effort.h"
+#include "methods/method.h"
+#include "methods/photons/plan.h"
 #include "support/test_scenes.h"
 
 #include <gmock/gmock.h>
@@ -17,7 +17,7 @@ namespace {
 
 Settings small_settings(const std::string& method) {
     Settings s;
-    s.method = method;
+    s.method = &method_named(method);
     s.spp = 1;
     s.gather_rays = 1;
     s.brightness_samples = 20'000;
@@ -31,7 +31,7 @@ Settings small_settings(const std::string& method) {
 RenderStats render_stats(Scene& scene, const Settings& settings) { return render(scene, settings, {}).stats; }
 
 bool has_stage(const RenderStats& stats, const std::string& name) {
-    return std::ranges::any_of(stats.stages, [&](const StageStats& s) { return s.name == name; });
+    return std::ranges::any_of(stats.stages, [&](const StageStats& s) { return s.stage->name == name; });
 }
 
 bool has_proposal(const RenderStats& stats, const std::string& part) {
@@ -93,7 +93,7 @@ TEST_P(PlanOfPhotons, LightThatTheEyeCannotSeeStopsEarlyAndSaysSo) {
 TEST_P(PlanOfPhotons, AskedForAllItLeavesOutNothing) {
     const auto scene = light_next_door();
     Settings settings = small_settings(GetParam());
-    settings.plan = "all";
+    settings.plan = Plan::all;
     const RenderStats stats = render_stats(*scene, settings);
     EXPECT_TRUE(has_stage(stats, std::string(GetParam()) == "mps" ? "brightness" : "photons"));
 }
@@ -121,7 +121,7 @@ TEST(Plan, SurveyKnowsWhichLightIsSeen) {
 
 TEST(Effort, GrowsEverythingButWhatIsGiven) {
     Settings s;
-    s.method = "ipm";
+    s.method = &methods::ipm;
     s.spp = 3;
     const Settings less = with_effort(s, 1, 320 * 240, {"spp"}), more = with_effort(s, 8, 320 * 240, {"spp"});
     EXPECT_EQ(less.spp, 3);
@@ -134,7 +134,7 @@ TEST(Effort, GrowsEverythingButWhatIsGiven) {
 
 TEST(Effort, SpreadsOverPassesWhatTheMemoryCannotHold) {
     Settings s;
-    s.method = "ipm";
+    s.method = &methods::ipm;
     s.photon_memory = 1 << 20;
     const Settings one = with_effort(s, 1, 320 * 240, {}), many = with_effort(s, 64, 320 * 240, {});
     EXPECT_GT(many.passes, one.passes);

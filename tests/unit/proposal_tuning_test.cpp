@@ -25,21 +25,24 @@ struct Tuning : testing::Test {
     }
     /// What all kinds that a diffuse scene has get together.
     static double sum(const Settings& s) {
-        return s.p_bidirectional + s.p_lens_subpath + s.p_lens_perturbation + s.p_photon_map;
+        return s.proposals[proposals::bidirectional.weight] + s.proposals[proposals::lens_subpath.weight] +
+               s.proposals[proposals::lens_perturbation.weight] + s.proposals[proposals::photon_map.weight];
     }
 };
 
 TEST_F(Tuning, SharesOutProbability) {
-    const Settings tuned = tuned_proposals(context, settings, {}, paths, 7);
+    const Settings tuned = tuned_proposals(context, settings, paths, 7);
     EXPECT_NEAR(sum(tuned), 1, 1e-9);
     // Small steps in the image move a chain least: that is their purpose.
-    EXPECT_LT(tuned.p_lens_perturbation, 0.8 * settings.p_lens_perturbation / sum(settings));
-    EXPECT_GT(tuned.p_lens_subpath, 1.5 * settings.p_lens_subpath / sum(settings));
+    EXPECT_LT(tuned.proposals[proposals::lens_perturbation.weight],
+              0.8 * settings.proposals[proposals::lens_perturbation.weight] / sum(settings));
+    EXPECT_GT(tuned.proposals[proposals::lens_subpath.weight],
+              1.5 * settings.proposals[proposals::lens_subpath.weight] / sum(settings));
 }
 
 TEST_F(Tuning, LeavesSettingsAloneThatItCannotJudge) {
     const auto unchanged = [&](const Settings& s, std::span<const Path> some) {
-        return sum(tuned_proposals(context, s, {}, some, 7)) == sum(s);
+        return sum(tuned_proposals(context, s, some, 7)) == sum(s);
     };
     EXPECT_TRUE(unchanged(settings, {}));
     settings.mutations = 1000;
@@ -50,12 +53,14 @@ TEST_F(Tuning, LeavesSettingsAloneThatItCannotJudge) {
 }
 
 TEST_F(Tuning, GivesNothingToKindsThatAreLeftOutAndLessToUselessOnes) {
-    settings.plan = "all"; // which has caustic perturbations where there are no caustics
-    settings.p_lens_subpath = 0;
-    const double given = sum(settings) + settings.p_caustic_perturbation + settings.p_multi_chain_perturbation;
-    const Settings tuned = tuned_proposals(context, settings, {}, paths, 7);
-    EXPECT_EQ(tuned.p_lens_subpath, 0);
-    EXPECT_DOUBLE_EQ(tuned.p_caustic_perturbation, 0.5 * settings.p_caustic_perturbation / given);
+    settings.plan = Plan::all; // which has caustic perturbations where there are no caustics
+    settings.proposals[proposals::lens_subpath.weight] = 0;
+    const double given = sum(settings) + settings.proposals[proposals::caustic_perturbation.weight] +
+                         settings.proposals[proposals::multi_chain_perturbation.weight];
+    const Settings tuned = tuned_proposals(context, settings, paths, 7);
+    EXPECT_EQ(tuned.proposals[proposals::lens_subpath.weight], 0);
+    EXPECT_DOUBLE_EQ(tuned.proposals[proposals::caustic_perturbation.weight],
+                     0.5 * settings.proposals[proposals::caustic_perturbation.weight] / given);
 }
 
 TEST_F(Tuning, FollowsUserPathsThatHelp) {
@@ -64,18 +69,19 @@ TEST_F(Tuning, FollowsUserPathsThatHelp) {
     const UserPaths along = test::bounces_through(*rooms, kSlit, kDepth - 1);
     const GuidedPaths guides(*rooms, along, PathSet::stored, kDepth);
     const Settings tuned =
-        tuned_proposals({rooms.get(), PathSet::stored, kDepth}, settings, along, drawn(*rooms, &guides), 7);
-    EXPECT_GT(tuned.p_guided_path, 0.3);
-    EXPECT_LT(tuned.p_user_path, 0.1 * tuned.p_guided_path);
+        tuned_proposals({rooms.get(), PathSet::stored, kDepth, &along}, settings, drawn(*rooms, &guides), 7);
+    EXPECT_GT(tuned.proposals[proposals::guided_path.weight], 0.3);
+    EXPECT_LT(tuned.proposals[proposals::user_path.weight], 0.1 * tuned.proposals[proposals::guided_path.weight]);
 }
 
 TEST_F(Tuning, IsTheSameOnAnyNumberOfThreads) {
     Settings alone, together;
-    with_threads(1, [&] { alone = tuned_proposals(context, settings, {}, paths, 7); });
-    with_threads(4, [&] { together = tuned_proposals(context, settings, {}, paths, 7); });
-    EXPECT_EQ(alone.p_bidirectional, together.p_bidirectional);
-    EXPECT_EQ(alone.p_lens_subpath, together.p_lens_subpath);
-    EXPECT_EQ(alone.p_lens_perturbation, together.p_lens_perturbation);
+    with_threads(1, [&] { alone = tuned_proposals(context, settings, paths, 7); });
+    with_threads(4, [&] { together = tuned_proposals(context, settings, paths, 7); });
+    EXPECT_EQ(alone.proposals[proposals::bidirectional.weight], together.proposals[proposals::bidirectional.weight]);
+    EXPECT_EQ(alone.proposals[proposals::lens_subpath.weight], together.proposals[proposals::lens_subpath.weight]);
+    EXPECT_EQ(alone.proposals[proposals::lens_perturbation.weight],
+              together.proposals[proposals::lens_perturbation.weight]);
 }
 
 } // namespace

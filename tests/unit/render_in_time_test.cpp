@@ -1,9 +1,10 @@
-// Renders that fill a time: what they foresee, and what they make of several pictures.
+// Renders that fill a time: what they predict, and what they make of several pictures.
 #include "core/error.h"
 #include "core/statistics.h"
-#include "film/blend.h"
-#include "render/render_in_time.h"
-#include "render/stage_work.h"
+#include "film/join.h"
+#include "methods/choice/experience.h"
+#include "methods/choice/render_in_time.h"
+#include "methods/method.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -21,20 +22,18 @@ double mean_luminance(const Picture& picture) {
 
 TEST(StageWork, IsInProportionToWhatAStageDoes) {
     Settings one, other;
-    one.method = other.method = "mps";
     other.spp = 3 * one.spp;
     other.mutations = 5 * one.mutations;
     other.light_paths = 7 * one.light_paths;
-    const auto ratio = [&](const char* stage) { return stage_work(stage, other, 100) / stage_work(stage, one, 100); };
-    EXPECT_DOUBLE_EQ(ratio("gather"), 3);
-    EXPECT_DOUBLE_EQ(ratio("photons"), 5) << "chains bring them";
-    EXPECT_DOUBLE_EQ(ratio("plan"), 1);
-    EXPECT_DOUBLE_EQ(stage_work("gather", one, 200) / stage_work("gather", one, 100), 2);
-    EXPECT_DOUBLE_EQ(stage_work("chains", one, 200) / stage_work("chains", one, 100), 1);
-    one.method = other.method = "ipm";
-    EXPECT_DOUBLE_EQ(ratio("photons"), 7) << "light paths bring them";
+    const auto ratio = [&](const Stage& stage) { return stage_work(stage, other, 100) / stage_work(stage, one, 100); };
+    EXPECT_DOUBLE_EQ(ratio(stages::gather), 3);
+    EXPECT_DOUBLE_EQ(ratio(stages::photons_of_chains), 5);
+    EXPECT_DOUBLE_EQ(ratio(stages::seeds), 1);
+    EXPECT_DOUBLE_EQ(stage_work(stages::gather, one, 200) / stage_work(stages::gather, one, 100), 2);
+    EXPECT_DOUBLE_EQ(stage_work(stages::chains, one, 200) / stage_work(stages::chains, one, 100), 1);
+    EXPECT_DOUBLE_EQ(ratio(stages::photons_of_light_paths), 7);
     other.passes = 2 * one.passes;
-    EXPECT_DOUBLE_EQ(ratio("photons"), 14);
+    EXPECT_DOUBLE_EQ(ratio(stages::photons_of_light_paths), 14);
 }
 
 TEST(Blend, IsTheWeightedMeanOfEveryLayer) {
@@ -57,10 +56,10 @@ TEST_P(RenderInTime, IsAsBrightAsTheScene) {
     const ImageWindow window = scene->camera().window();
     Settings s;
     s.spp = 128;
-    s.method = "path";
+    s.method = &methods::path;
     const double expected = mean_luminance(render(*scene, s, {}).picture);
     s = {};
-    s.method = GetParam();
+    s.method = &method_named(GetParam());
     StopToken stop;
     stop.set_cpu_limit(cpu_seconds() + 1);
     RunContext context;
@@ -71,7 +70,7 @@ TEST_P(RenderInTime, IsAsBrightAsTheScene) {
     EXPECT_EQ(result.picture.height, window.height);
     EXPECT_EQ(scene->camera().window().width, window.width);
     EXPECT_EQ(result.settings.seed, s.seed);
-    EXPECT_EQ(result.stats.stages.front().name, "trials");
+    EXPECT_EQ(result.stats.stages.front().stage, &stages::trials);
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, RenderInTime, testing::Values("auto", "mps", "mlt", "pssmlt"),

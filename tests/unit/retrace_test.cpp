@@ -27,7 +27,7 @@ std::optional<Path> path_below_the_ball(const Scene& scene, Rng& rng) {
     }
     Failure why{};
     const Vec3 w = Vec3(static_cast<float>(rng.next() - 0.5), 1, static_cast<float>(-rng.next())).normalized();
-    if (!retrace(scene, light, floor->point, w, like, 2, 4, why)) return std::nullopt;
+    if (!retrace_specular_chain(scene, light, floor->point, w, like, 2, 4, why)) return std::nullopt;
     eye.push_back(sample_eye(scene, rng));
     const auto path = join(scene, PathSet::all, light, eye, {0, 0}, why);
     return path && path->target > 0 ? path : std::nullopt;
@@ -35,7 +35,8 @@ std::optional<Path> path_below_the_ball(const Scene& scene, Rng& rng) {
 
 TEST(CausticPerturbation, TakesNoStepThatRoundingSwallows) {
     const auto scene = test::mirror_glass_box();
-    const PathProposal kind = make_caustic_perturbation({scene.get(), PathSet::all, 8});
+    const ProposalList made = proposals::caustic_perturbation.make({scene.get(), PathSet::all, 8});
+    const PathProposal& kind = made.front().proposal;
     Rng rng(3, StreamPurpose::test, 0);
     int proposed = 0, unchanged = 0;
     for (int k = 0; k < 200'000 && proposed < 20'000; ++k) {

@@ -1,5 +1,5 @@
 // One run shows all mistakes of a scene, each once, and none that only follow from others.
-#include "core/input_errors.h"
+#include "core/error.h"
 #include "scene/load/load.h"
 #include "support/program.h"
 

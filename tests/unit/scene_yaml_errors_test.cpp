@@ -1,6 +1,6 @@
 // Every mistake in a scene file is reported where it stands.
 #include "core/error.h"
-#include "scene/load/scene_yaml.h"
+#include "scene/load/load_yaml.h"
 #include "support/scratch_directory.h"
 
 #include <gtest/gtest.h>
@@ -237,9 +237,9 @@ std::vector<Mistake> mistakes() {
         in_section("render: {spp: @[4]}", "found a list of 1"),
         in_section(
             "render: {method: @mpss}",
-            "expected one of auto, mps, ipm, pm, pss, mlt, path, bdpt, pssmlt, mmlt, rjmlt; did you mean 'mps'?"),
-        in_section("render: {p_bidirectional: @1.5}", "expected a number from 0 to 1"),
-        in_section("render: {p_bidirectional: @nan}", "expected a number from 0 to 1"),
+            "expected one of auto, path, bdpt, ipm, mmlt, mps, mlt, pssmlt, rjmlt, pm, pss; did you mean 'mps'?"),
+        in_section("render: {bidirectional.weight: @1.5}", "expected a number from 0 to 1"),
+        in_section("render: {bidirectional.weight: @nan}", "expected a number from 0 to 1"),
     };
 }
 

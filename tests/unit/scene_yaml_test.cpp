@@ -1,7 +1,8 @@
 // What good scene files turn into.
 #include "core/error.h"
+#include "sampling/proposals/registry.h"
 #include "scene/geometry.h"
-#include "scene/load/scene_yaml.h"
+#include "scene/load/load_yaml.h"
 #include "support/scratch_directory.h"
 #include "support/signed_volume.h"
 
@@ -301,13 +302,13 @@ TEST_F(SceneYaml, MeshesWithoutAreaAreLeftOutAndNamed) {
 TEST_F(SceneYaml, OverridesFollowTheFileInTheirOrder) {
     const auto scene =
         load(kCamera + kMaterials + "shapes: [{type: box, material: white}]\nrender: {method: path, spp: 3}\n",
-             {"spp=4", "photons=100k", "mutations=2.5M", "importons=1e6", "spp=5", "p_lens_subpath=0.25"});
-    EXPECT_EQ(scene.settings.method, "path");
+             {"spp=4", "photons=100k", "mutations=2.5M", "importons=1e6", "spp=5", "lens_subpath.weight=0.25"});
+    EXPECT_EQ(scene.settings.method, &method_named("path"));
     EXPECT_EQ(scene.settings.spp, 5);
     EXPECT_EQ(scene.settings.photons, 100'000);
     EXPECT_EQ(scene.settings.mutations, 2'500'000);
     EXPECT_EQ(scene.settings.importons, 1'000'000);
-    EXPECT_EQ(scene.settings.p_lens_subpath, 0.25);
+    EXPECT_EQ(scene.settings.proposals[proposals::lens_subpath.weight], 0.25);
 }
 
 TEST(ApplyOverride, RefusesWhatIsNotASetting) {
@@ -329,8 +330,8 @@ TEST(ApplyOverride, RefusesWhatIsNotASetting) {
                              "SPP=4",
                              "method=",
                              "method=mp",
-                             "p_bidirectional=inf",
-                             "p_bidirectional=-0.1",
+                             "bidirectional.weight=inf",
+                             "bidirectional.weight=-0.1",
                              "photons=k",
                              "photons=1.0001k",
                              "seed=99999999999999999999"})
@@ -342,6 +343,38 @@ TEST(ApplyOverride, RefusesWhatIsNotASetting) {
     } catch (const InputError& e) {
         EXPECT_THAT(e.what(), testing::HasSubstr("unknown setting 'photns'"));
         EXPECT_THAT(e.what(), testing::HasSubstr("did you mean 'photons'?"));
+    }
+}
+
+TEST(SettingsText, OldNamesKeepWorkingWithAWarning) {
+    Settings settings;
+    std::vector<std::string> warnings;
+    apply_override(settings, "p_lens_subpath=0.5", &warnings);
+    EXPECT_EQ(settings.proposals[proposals::lens_subpath.weight], 0.5);
+    apply_override(settings, "reach=off", &warnings);
+    EXPECT_FALSE(settings.gather_coverage);
+    apply_override(settings, "reach=auto", &warnings);
+    EXPECT_TRUE(settings.gather_coverage);
+    ASSERT_EQ(warnings.size(), 3u);
+    EXPECT_EQ(warnings[0], "the setting 'p_lens_subpath' is called 'lens_subpath.weight' now");
+    EXPECT_EQ(warnings[1], "the setting 'reach' is called 'gather_coverage' now");
+    apply_override(settings, "lens_subpath.weight=0.25", &warnings);
+    EXPECT_EQ(warnings.size(), 3u);
+    EXPECT_THROW(apply_override(settings, "p_unheard_of=1"), InputError);
+}
+
+TEST(SettingsText, OffersEveryMethodAndEveryProposal) {
+    for (const Method* method : all_methods()) {
+        Settings settings;
+        apply_override(settings, "method=" + std::string(name_of(*method)));
+        EXPECT_EQ(settings.method, method);
+        EXPECT_EQ(&method_named(name_of(*method)), method);
+    }
+    for (const ProposalKind* kind : proposal_kinds()) {
+        Settings settings;
+        apply_override(settings, std::string(kind->weight.key) + "=0.75");
+        EXPECT_EQ(settings.proposals[kind->weight], 0.75);
+        EXPECT_EQ(Settings().proposals[kind->weight], kind->weight.usual);
     }
 }
 

@@ -1,5 +1,5 @@
 // The layers `albedo` and `normal` mean the same by every method.
-#include "render/render.h"
+#include "methods/render.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ Quarters quarters(const Image& image) {
 
 Picture picture_by(Scene& scene, const char* method) {
     Settings s;
-    s.method = method;
+    s.method = &method_named(method);
     s.spp = 64;
     s.max_depth = 8;
     s.brightness_samples = 2'000;

@@ -1,7 +1,7 @@
 // Density estimates beside walls that stand on a surface.
 #include "photon_support.h"
-#include "photonmap/irradiance_map.h"
-#include "photonmap/sight.h"
+#include "photonmap/irradiance/irradiance_map.h"
+#include "photonmap/surface/sight.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -74,9 +74,9 @@ TEST(Sight, TakesNoAnswerFromBeyondAWall) {
         throw_photons(before, rare, rng, photons);
         return PhotonMap(std::move(photons));
     };
-    const PhotonMap scouts = both(2000, 40), carriers = both(20'000, 400);
-    const IrradianceMap map(scouts, carriers, {.k = 20, .max_radius = 0.2f, .patches = &patches, .scene = scene.get()},
-                            {});
+    const PhotonMap pilots = both(2000, 40), main_photons = both(20'000, 400);
+    const IrradianceMap map(pilots, main_photons,
+                            {.k = 20, .max_radius = 0.2f, .patches = &patches, .scene = scene.get()}, {});
     for (float z = 0.1f; z < 0.95f; z += 0.1f) {
         const auto answer = map.irradiance({0.505f, 0, z}, kUp);
         EXPECT_TRUE(answer.known) << z;
@@ -91,18 +91,18 @@ TEST(Sight, TakesNoAnswerFromBeyondAWallCloseBy) {
     const SurfacePatches patches(*scene);
     Rng rng = make_rng(8);
     const Rectangle dim{{0.5f, 0, 0}, {0, 0, 1}, {0.5f, 0, 0}}, bright{{0, 0, 0}, {0, 0, 1}, {0.5f, 0, 0}};
-    std::vector<Photon> places = throw_photons(dim, 4000, rng), carriers = throw_photons(dim, 500, rng);
+    std::vector<Photon> places = throw_photons(dim, 4000, rng), main_photons = throw_photons(dim, 500, rng);
     throw_photons(bright, 4000, rng, places);
-    throw_photons(bright, 50'000, rng, carriers);
-    const PhotonMap scouts(std::move(places)), map_of_carriers(std::move(carriers));
-    const IrradianceMap map(scouts, map_of_carriers,
+    throw_photons(bright, 50'000, rng, main_photons);
+    const PhotonMap pilots(std::move(places)), map_of_main(std::move(main_photons));
+    const IrradianceMap map(pilots, map_of_main,
                             {.k = 1000, .max_radius = 0.2f, .patches = &patches, .scene = scene.get()}, {});
     int asked = 0, foreign = 0;
     for (float x = 0.5005f; x < 0.53f; x += 0.001f)
         for (float z = 0.11f; z < 0.9f; z += 0.02f) {
             const auto answer = map.irradiance({x, 0, z}, kUp);
             ++asked;
-            foreign += answer.known && scouts[answer.place].position().x < 0.5f ? 1 : 0;
+            foreign += answer.known && pilots[answer.place].position().x < 0.5f ? 1 : 0;
         }
     EXPECT_GT(asked, 1000);
     EXPECT_EQ(foreign, 0);

@@ -1,4 +1,4 @@
-#include "film/drawn_light.h"
+#include "film/splats.h"
 
 #include "core/parallel.h"
 #include "core/rng.h"
@@ -16,7 +16,7 @@ Picture blank(int width, int height) {
 
 /// Adds scale times the splats to a picture.
 void draw(const SplatFilm& splats, double scale, Picture& picture) {
-    DrawnLight light(picture.width, picture.height);
+    SplattedLight light(picture.width, picture.height);
     light.add(splats, scale);
     light.add_to(picture);
 }
@@ -45,7 +45,7 @@ TEST(Splats_OfUniformPoints, FillTheFilmEvenly) {
 
 // Splats read the filter from a table.
 TEST(Splat_Alone, IsSpreadByTheFilter) {
-    for (const char* kind : {"gaussian", "triangle", "box"})
+    for (const FilterShape kind : {FilterShape::gaussian, FilterShape::triangle, FilterShape::box})
         for (const double radius : {0.0, 2.3}) {
             Settings settings;
             settings.filter = kind;

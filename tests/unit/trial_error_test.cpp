@@ -1,5 +1,5 @@
 // What two short renders tell of the error of a method.
-#include "render/trial_error.h"
+#include "methods/choice/trial_error.h"
 
 #include "core/rng.h"
 

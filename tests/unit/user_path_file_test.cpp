@@ -1,6 +1,6 @@
 // Files of user paths: what is read, and that every mistake in one is a single clear error.
 #include "core/error.h"
-#include "sampling/user_paths.h"
+#include "sampling/guidance/user_paths.h"
 #include "support/scratch_directory.h"
 #include "support/test_scenes.h"
 #include "support/user_paths.h"

@@ -3,9 +3,9 @@
 #include "cli/chart/outputs.h"
 #include "cli/command.h"
 #include "cli/resolution.h"
-#include "cli/units.h"
+#include "cli/words/units.h"
+#include "core/bytes.h"
 #include "core/error.h"
-#include "core/hash.h"
 #include "sampling/scene_hash.h"
 #include "scene/load/load.h"
 

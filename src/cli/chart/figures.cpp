@@ -1,7 +1,7 @@
 // The figures of a chart, drawn by gnuplot.
 #include "cli/chart/outputs.h"
 #include "cli/chart/process.h"
-#include "film/atomic_file.h"
+#include "film/files/atomic_file.h"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 #include "cli/chart/outputs.h"
 #include "cli/chart/page_parts.h"
 #include "cli/chart/page_pictures.h"
-#include "film/atomic_file.h"
+#include "film/files/atomic_file.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,7 +1,7 @@
 #include "cli/chart/page_pictures.h"
 
+#include "film/files/png.h"
 #include "film/grey.h"
-#include "film/png.h"
 #include "film/tonemap.h"
 
 #include <algorithm>

@@ -2,8 +2,8 @@
 
 #include "cli/beauty.h"
 #include "core/error.h"
+#include "film/errors/image_error.h"
 #include "film/grey.h"
-#include "film/image_error.h"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 
 #include "cli/chart/process.h"
 #include "cli/command.h"
-#include "film/exr.h"
+#include "film/files/exr.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -1,6 +1,8 @@
 #include "cli/chart/runs.h"
 
 #include "core/error.h"
+#include "methods/method.h"
+#include "scene/load/yaml/settings_text.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -15,8 +17,9 @@ using Json = nlohmann::ordered_json;
 
 /// Whether the memory for photons matters to the method. `auto` would repeat what the method that it stands for shows.
 bool compares_memory(const std::string& method) {
-    const std::string name = method_settings(method).front();
-    return name == "method=mps" || name == "method=ipm" || name == "method=pm";
+    Settings settings;
+    apply_override(settings, method_settings(method).front());
+    return settings.method->keeps_photons && settings.method != &methods::automatic;
 }
 
 Json to_json(const std::string& key, const RunResult& r) {

@@ -1,6 +1,6 @@
 // The figures of a chart as CSV.
 #include "cli/chart/outputs.h"
-#include "film/atomic_file.h"
+#include "film/files/atomic_file.h"
 
 #include <fmt/format.h>
 
@@ -11,8 +11,8 @@ namespace keyhole {
 namespace {
 
 /// Nothing where there is no number.
-std::string number(double x) { return std::isfinite(x) ? fmt::format("{:.6g}", x) : ""; }
-std::string number(std::optional<double> x) { return x ? number(*x) : ""; }
+std::string number_text(double x) { return std::isfinite(x) ? fmt::format("{:.6g}", x) : ""; }
+std::string number_text(std::optional<double> x) { return x ? number_text(*x) : ""; }
 
 std::string points_csv(const std::vector<SceneChart>& charts) {
     std::string text = "scene,method,chosen,seconds,memory,repeats,cpu_seconds,error,lowest,highest,squared_error,"
@@ -20,9 +20,10 @@ std::string points_csv(const std::vector<SceneChart>& charts) {
     for (const SceneChart& chart : charts)
         for (const Point& p : chart.points)
             text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", chart.scene.name, p.method,
-                                p.chosen, p.seconds, p.memory, p.repeats, number(p.cpu_seconds), number(p.error()),
-                                number(p.low()), number(p.high()), number(p.squared.error), number(p.squared.bias),
-                                number(p.squared.variance), p.peak_bytes, p.photon_bytes, p.photons, p.passes);
+                                p.chosen, p.seconds, p.memory, p.repeats, number_text(p.cpu_seconds),
+                                number_text(p.error()), number_text(p.low()), number_text(p.high()),
+                                number_text(p.squared.error), number_text(p.squared.bias),
+                                number_text(p.squared.variance), p.peak_bytes, p.photon_bytes, p.photons, p.passes);
     return text;
 }
 
@@ -32,7 +33,7 @@ std::string runs_csv(const std::vector<SceneChart>& charts) {
         for (const Point& p : chart.points)
             for (std::size_t k = 0; k < p.squared.each.size(); ++k)
                 text += fmt::format("{},{},{},{},{},{}\n", chart.scene.name, p.method, p.seconds, p.memory, k + 1,
-                                    number(p.squared.each[k]));
+                                    number_text(p.squared.each[k]));
     return text;
 }
 
@@ -42,7 +43,7 @@ std::string stages_csv(const std::vector<SceneChart>& charts) {
         for (const Point& p : chart.points)
             for (const auto& [stage, seconds] : p.stages)
                 text += fmt::format("{},{},{},{},{},{}\n", chart.scene.name, p.method, p.seconds, p.memory, stage,
-                                    number(seconds));
+                                    number_text(seconds));
     return text;
 }
 
@@ -55,9 +56,9 @@ std::string methods_csv(const std::vector<SceneChart>& charts, const ChartOption
         for (const std::string& method : options.methods) {
             const auto points = chart.over_time(method);
             if (points.empty()) continue;
-            text += fmt::format("{},{},{},{}", chart.scene.name, method, number(slope(points)),
-                                number(points.back()->error()));
-            for (const double e : kErrors) text += fmt::format(",{}", number(time_to(points, e)));
+            text += fmt::format("{},{},{},{}", chart.scene.name, method, number_text(slope(points)),
+                                number_text(points.back()->error()));
+            for (const double e : kErrors) text += fmt::format(",{}", number_text(time_to(points, e)));
             text += "\n";
         }
     }

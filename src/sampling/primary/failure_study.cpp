@@ -29,8 +29,8 @@ class Line {
     }
 
     double propose(Step step) {
-        // A second try goes on from where the first one failed, unless that was a large step.
-        const double from = step == Step::second && !large_ ? y_ : x_;
+        // A delayed step goes on from where the first one failed, unless that was a large step.
+        const double from = step == Step::delayed && !large_ ? y_ : x_;
         large_ = step == Step::large;
         y_ = large_ ? kLowest + kWidth * kBins * rng_->next() : from + kDeviation * normal(*rng_);
         const bool fails = half() ? y_ < kMean : rng_->next() < study_->failure;
@@ -104,7 +104,7 @@ FailureStudyResult run_failure_study(const FailureStudy& study) {
             std::sqrt(bias2),
             std::sqrt(total - bias2),
             static_cast<double>(counts.small.failed + counts.large.failed) / proposals,
-            static_cast<double>(counts.small.accepted + counts.large.accepted + counts.second.accepted) / proposals,
+            static_cast<double>(counts.small.accepted + counts.large.accepted + counts.delayed.accepted) / proposals,
             static_cast<double>(counts.remedied()) / proposals};
 }
 

@@ -2,7 +2,7 @@
 // shows its limits.
 #pragma once
 
-#include "sampling/primary/failures.h"
+#include "sampling/primary/primary_kernel.h"
 
 #include <vector>
 
@@ -28,9 +28,9 @@ struct FailureStudyResult {
     double rmse = 0;            ///< root mean square error over bins and repeats
     double bias = 0;            ///< the part of it that is the same in all repeats; its noise is taken off
     double deviation = 0;       ///< the rest
-    double failure_rate = 0;    ///< failed first tries
+    double failure_rate = 0;    ///< failed proposals, delayed ones apart
     double acceptance_rate = 0; ///< accepted candidates, of all proposals
-    double remedied = 0;        ///< second tries that did not fail, of all proposals
+    double remedied = 0;        ///< delayed ones that did not fail, of all proposals
 };
 
 /// The paper gives neither its bins nor its step: small steps are normal of deviation 2, the target's own, and with

@@ -2,7 +2,7 @@
 // do, one of them is drawn uniformly (Bitterli, Jakob, Novak and Jarosz 2017, "probabilistic inverses").
 #pragma once
 
-#include "sampling/path.h"
+#include "sampling/paths/path.h"
 #include "scene/scene.h"
 
 #include <array>

@@ -1,4 +1,4 @@
-#include "sampling/path_tracer.h"
+#include "sampling/paths/path_tracer.h"
 #include "sampling/primary/path_builder.h"
 
 namespace keyhole {
@@ -44,11 +44,12 @@ bool trace_subpaths(const Scene& scene, const Vec2& image, int s, int t, Primary
     return is_whole(eye, t) && ((1 < s && s < t) || trace_light());
 }
 
-/// Adds what one joint carries, divided by the probability of having chosen it.
-void add_joint(Joint& joint, MisHeuristic heuristic, double probability, PathSample& sample) {
-    if (!joint.possible()) return;
-    const Rgb value = joint.value(heuristic);
-    if (luminance(value) > 0 && joint.visible()) sample.add(joint.image(), joint.light_class(), value / probability);
+/// Adds what one connection carries, divided by the probability of having chosen it.
+void add_connection(Connection& connection, MisHeuristic heuristic, double probability, PathSample& sample) {
+    if (!connection.possible()) return;
+    const Rgb value = connection.value(heuristic);
+    if (luminance(value) > 0 && connection.visible())
+        sample.add(connection.image(), connection.light_class(), value / probability);
 }
 
 /// Numbers of vertices have geometric distributions.
@@ -62,8 +63,8 @@ class EndpointBuilder final : public PathBuilder {
         const Vec2 image = window_point(sources.eye);
         SubPathPair& room = SubPathPair::scratch();
         if (!trace_subpaths(*c_.scene, image, s, t, sources, room)) return;
-        Joint joint(*c_.scene, room.light, s, room.eye, t, image);
-        add_joint(joint, c_.heuristic, probability(t - 1) * probability(s), sample);
+        Connection connection(*c_.scene, room.light, s, room.eye, t, image);
+        add_connection(connection, c_.heuristic, probability(t - 1) * probability(s), sample);
     }
 
   private:
@@ -80,16 +81,17 @@ class BidirectionalBuilder final : public PathBuilder {
 
     void build(PrimarySources sources, PathSample& sample) const override {
         const Vec2 image = window_point(sources.eye);
-        auto& [eye, light] = SubPathPair::scratch();
+        SubPathPair& pair = SubPathPair::scratch();
+        auto& [eye, light] = pair;
         trace_eye_subpath(*c_.scene, image, most_eye_vertices(c_.max_scatterings), sources.eye, &sources.eye, eye);
         trace_light_subpath(*c_.scene, most_light_vertices(c_.max_scatterings), sources.light, &sources.light, light);
         struct {
             PathSample& sample;
-            void contribution(const Joint& joint, const Rgb& value, LightClass kind) {
-                sample.add(joint.image(), kind, value);
+            void contribution(const Connection& connection, const Rgb& value, LightClass kind) {
+                sample.add(connection.image(), kind, value);
             }
         } sink{sample};
-        connect_subpaths(*c_.scene, light, eye, image, c_.max_scatterings, PathSet::all, c_.heuristic, sink);
+        connect_subpaths(*c_.scene, pair, image, {c_.max_scatterings, PathSet::all, c_.heuristic}, sink);
     }
 
   private:
@@ -101,8 +103,8 @@ class MultiplexedBuilder final : public PathBuilder {
     MultiplexedBuilder(const BuilderContext& c, int scatterings) : c_(c), scatterings_(scatterings) {}
 
     void build(PrimarySources sources, PathSample& sample) const override {
-        auto joint = multiplexed_joint(*c_.scene, scatterings_, sources, SubPathPair::scratch(sample.room()));
-        if (joint) add_joint(*joint, c_.heuristic, 1.0 / technique_count(scatterings_), sample);
+        auto connection = multiplexed_connection(*c_.scene, scatterings_, sources, SubPathPair::scratch(sample.room()));
+        if (connection) add_connection(*connection, c_.heuristic, 1.0 / technique_count(scatterings_), sample);
     }
 
   private:
@@ -112,12 +114,13 @@ class MultiplexedBuilder final : public PathBuilder {
 
 } // namespace
 
-std::optional<Joint> multiplexed_joint(const Scene& scene, int scatterings, PrimarySources sources, SubPathPair& room) {
+std::optional<Connection> multiplexed_connection(const Scene& scene, int scatterings, PrimarySources sources,
+                                                 SubPathPair& room) {
     const int s = chosen_technique(sources.choice.next(), scatterings);
     const int t = technique_count(scatterings) - s; // never 0: nothing meets the lens by chance
     const Vec2 image = window_point(sources.eye);
     if (!trace_subpaths(scene, image, s, t, sources, room)) return std::nullopt;
-    return Joint(scene, room.light, s, room.eye, t, image);
+    return Connection(scene, room.light, s, room.eye, t, image);
 }
 
 std::unique_ptr<PathBuilder> make_path_builder(const BuilderContext& context) {

@@ -1,8 +1,8 @@
 // Many chains in primary sample space, side by side.
 #pragma once
 
-#include "sampling/agreement.h"
-#include "sampling/primary/primary_kernel.h"
+#include "sampling/markov/convergence.h"
+#include "sampling/primary/primary_chain.h"
 #include "sampling/primary/primary_start.h"
 #include "sampling/primary/primary_state.h"
 
@@ -26,9 +26,10 @@ class PrimaryChains {
                   std::uint64_t group = 0);
 
     /// Advances every chain by `steps` steps, some of them after a change of technique where the stratum has that, not
-    /// counting proposals that are left out. Without a first stretch nothing is known of how many are: see
-    /// PrimaryKernel::failures.
-    void advance(const PrimaryKernel& kernel, std::int64_t steps, const RunContext& context, const Deposit& deposit);
+    /// counting proposals that are left out. Without a first batch nothing is known of how many are: see
+    /// PrimaryKernel::failures. Without `deposit` nothing is deposited.
+    void advance(const PrimaryKernel& kernel, std::int64_t steps, const RunContext& context,
+                 const Deposit& deposit = nullptr);
 
     std::int64_t size() const { return static_cast<std::int64_t>(chains_.size()); }
     /// Counted steps that each chain has made.
@@ -39,23 +40,25 @@ class PrimaryChains {
     /// Mean luminance over the window by independent samples and large steps, and its standard error.
     double brightness() const;
     double brightness_error() const;
-    /// How far groups of chains agree on the brightness of parts of the image; see AgreementMonitor.
-    std::optional<Agreement> agreement() const { return monitor_.agreement(); }
+    /// How far groups of chains agree on the brightness of parts of the image; see ConvergenceMonitor.
+    std::optional<ConvergenceDiagnostic> convergence() const { return monitor_.diagnostic(); }
     /// Candidates with a value that was not a number.
     std::uint64_t broken() const;
 
   private:
-    struct Chain {
-        Rng rng;
-        PrimaryState state;
+    struct Chain : PrimaryChain<PrimaryState> {
         const std::size_t stratum;
-        PrimaryCounts counts;
         ChangeCounts changes;
-        RunningStats large; ///< targets of large steps
 
-        Chain(const PathBuilder& builder, std::size_t of, Rng random) : rng(random), state(builder, rng), stratum(of) {}
+        Chain(const PathBuilder& builder, std::size_t of, const Rng& random)
+            : PrimaryChain(builder, random), stratum(of) {}
+        void begin_round() {
+            counts = {};
+            changes = {};
+            large = {};
+            state.set_path_kept(false);
+        }
     };
-    class Depositing;
     /// What a deposit is divided by.
     struct Weights {
         double brightness; ///< b
@@ -68,6 +71,8 @@ class PrimaryChains {
     };
     Estimate estimate(std::size_t stratum) const;
     Weights weights(std::size_t stratum, const PrimaryKernel& kernel) const;
+    template <class Space>
+    void make_steps(Chain& chain, const PrimaryKernel& kernel, std::int64_t steps, Space& space) const;
 
     const std::vector<PrimaryStratum>* strata_;
     bool mis_of_large_steps_;
@@ -76,7 +81,7 @@ class PrimaryChains {
     std::vector<RunningStats> large_;   ///< targets of large steps, by stratum
     std::vector<PrimaryCounts> counts_; ///< by stratum
     ChangeCounts changes_;
-    AgreementMonitor monitor_;
+    ConvergenceMonitor monitor_;
     std::int64_t steps_ = 0;
 };
 

@@ -1,17 +1,56 @@
-// The one place that accepts or rejects in primary sample space. Knows no rendering.
+// Steps of chains whose proposals are symmetric and may fail, and what became of them. Knows no rendering.
 #pragma once
 
+#include "core/choices.h"
 #include "core/rng.h"
-#include "sampling/primary/failures.h"
+#include "sampling/markov/acceptance.h"
 #include "sampling/primary/primary_vector.h"
 
+#include <cstdint>
+
 namespace keyhole {
+
+/// What became of the steps of one size.
+struct StepCounts {
+    std::uint64_t proposed = 0, failed = 0, accepted = 0;
+    double acceptance = 0; ///< sum of acceptance probabilities
+
+    StepCounts& operator+=(const StepCounts& o) {
+        proposed += o.proposed;
+        failed += o.failed;
+        accepted += o.accepted;
+        acceptance += o.acceptance;
+        return *this;
+    }
+    double share(double n) const { return proposed > 0 ? n / static_cast<double>(proposed) : 0.0; }
+    double mean_acceptance() const { return share(acceptance); }
+    double failure_rate() const { return share(static_cast<double>(failed)); }
+};
+
+/// The ledger of a chain in primary sample space.
+struct PrimaryCounts {
+    StepCounts small, large, delayed; ///< first proposals by size; those of delayed rejection
+    std::uint64_t left_out = 0;       ///< failed proposals that the chain does not count as steps
+
+    PrimaryCounts& operator+=(const PrimaryCounts& o) {
+        small += o.small;
+        large += o.large;
+        delayed += o.delayed;
+        left_out += o.left_out;
+        return *this;
+    }
+    std::uint64_t proposals() const { return small.proposed + large.proposed; }
+    /// Steps that count towards the mean.
+    std::uint64_t steps() const { return proposals() - left_out; }
+    /// Failed proposals after which a delayed one made a path.
+    std::uint64_t remedied() const { return delayed.proposed - delayed.failed; }
+};
 
 /// A Metropolis chain whose proposals are symmetric, over a `Space` with
 ///     double propose(Step);   // makes a candidate and returns its target; 0: it failed
 ///     double target() const;  // of the state; positive
 ///     void accept();          // the candidate becomes the state
-/// where Step::second, after a failed candidate y, makes z with q1(x->y) q2(x,y->z) = q1(z->y) q2(z,y->x): both
+/// where Step::delayed, after a failed candidate y, makes z with q1(x->y) q2(x,y->z) = q1(z->y) q2(z,y->x): both
 /// densities then leave the acceptance of a delayed rejection (Tierney and Mira 1999, eq. 3), and min(1, f(z) / f(x))
 /// stays.
 struct PrimaryKernel {
@@ -37,13 +76,13 @@ struct PrimaryKernel {
             return false;
         }
         if (failures == Failures::delay) {
-            ++counts.second.proposed;
-            const double z = space.propose(Step::second);
+            ++counts.delayed.proposed;
+            const double z = space.propose(Step::delayed);
             if (z > 0) {
-                decide(space, z, false, rng, counts.second, deposit);
+                decide(space, z, false, rng, counts.delayed, deposit);
                 return true;
             }
-            ++counts.second.failed;
+            ++counts.delayed.failed;
         }
         deposit(false, 1.0, false);
         return true;
@@ -52,12 +91,10 @@ struct PrimaryKernel {
   private:
     template <class Space, class Deposit>
     static void decide(Space& space, double target, bool large, Rng& rng, StepCounts& counts, Deposit&& deposit) {
-        const double ratio = target / space.target();
-        const double a = ratio >= 1 ? 1.0 : ratio > 0 ? ratio : 0.0;
+        const double a = acceptance(target / space.target());
         counts.acceptance += a;
-        if (a < 1) deposit(false, 1 - a, false);
-        deposit(true, a, large);
-        if (rng.next() >= a) return;
+        if (!deposit_and_accept(a, rng, [&](bool candidate, double w) { deposit(candidate, w, candidate && large); }))
+            return;
         ++counts.accepted;
         space.accept();
     }

@@ -1,7 +1,7 @@
 #include "sampling/primary/primary_start.h"
 
-#include "core/leading_blocks.h"
-#include "sampling/resampling.h"
+#include "core/shared_work.h"
+#include "sampling/paths/resampling.h"
 
 #include <algorithm>
 #include <cmath>
@@ -91,17 +91,18 @@ PrimaryStart PrimaryStart::by_length(const BuilderContext& builders, const Emitt
     const int most = builders.max_scatterings;
     const auto sample = [&](std::int64_t i, PrimaryRandom& random, std::vector<Find>& found) {
         const Vec2 image = window_point(random.eye);
-        auto& [eye, light] = SubPathPair::scratch();
+        SubPathPair& pair = SubPathPair::scratch();
+        auto& [eye, light] = pair;
         trace_eye_subpath(scene, image, most_eye_vertices(most), random.eye, &random.choice, eye);
         trace_light_subpath(scene, most_light_vertices(most), random.light, &random.choice, light);
         struct {
             std::int64_t i;
             std::vector<Find>& found;
-            void contribution(const Joint& joint, const Rgb& value, LightClass) {
-                found.push_back({i, joint.s() + joint.t() - 2, joint.s(), luminance(value)});
+            void contribution(const Connection& connection, const Rgb& value, LightClass) {
+                found.push_back({i, connection.s() + connection.t() - 2, connection.s(), luminance(value)});
             }
         } sink{i, found};
-        connect_subpaths(scene, light, eye, image, most, PathSet::all, builders.heuristic, sink);
+        connect_subpaths(scene, pair, image, {most, PathSet::all, builders.heuristic}, sink);
     };
     PrimaryStart start(options.seed);
     Block all = run_samples(static_cast<std::size_t>(most) + 1, options, context, sample);

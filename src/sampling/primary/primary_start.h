@@ -3,7 +3,7 @@
 
 #include "core/progress.h"
 #include "core/statistics.h"
-#include "sampling/primary/technique_change.h"
+#include "sampling/primary/reversible_jump.h"
 
 #include <vector>
 
@@ -20,9 +20,9 @@ struct PrimarySeed {
 struct PrimaryStratum {
     std::unique_ptr<PathBuilder> builder;
     RunningStats brightness; ///< mean luminance over the window, by independent samples; they are chains' seeds, too
-    double worth = 1;        ///< large steps of a chain that tell as much about it as one of these samples
+    double large_steps_per_sample = 1; ///< large steps of a chain that tell as much about it as one of these samples
     std::vector<PrimarySeed> seeds;
-    std::optional<TechniqueChange> change; ///< a further move of its chains
+    std::optional<ReversibleJump> change; ///< a further move of its chains
 };
 
 struct PrimaryStartOptions {
@@ -45,8 +45,8 @@ class PrimaryStart {
                               const RunContext& context);
 
     /// One stratum for each number of scatterings, with a multiplexed builder. Bidirectional path tracing samples them
-    /// all at once; each of its joints is a state of one of them. Those that found no light are left out. `inverses`:
-    /// chains change techniques by inverse mappings, too; may be null, and must outlive this.
+    /// all at once; each of its connections is a state of one of them. Those that found no light are left out.
+    /// `inverses`: chains change techniques by inverse mappings, too; may be null, and must outlive this.
     static PrimaryStart by_length(const BuilderContext& builders, const EmitterInverse* inverses,
                                   const PrimaryStartOptions& options, const RunContext& context);
 

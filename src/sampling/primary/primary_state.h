@@ -32,8 +32,8 @@ template <class Builder> class PrimaryStateOf {
     }
 
     double propose(Step step) {
-        clock_.after_large = step == Step::second && clock_.step == Step::large;
-        clock_.attempt += step == Step::second ? 0 : 1;
+        clock_.after_large = step == Step::delayed && clock_.step == Step::large;
+        clock_.attempt += step == Step::delayed ? 0 : 1;
         clock_.step = step;
         build_candidate();
         broken_ += candidate_.broken() ? 1 : 0;

@@ -3,7 +3,7 @@
 namespace keyhole {
 namespace {
 
-/// Second tries shift the logarithm of a step by at most this share of its range: one octave.
+/// Delayed proposals shift the logarithm of a step by at most this share of its range: one octave.
 constexpr double kMostShift = 1 / SmallStep::kOctaves;
 
 } // namespace
@@ -25,7 +25,7 @@ double PrimaryStream::small(Coordinate& c) {
 /// x + d - d', where d is the step of the first try and d' as long within a factor of two. Seen from the result, x + d
 /// is as likely a first try as it was from x, and the shift between the two is symmetric: nothing but the targets
 /// enters the acceptance.
-double PrimaryStream::second(Coordinate& c) {
+double PrimaryStream::delayed(Coordinate& c) {
     if (clock_->after_large) return small(c);
     if (c.attempt != clock_->attempt) small(c);
     const SmallStep first(c.first), back = first.shifted(kMostShift * (2 * rng_->next() - 1));
@@ -38,8 +38,8 @@ double PrimaryStream::candidate(Coordinate& c) {
     switch (clock_->step) {
     case Step::small:
         return small(c);
-    case Step::second:
-        return second(c);
+    case Step::delayed:
+        return delayed(c);
     case Step::large:
     case Step::stay:
         break;

@@ -11,10 +11,10 @@ namespace keyhole {
 
 /// How a candidate differs from the state.
 enum class Step {
-    small,  ///< every coordinate moves a little
-    large,  ///< every coordinate is drawn anew: a sample that does not depend on the state
-    second, ///< a small step away from a candidate that failed, mostly back towards the state
-    stay,   ///< no coordinate moves
+    small,   ///< every coordinate moves a little
+    large,   ///< every coordinate is drawn anew: a sample that does not depend on the state
+    delayed, ///< a small step away from a candidate that failed, mostly back towards the state
+    stay,    ///< no coordinate moves
 };
 
 /// Kelemen's small step: a distance between 1/1024 and 1/64 to either side, its logarithm uniform; coordinates wrap.
@@ -62,9 +62,9 @@ inline double wrap(double x) {
 /// What the streams of one state share: time, counted in accepted candidates, and the kind of candidate in the making.
 struct PrimaryClock {
     std::uint64_t now = 0, last_large = 0;
-    std::uint64_t attempt = 0; ///< of a candidate; a second try belongs to the same one
+    std::uint64_t attempt = 0; ///< of a candidate; a delayed one belongs to the same
     Step step = Step::large;
-    bool after_large = false; ///< a second try follows a large step that failed
+    bool after_large = false; ///< a delayed step follows a large one that failed
 };
 
 /// One run of coordinates, in the order in which a path builder asks for them: eye and light have one each. Coordinates
@@ -106,7 +106,7 @@ class PrimaryStream final : public SampleSource {
     }
     void make_up_for_steps(Coordinate& c);
     double small(Coordinate& c);
-    double second(Coordinate& c);
+    double delayed(Coordinate& c);
     double candidate(Coordinate& c);
 
     PrimaryClock* clock_;

@@ -54,7 +54,7 @@ template <class Visit> void Bidirectional::for_each_cut(const Path& x, Visit&& v
     for (int l = -1; l <= n - 2; ++l) {
         if (l >= 0 && !can_keep_light(scene_, x, l)) continue;
         for (int m = l + 1; m <= n; ++m) {
-            if (m == 0 || m == n - 1) continue; // x0 is no eye side, and the eye never stays alone
+            if (m == 0 || m == n - 1) continue; // x0 is no camera sub-path, and the eye never stays alone
             if (m < n && !can_keep_eye(x, m)) continue;
             visit(Cut{l, m}, cut_weight(m - l - 1, l < 0 && m == n));
         }
@@ -171,10 +171,10 @@ double Bidirectional::transition_density(const Path& x, const Path& y) const {
     }
     double from_light = 1;
     for (int s = 0; s <= most; ++s) {
-        const int last = cut.light + s; // last vertex on the light's side of the joint
-        const bool joint =
+        const int last = cut.light + s; // last vertex on the light's side of the connection
+        const bool connection =
             last < 0 || joinable(y.x[static_cast<std::size_t>(last)], y.x[static_cast<std::size_t>(last) + 1]);
-        if (joint) sum += from_light * eye_density[static_cast<std::size_t>(s)];
+        if (connection) sum += from_light * eye_density[static_cast<std::size_t>(s)];
         if (s < most) from_light *= y.x[static_cast<std::size_t>(first + s)].pdf_from_light;
     }
     return chosen / total * insertion_probability(x, cut, added) * sum / (most + 1);
@@ -182,6 +182,9 @@ double Bidirectional::transition_density(const Path& x, const Path& y) const {
 
 } // namespace
 
-PathProposal make_bidirectional(const ProposalContext& context) { return std::make_unique<Bidirectional>(context); }
+constinit const ProposalKind proposals::bidirectional{
+    .weight = {"bidirectional.weight", 0.4, 0, 1, "relative frequency of bidirectional proposals"},
+    .family = kNewSubPaths,
+    .make = [](const ProposalContext& context) { return only(std::make_unique<Bidirectional>(context)); }};
 
 } // namespace keyhole

@@ -79,7 +79,7 @@ std::optional<Path> CausticPerturbation::propose(const Path& x, Rng& rng, Failur
     SubPath light, eye;
     for (int i = 0; i <= a; ++i) light.push_back(x.x[static_cast<std::size_t>(i)]);
     const Ray ray = perturbed_ray(x, a, rng);
-    if (!retrace(scene_, light, ray.origin, ray.w, x, a + 1, b, why)) return std::nullopt;
+    if (!retrace_specular_chain(scene_, light, ray.origin, ray.w, x, a + 1, b, why)) return std::nullopt;
     for (int i = x.vertices() - 1; i > b; --i) eye.push_back(x.x[static_cast<std::size_t>(i)]);
     return join(scene_, set_, light, eye, x.image, why);
 }
@@ -90,13 +90,15 @@ double CausticPerturbation::transition_density(const Path& x, const Path& y) con
     const Starts starts = chains(x);
     const int a = common_prefix(x, y) - 1;
     if (std::find(starts.begin(), starts.end(), a) == starts.end()) return 0;
-    return retrace_density(y, ray_density(x, y, a), a + 1, next_finite(y, a, +1)) / static_cast<double>(starts.size());
+    return specular_chain_density(y, ray_density(x, y, a), a + 1, next_finite(y, a, +1)) /
+           static_cast<double>(starts.size());
 }
 
 } // namespace
 
-PathProposal make_caustic_perturbation(const ProposalContext& context) {
-    return std::make_unique<CausticPerturbation>(context);
-}
+constinit const ProposalKind proposals::caustic_perturbation{
+    .weight = {"caustic_perturbation.weight", 0.2, 0, 1, "relative frequency of caustic perturbations"},
+    .needs_specular = true,
+    .make = [](const ProposalContext& context) { return only(std::make_unique<CausticPerturbation>(context)); }};
 
 } // namespace keyhole

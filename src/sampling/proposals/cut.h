@@ -1,11 +1,11 @@
-// What a proposal keeps of a path when it replaces a stretch of it.
+// What a proposal keeps of a path when it replaces a part of it.
 //
 // Kept ends are non-specular: beyond a specular vertex nothing is free to choose, and the same path would be made with
 // several deletions. Likewise the eye is always replaced together with the edge that leaves it, and a point light
 // together with the edge that leaves it: a second way to the same path would have to be summed.
 #pragma once
 
-#include "sampling/path.h"
+#include "sampling/paths/path.h"
 #include "scene/scene.h"
 
 namespace keyhole {

@@ -60,8 +60,8 @@ std::optional<Path> join(const Scene& scene, PathSet set, const SubPath& light, 
     return y;
 }
 
-bool retrace(const Scene& scene, SubPath& walk, SurfacePoint origin, Vec3 w, const Path& x, int first, int last,
-             Failure& why) {
+bool retrace_specular_chain(const Scene& scene, SubPath& walk, SurfacePoint origin, Vec3 w, const Path& x, int first,
+                            int last, Failure& why) {
     const int step = first <= last ? 1 : -1;
     for (int i = first;; i += step) {
         const auto hit = next_vertex(scene, origin, w);
@@ -82,7 +82,7 @@ bool retrace(const Scene& scene, SubPath& walk, SurfacePoint origin, Vec3 w, con
     }
 }
 
-double retrace_density(const Path& y, double first_density, int first, int last) {
+double specular_chain_density(const Path& y, double first_density, int first, int last) {
     const int step = first <= last ? 1 : -1;
     double density = first_density;
     for (int i = first; i != last; i += step) {

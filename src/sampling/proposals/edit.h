@@ -1,9 +1,9 @@
 // What the proposals share: comparing paths, growing sub-paths, joining them.
 #pragma once
 
-#include "sampling/measure.h"
-#include "sampling/proposal.h"
-#include "sampling/walk.h"
+#include "sampling/markov/mixture.h"
+#include "sampling/paths/measure.h"
+#include "sampling/paths/walk.h"
 
 namespace keyhole {
 
@@ -59,12 +59,12 @@ std::optional<Path> join(const Scene& scene, PathSet set, const SubPath& light, 
 /// this order (towards the light if last < first). Those before the last take the specular events that x has there; the
 /// last is finite. `origin` is the last vertex of the walk, or on its beam where that is infinite. A step that is lost
 /// when positions are rounded, where surfaces all but touch, fails: it has no density, and none the other way round.
-bool retrace(const Scene& scene, SubPath& walk, SurfacePoint origin, Vec3 w, const Path& x, int first, int last,
-             Failure& why);
+bool retrace_specular_chain(const Scene& scene, SubPath& walk, SurfacePoint origin, Vec3 w, const Path& x, int first,
+                            int last, Failure& why);
 
-/// Density of y[first], ..., y[last] (all but the last specular) when retraced in this order: `first_density`, that of
+/// Density of y[first], ..., y[last] (all but the last specular) when traced in this order: `first_density`, that of
 /// y[first], times those of the others, with specular events prescribed, not chosen.
-double retrace_density(const Path& y, double first_density, int first, int last);
+double specular_chain_density(const Path& y, double first_density, int first, int last);
 
 /// Index of the next non-specular vertex from `i` in direction `step` (+1 towards the eye, -1 towards the light), not
 /// counting i itself. The ends of a path are never specular.

@@ -19,7 +19,8 @@ std::optional<Path> perturb_from_eye(const Scene& scene, PathSet set, const Path
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         const Piece& piece = pieces[i];
         if (i > 0) w = step.sample(leaving_direction(x, piece.pivot, -1), source);
-        if (!retrace(scene, eye, eye.back().point, w, x, piece.pivot - 1, piece.last, why)) return std::nullopt;
+        if (!retrace_specular_chain(scene, eye, eye.back().point, w, x, piece.pivot - 1, piece.last, why))
+            return std::nullopt;
     }
     const int last = pieces.back().last;
     if (last == 0 && !eye.back().point.is_emitter()) return why = Failure::no_light, std::nullopt;
@@ -30,12 +31,12 @@ std::optional<Path> perturb_from_eye(const Scene& scene, PathSet set, const Path
 
 double eye_perturbation_density(const Path& x, const Path& y, const Pieces& pieces, double first_density,
                                 const DirectionStep& step) {
-    double density = retrace_density(y, first_density, pieces[0].pivot - 1, pieces[0].last);
+    double density = specular_chain_density(y, first_density, pieces[0].pivot - 1, pieces[0].last);
     for (std::size_t i = 1; i < pieces.size(); ++i) {
         const auto [pivot, last] = pieces[i];
         const double w = step.density(leaving_direction(x, pivot, -1), leaving_direction(y, pivot, -1));
         const auto p = static_cast<std::size_t>(pivot);
-        density *= retrace_density(y, solid_angle_to_area(w, y.x[p].point, y.x[p - 1].point), pivot - 1, last);
+        density *= specular_chain_density(y, solid_angle_to_area(w, y.x[p].point, y.x[p - 1].point), pivot - 1, last);
     }
     return density;
 }

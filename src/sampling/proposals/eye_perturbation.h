@@ -16,8 +16,8 @@ struct Piece {
     int pivot, last;
 };
 
-/// The pieces that have to be traced when x[pivot] is the first pivot, in order. The last one ends where a joint is
-/// possible, or on the light (last == 0).
+/// The pieces that have to be traced when x[pivot] is the first pivot, in order. The last one ends where a connection
+/// is possible, or on the light (last == 0).
 using Pieces = InlineVector<Piece, kMaxScatterings + 2>;
 Pieces pieces_from_eye(const Path& x, int pivot);
 

@@ -1,7 +1,8 @@
 // UI, user path, independent: a whole new path, whose light side follows a user path and which is joined to a new eye
-// side at any of its edges. Its density is the sum over user paths and joints, so that contribution over density has no
-// peaks where one joint's edge is short: unlike UP it leaves from, and comes to, such paths as readily as others.
-#include "sampling/guided_paths.h"
+// side at any of its edges. Its density is the sum over user paths and connections, so that contribution over density
+// has no peaks where one connection's edge is short: unlike UP it leaves from, and comes to, such paths as readily as
+// others.
+#include "sampling/guidance/guided_paths.h"
 #include "sampling/proposals/cut.h"
 #include "sampling/proposals/registry.h"
 
@@ -33,8 +34,13 @@ class GuidedPathProposal final : public Proposal<Path> {
 
 } // namespace
 
-PathProposal make_guided_path(const ProposalContext& context, const UserPaths& paths) {
-    return std::make_unique<GuidedPathProposal>(context, paths);
-}
+constinit const ProposalKind proposals::guided_path{
+    .weight = {"guided_path.weight", 0.3, 0, 1,
+               "relative frequency of whole new paths along user paths, where there are any"},
+    .needs_user_paths = true,
+    .family = kNewSubPaths,
+    .make = [](const ProposalContext& context) {
+        return only(std::make_unique<GuidedPathProposal>(context, context.user_paths()));
+    }};
 
 } // namespace keyhole

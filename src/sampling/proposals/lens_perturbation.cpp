@@ -2,8 +2,8 @@
 // non-specular vertex is joined to the kept rest (Veach 1997, section 11.3.1.1).
 //
 // MC, multi-chain perturbation: the same where that vertex can't be joined, because light comes to it through specular
-// vertices: these are traced again as well, from a perturbed direction, until a joint is possible or the light is hit
-// (Veach 1997, section 11.3.2). It moves caustics, and caustics seen in mirrors.
+// vertices: these are traced again as well, from a perturbed direction, until a connection is possible or the light is
+// hit (Veach 1997, section 11.3.2). It moves caustics, and caustics seen in mirrors.
 #include "sampling/proposals/eye_perturbation.h"
 #include "sampling/proposals/registry.h"
 
@@ -57,12 +57,17 @@ class EyePerturbation final : public Proposal<Path> {
 
 } // namespace
 
-PathProposal make_lens_perturbation(const ProposalContext& context) {
-    return std::make_unique<EyePerturbation>(context, Chains::one);
-}
+constinit const ProposalKind proposals::lens_perturbation{
+    .weight = {"lens_perturbation.weight", 0.4, 0, 1, "relative frequency of lens perturbations"},
+    .make = [](const ProposalContext& context) {
+        return only(std::make_unique<EyePerturbation>(context, Chains::one));
+    }};
 
-PathProposal make_multi_chain_perturbation(const ProposalContext& context) {
-    return std::make_unique<EyePerturbation>(context, Chains::many);
-}
+constinit const ProposalKind proposals::multi_chain_perturbation{
+    .weight = {"multi_chain_perturbation.weight", 0.2, 0, 1, "relative frequency of multi-chain perturbations"},
+    .needs_specular = true,
+    .make = [](const ProposalContext& context) {
+        return only(std::make_unique<EyePerturbation>(context, Chains::many));
+    }};
 
 } // namespace keyhole

@@ -1,5 +1,6 @@
 // LS, lens sub-path: a new image point and a new eye sub-path, traced through specular vertices to the first that is
 // not, joined to the kept light sub-path (Veach 1997, section 11.3.3).
+#include "sampling/paths/random_walk.h"
 #include "sampling/proposals/edit.h"
 #include "sampling/proposals/registry.h"
 
@@ -25,24 +26,37 @@ class LensSubpath final : public Proposal<Path> {
     int max_vertices_;
 };
 
-bool LensSubpath::trace_eye(SubPath& eye, const Vec2& image, int room, Rng& rng, Failure& why) const {
-    eye.push_back(sample_eye(scene_, rng));
-    Vec3 w = scene_.camera().ray_direction(eye[0].point, image);
-    while (static_cast<int>(eye.size()) < room) {
-        const auto hit = next_vertex(scene_, eye.back(), w);
-        if (!hit) return why = Failure::no_hit, false;
-        eye.push_back(*hit);
-        Vertex& v = eye.back();
-        if (!v.bsdf.traits().delta) return true;
-        const auto next = continue_walk(v, -w, From::eye, rng);
-        // Having chosen a finite event it ends here, whether or not that would have led anywhere.
-        if (!next && v.bsdf.traits().finite) return true;
-        if (!next) return why = Failure::absorbed, false;
-        if (!is_specular(next->event)) return true;
-        v.event = next->event;
-        w = next->w;
+/// A walk through specular vertices to the first that is not.
+struct LensWalk : WalkHooks {
+    SubPath& eye;
+    const std::size_t room;                       // vertices that there may be
+    std::optional<Failure> why = Failure::length; // none: the walk has got there
+
+    Vertex& place() const { return eye.emplace_back(); }
+    void lost() { why = Failure::no_hit; }
+    bool arrive(const Vertex& v, const WalkRay& /*ray*/) { return v.bsdf.traits().delta || end(); }
+    // Having chosen a finite event it ends there, whether or not that would have led anywhere.
+    void absorbed(const Vertex& v) {
+        why = Failure::absorbed;
+        if (v.bsdf.traits().finite) end();
     }
-    return why = Failure::length, false;
+    bool leave(const Vertex& v, const Continuation& /*next*/, const WalkRay& /*ray*/) {
+        return v.specular() ? eye.size() < room : end();
+    }
+
+  private:
+    bool end() {
+        why.reset();
+        return false;
+    }
+};
+
+bool LensSubpath::trace_eye(SubPath& eye, const Vec2& image, int room, Rng& rng, Failure& why) const {
+    sample_eye(scene_, rng, eye.emplace_back());
+    LensWalk walk{{}, eye, static_cast<std::size_t>(room)};
+    random_walk(scene_, From::eye, eye_ray(scene_, eye[0].point, image), room, rng, walk);
+    if (walk.why) why = *walk.why;
+    return !walk.why;
 }
 
 std::optional<Path> LensSubpath::propose(const Path& x, Rng& rng, Failure& why) const {
@@ -67,6 +81,8 @@ double LensSubpath::transition_density(const Path& x, const Path& y) const {
 
 } // namespace
 
-PathProposal make_lens_subpath(const ProposalContext& context) { return std::make_unique<LensSubpath>(context); }
+constinit const ProposalKind proposals::lens_subpath{
+    .weight = {"lens_subpath.weight", 0.1, 0, 1, "relative frequency of lens sub-path proposals"},
+    .make = [](const ProposalContext& context) { return only(std::make_unique<LensSubpath>(context)); }};
 
 } // namespace keyhole

@@ -1,13 +1,13 @@
-// PM, photon map: d1 and everything on its eye side stay; the direction in which light comes to d1 is perturbed, the
-// chain to the next non-specular vertex is traced again and joined to the vertex after it. It moves the storage point
-// of the global map and nothing else (Fan, Chenney, Lai 2005, section 5.3).
+// PM, photon map: d1 and everything on its camera sub-path stay; the direction in which light comes to d1 is perturbed,
+// the chain to the next non-specular vertex is traced again and joined to the vertex after it. It moves the storage
+// point of the global map and nothing else (Fan, Chenney, Lai 2005, section 5.3).
 #include "sampling/proposals/eye_perturbation.h"
 #include "sampling/proposals/registry.h"
 
 namespace keyhole {
 namespace {
 
-constexpr DirectionStep kStep(1e-3, kPi / 6);
+constexpr DirectionStep kNeighbourStep(1e-3, kPi / 6);
 
 class PhotonMapPerturbation final : public Proposal<Path> {
   public:
@@ -20,17 +20,17 @@ class PhotonMapPerturbation final : public Proposal<Path> {
         const int d1 = nth_finite_from_eye(x, 1);
         SubPath eye;
         for (int i = x.vertices() - 1; i >= d1; --i) eye.push_back(x.x[static_cast<std::size_t>(i)]);
-        const Vec3 w = kStep.sample(leaving_direction(x, d1, -1), rng);
-        return perturb_from_eye(scene_, set_, x, pieces_from_eye(x, d1), eye, {w, x.image}, kStep, rng, why);
+        const Vec3 w = kNeighbourStep.sample(leaving_direction(x, d1, -1), rng);
+        return perturb_from_eye(scene_, set_, x, pieces_from_eye(x, d1), eye, {w, x.image}, kNeighbourStep, rng, why);
     }
 
     double transition_density(const Path& x, const Path& y) const override {
         if (!same_events(x, y)) return 0;
         const int d1 = nth_finite_from_eye(x, 1);
         const auto i = static_cast<std::size_t>(d1);
-        const double w = kStep.density(leaving_direction(x, d1, -1), leaving_direction(y, d1, -1));
+        const double w = kNeighbourStep.density(leaving_direction(x, d1, -1), leaving_direction(y, d1, -1));
         const double first = solid_angle_to_area(w, y.x[i].point, y.x[i - 1].point);
-        return eye_perturbation_density(x, y, pieces_from_eye(x, d1), first, kStep);
+        return eye_perturbation_density(x, y, pieces_from_eye(x, d1), first, kNeighbourStep);
     }
 
   private:
@@ -40,8 +40,8 @@ class PhotonMapPerturbation final : public Proposal<Path> {
 
 } // namespace
 
-PathProposal make_photon_map_perturbation(const ProposalContext& context) {
-    return std::make_unique<PhotonMapPerturbation>(context);
-}
+constinit const ProposalKind proposals::photon_map{
+    .weight = {"photon_map.weight", 0.2, 0, 1, "relative frequency of photon map perturbations"},
+    .make = [](const ProposalContext& context) { return only(std::make_unique<PhotonMapPerturbation>(context)); }};
 
 } // namespace keyhole

@@ -3,36 +3,48 @@
 namespace keyhole {
 namespace {
 
-constexpr ProposalKind kKinds[] = {
-    {make_bidirectional, &Settings::p_bidirectional},
-    {make_lens_subpath, &Settings::p_lens_subpath},
-    {make_lens_perturbation, &Settings::p_lens_perturbation},
-    {make_multi_chain_perturbation, &Settings::p_multi_chain_perturbation, true},
-    {make_caustic_perturbation, &Settings::p_caustic_perturbation, true},
-    {make_photon_map_perturbation, &Settings::p_photon_map},
+#define KEYHOLE_PROPOSAL(name) &proposals::name,
+constexpr const ProposalKind* kKinds[] = {
+#include "sampling/proposals/kinds.inc"
 };
+#undef KEYHOLE_PROPOSAL
+
+#define KEYHOLE_PROPOSAL(name) &proposals::name.weight,
+constexpr const ProposalParameter* kParameters[] = {
+#include "sampling/proposals/kinds.inc"
+};
+#undef KEYHOLE_PROPOSAL
 
 } // namespace
 
-std::span<const ProposalKind> proposal_kinds() { return kKinds; }
+std::span<const ProposalKind* const> proposal_kinds() { return kKinds; }
+std::span<const ProposalParameter* const> proposal_parameters() { return kParameters; }
 
-Mixture<Path> make_mixture(const ProposalContext& context, const Settings& settings, const UserPaths& paths,
-                           std::vector<double Settings::*>* weights) {
-    constexpr int kFamily = 0; // of BD, UP and UI, which replace the same vertices
+ProposalList only(PathProposal proposal) {
+    ProposalList list;
+    list.push_back({std::move(proposal)});
+    return list;
+}
+
+Mixture<Path> make_mixture(const ProposalContext& context, const Settings& settings,
+                           std::vector<const ProposalKind*>* kinds) {
     Mixture<Path> mixture;
-    const auto add = [&](PathProposal kind, double Settings::*weight, double share, int family) {
-        if (weights != nullptr && settings.*weight * share > 0) weights->push_back(weight);
-        mixture.add(std::move(kind), settings.*weight * share, family);
-    };
-    for (const ProposalKind& kind : kKinds)
-        if (kind.wanted(*context.scene, settings))
-            add(kind.make(context), kind.weight, 1, kind.make == make_bidirectional ? kFamily : Mixture<Path>::kAlone);
-    double total = 0;
-    for (const UserPath& path : paths) total += path.weight;
-    for (const UserPath& path : paths)
-        add(make_user_path(context, path), &Settings::p_user_path, path.weight / total, kFamily);
-    if (!paths.empty()) add(make_guided_path(context, paths), &Settings::p_guided_path, 1, kFamily);
+    for (const ProposalKind* kind : kKinds) {
+        if (kind->needs_specular && !context.scene->traits().delta && settings.plan != Plan::all) continue;
+        if (kind->needs_user_paths && context.user_paths().empty()) continue;
+        for (auto& [proposal, share] : kind->make(context))
+            mixture.add(std::move(proposal), settings.proposals[kind->weight] * share, kind->family);
+        if (kinds != nullptr) kinds->resize(mixture.size(), kind);
+    }
     return mixture;
+}
+
+ChainMixtures::ChainMixtures(const ProposalContext& context, const Settings& settings)
+    : mixture(make_mixture(context, settings)) {
+    ProposalContext unguided = context;
+    unguided.guides = nullptr;
+    Mixture<Path> without = make_mixture(unguided, settings);
+    if (without.size() < mixture.size()) control = std::move(without);
 }
 
 } // namespace keyhole

@@ -1,6 +1,7 @@
 #include "sampling/proposals/tuning.h"
 
 #include "core/parallel.h"
+#include "sampling/markov/acceptance.h"
 #include "scene/ray_counter.h"
 
 #include <algorithm>
@@ -46,8 +47,7 @@ Jump expected_jump(const Mixture<Path>& mixture, std::size_t k, const Path& x, R
     Failure why{};
     const auto y = mixture.kind(k).propose(x, rng, why);
     if (!y || y->target == 0) return {};
-    const double ratio = mixture.acceptance_ratio(x, *y, k);
-    return ratio > 0 ? jump(x, *y) * std::min(1.0, ratio) : Jump{};
+    return jump(x, *y) * acceptance(mixture.acceptance_ratio(x, *y, k));
 }
 
 /// Expected jump of a kind over the rays that it takes, from `count` candidates.
@@ -68,21 +68,21 @@ Jump efficiency(const Mixture<Path>& mixture, std::size_t k, std::span<const Pat
 
 } // namespace
 
-Settings tuned_proposals(const ProposalContext& context, const Settings& settings, const UserPaths& user_paths,
-                         std::span<const Path> paths, std::uint64_t seed) {
+Settings tuned_proposals(const ProposalContext& context, const Settings& settings, std::span<const Path> paths,
+                         std::uint64_t seed) {
     if (!settings.tune_proposals || paths.empty()) return settings;
-    std::vector<double Settings::*> of_kind;
-    const Mixture<Path> mixture = make_mixture(context, settings, user_paths, &of_kind);
-    // Kinds of one setting, user paths, share it, and what it may take.
+    std::vector<const ProposalKind*> of_proposal;
+    const Mixture<Path> mixture = make_mixture(context, settings, &of_proposal);
+    // Proposals of one kind, one for each user path, share its weight, and what it may take.
     struct Tally {
-        double Settings::*weight;
+        const ProposalKind* kind;
         Jump efficiency{};
-        double kinds = 0;
+        double proposals = 0;
     };
     std::vector<Tally> tallies;
-    for (double Settings::*weight : of_kind) {
-        if (tallies.empty() || tallies.back().weight != weight) tallies.push_back({weight});
-        tallies.back().kinds += 1;
+    for (const ProposalKind* kind : of_proposal) {
+        if (tallies.empty() || tallies.back().kind != kind) tallies.push_back({kind});
+        tallies.back().proposals += 1;
     }
     const std::int64_t candidates = std::min<std::int64_t>(settings.mutations / 16, kMostCandidates);
     if (candidates < kLeastCandidates * static_cast<std::int64_t>(tallies.size())) return settings;
@@ -90,21 +90,21 @@ Settings tuned_proposals(const ProposalContext& context, const Settings& setting
     std::size_t k = 0;
     for (Tally& tally : tallies) {
         const std::int64_t each =
-            candidates / static_cast<std::int64_t>(tallies.size() * static_cast<std::size_t>(tally.kinds));
-        for (double left = tally.kinds; left > 0; --left, ++k)
+            candidates / static_cast<std::int64_t>(tallies.size() * static_cast<std::size_t>(tally.proposals));
+        for (double left = tally.proposals; left > 0; --left, ++k)
             tally.efficiency +=
-                efficiency(mixture, k, paths, std::max<std::int64_t>(each, 1), seed) * (1 / tally.kinds);
+                efficiency(mixture, k, paths, std::max<std::int64_t>(each, 1), seed) * (1 / tally.proposals);
     }
     Jump total;
     for (const Tally& tally : tallies) total += tally.efficiency;
     if (!(total.both > 0)) return settings;
     double given = 0;
-    for (const Tally& t : tallies) given += settings.*t.weight;
+    for (const Tally& t : tallies) given += settings.proposals[t.kind->weight];
     Settings tuned = settings;
     for (const Tally& t : tallies) {
         const Jump& own = t.efficiency;
         const double shares = own.image / total.image + own.light / total.light + own.both / total.both;
-        tuned.*t.weight = std::lerp(settings.*t.weight / given, shares / 3, kMeasured);
+        tuned.proposals[t.kind->weight] = std::lerp(settings.proposals[t.kind->weight] / given, shares / 3, kMeasured);
     }
     return tuned;
 }

@@ -5,13 +5,13 @@
 
 namespace keyhole {
 
-/// `settings` with the probabilities of its kinds of proposal (p_...), which sum to one, half of them shared out by how
+/// `settings` with the weights of its kinds of proposal, which sum to one, half of them shared out by how
 /// far a candidate of each kind moves a chain for the rays that it takes: the expected squared jump (Pasarica and
 /// Gelman 2010) in the image, that of the vertex which light meets first, and the product of the two, each relative to
 /// all kinds. Those of probability 0 stay out. It is measured at `paths`, drawn from the target: chains that are to be
 /// told by it should start elsewhere. Takes a sixteenth of `mutations` at most. Where these are too few to tell, there
 /// are no paths, or `tune_proposals` is off, the settings stay as they are.
-Settings tuned_proposals(const ProposalContext& context, const Settings& settings, const UserPaths& user_paths,
-                         std::span<const Path> paths, std::uint64_t seed);
+Settings tuned_proposals(const ProposalContext& context, const Settings& settings, std::span<const Path> paths,
+                         std::uint64_t seed);
 
 } // namespace keyhole

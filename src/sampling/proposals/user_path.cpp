@@ -4,7 +4,7 @@
 //
 // A fixed x0 would be a point mass against the other proposals' densities: it lies in a patch of the emitter. The way
 // back is rarely a user path's: mixtures judge UP together with BD.
-#include "sampling/guided_subpath.h"
+#include "sampling/guidance/guided_subpath.h"
 #include "sampling/proposals/cut.h"
 #include "sampling/proposals/registry.h"
 
@@ -87,8 +87,17 @@ double UserPathProposal::transition_density(const Path& x, const Path& y) const 
 
 } // namespace
 
-PathProposal make_user_path(const ProposalContext& context, const UserPath& path) {
-    return std::make_unique<UserPathProposal>(context, path);
-}
+constinit const ProposalKind proposals::user_path{
+    .weight = {"user_path.weight", 0.05, 0, 1, "relative frequency of proposals along user paths, where there are any"},
+    .needs_user_paths = true,
+    .family = kNewSubPaths,
+    .make = [](const ProposalContext& context) {
+        ProposalList list;
+        double total = 0;
+        for (const UserPath& path : context.user_paths()) total += path.weight;
+        for (const UserPath& path : context.user_paths())
+            list.push_back({std::make_unique<UserPathProposal>(context, path), path.weight / total});
+        return list;
+    }};
 
 } // namespace keyhole

@@ -89,21 +89,18 @@ std::optional<LocalVec> CoatedConductorBsdf::sample_base(const LocalVec& w, doub
 std::optional<BsdfSample> CoatedConductorBsdf::sample(const Vec3& from, double u0, double u1, double u2) const {
     if (from.z == 0) return std::nullopt;
     const LocalVec w = upper(from);
-    if (base_.smooth()) return BsdfSample{{-from.x, -from.y, from.z}, Event::reflect, 1.0};
+    if (base_.smooth()) return BsdfSample{mirrored(from), Event::reflect, 1.0};
     const double coat = coat_probability(w.z);
-    if (u2 < coat && coat_.smooth()) return BsdfSample{{-from.x, -from.y, from.z}, Event::reflect, coat};
+    if (u2 < coat && coat_.smooth()) return BsdfSample{mirrored(from), Event::reflect, coat};
     const auto up = u2 < coat ? Ggx{coat_.x, coat_.y}.sample_reflection(w, u0, u1) : sample_base(w, u0, u1);
     if (!up) return std::nullopt;
     const Vec3 to = on_side_of(from, *up);
-    const double p = pdf(from, to);
-    if (!(p > 0)) return std::nullopt;
-    return BsdfSample{to, Event::finite, p};
+    return finite_sample(to, pdf(from, to));
 }
 
 std::optional<DeltaScatter> CoatedConductorBsdf::delta(const Vec3& from, Event event) const {
     if (event != Event::reflect || !coat_.smooth()) return std::nullopt;
     const double cosine = std::abs(static_cast<double>(from.z)), coat = interface_->reflectance(cosine, 0);
-    const Vec3 to(-from.x, -from.y, from.z);
     const double probability = base_.smooth() ? 1.0 : coat_probability(cosine);
     if (!(probability > 0)) return std::nullopt;
     Rgb coefficient(coat);
@@ -113,7 +110,7 @@ std::optional<DeltaScatter> CoatedConductorBsdf::delta(const Vec3& from, Event e
         for (int k = 0; k < 3; ++k)
             coefficient[k] += (1 - coat) * (1 - coat) * ways * metal[k] / (1 - metal[k] * coat * ways);
     }
-    return DeltaScatter{to, coefficient, probability, 1.0};
+    return DeltaScatter{mirrored(from), coefficient, probability, 1.0};
 }
 
 } // namespace keyhole

@@ -55,22 +55,20 @@ std::optional<BsdfSample> CoatedDiffuseBsdf::sample(const Vec3& from, double u0,
     if (u2 >= coat) {
         up = LocalVec(cosine_hemisphere(u0, u1));
     } else if (smooth()) {
-        return BsdfSample{{-from.x, -from.y, from.z}, Event::reflect, coat};
+        return BsdfSample{mirrored(from), Event::reflect, coat};
     } else {
         up = Ggx{alpha_x_, alpha_y_}.sample_reflection(w, u0, u1);
     }
     if (!up) return std::nullopt;
     const Vec3 to = on_side_of(from, *up);
-    const double p = pdf(from, to);
-    if (!(p > 0)) return std::nullopt;
-    return BsdfSample{to, Event::finite, p};
+    return finite_sample(to, pdf(from, to));
 }
 
 std::optional<DeltaScatter> CoatedDiffuseBsdf::delta(const Vec3& from, Event event) const {
     if (event != Event::reflect || !smooth()) return std::nullopt;
     const double cosine = std::abs(static_cast<double>(from.z)), coat = coat_probability(cosine);
     if (!(coat > 0)) return std::nullopt;
-    return DeltaScatter{{-from.x, -from.y, from.z}, Rgb(interface_->reflectance(cosine, 0)), coat, 1.0};
+    return DeltaScatter{mirrored(from), Rgb(interface_->reflectance(cosine, 0)), coat, 1.0};
 }
 
 } // namespace keyhole

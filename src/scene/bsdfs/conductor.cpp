@@ -18,9 +18,7 @@ std::optional<BsdfSample> RoughConductorBsdf::sample(const Vec3& from, double u0
     const auto up = Ggx{alpha_x, alpha_y}.sample_reflection(upper(from), u0, u1);
     if (!up) return std::nullopt;
     const Vec3 to = on_side_of(from, *up);
-    const double p = pdf(from, to);
-    if (!(p > 0)) return std::nullopt;
-    return BsdfSample{to, Event::finite, p};
+    return finite_sample(to, pdf(from, to));
 }
 
 } // namespace keyhole

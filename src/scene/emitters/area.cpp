@@ -1,7 +1,8 @@
-#include "scene/emitters/area.h"
+#include "scene/emitters/emitters.h"
 
 #include "core/error.h"
 #include "scene/geometry.h"
+#include "scene/load/properties.h"
 #include "scene/warp.h"
 
 namespace keyhole {
@@ -116,6 +117,24 @@ class AreaEmitter final : public Emitter {
 
 std::unique_ptr<Emitter> make_area_emitter(const Shape& shape, std::uint32_t index) {
     return std::make_unique<AreaEmitter>(shape, index);
+}
+
+AreaLight read_area_light(Properties& p) {
+    AreaLight light;
+    light.two_sided = p.boolean({"two_sided", "twosided"}, false);
+    if (p.has({"", "filename"})) p.fail("found 'filename', expected emission that is the same everywhere");
+    light.radiance = p.light({"radiance", "L"}, {"power", ""}, 1);
+    // The power is a colour in our files, and a number beside the colour in pbrt's.
+    light.power = p.has({"power", ""}) ? 1 : std::max(0.0, p.number({"", "power"}, {}, -1));
+    return light;
+}
+
+std::unique_ptr<SurfaceEmission> emission_of(const AreaLight& light, double area) {
+    const int sides = light.two_sided ? 2 : 1;
+    // A Lambertian emitter of radiance L sends out pi L from each unit of area of each side.
+    const Rgb radiance = light.power > 0 ? light.radiance * light.power / (kPi * area * sides) : light.radiance;
+    if (is_black(radiance)) return nullptr;
+    return std::make_unique<SurfaceEmission>(SurfaceEmission{radiance, light.two_sided});
 }
 
 } // namespace keyhole

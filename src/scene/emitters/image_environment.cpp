@@ -1,4 +1,4 @@
-#include "scene/emitters/image_environment.h"
+#include "scene/emitters/emitters.h"
 
 #include "core/error.h"
 #include "scene/emitters/beam.h"
@@ -13,7 +13,7 @@ double radiance_of(float texel) { return texel; }
 double radiance_of(std::uint8_t texel) { return srgb_to_linear(texel / 255.0); }
 double radiance_of(std::uint16_t texel) { return srgb_to_linear(texel / 65535.0); }
 
-class ImageEnvironment final : public Emitter {
+class ImageEnvironment final : public InfiniteEmitter {
   public:
     ImageEnvironment(EnvironmentImage image, const Rgb& scale, const Imath::M33d& to_world)
         : image_(std::move(image)), scale_(scale), to_world_(to_world), from_world_(to_world.inverse()) {
@@ -24,10 +24,7 @@ class ImageEnvironment final : public Emitter {
         pixels_ = EmitterDistribution(weights);
     }
 
-    Site site() const override { return Site::infinite; }
-    bool is_delta() const override { return false; }
-    void enclose(const BoundingSphere& scene) override { scene_ = scene; }
-    double power() const override { return flux_ / beam_pdf(scene_); }
+    double power() const override { return flux_ / beam_pdf(); }
 
     EmitterPoint sample_point(SampleSource& source) const override {
         const double u0 = source.next(), u1 = source.next(), u2 = source.next();
@@ -40,12 +37,7 @@ class ImageEnvironment final : public Emitter {
         const std::size_t i = pixel_at(-point.ng);
         return pixels_.probability(static_cast<std::uint32_t>(i)) / solid_angle(row_of(i));
     }
-    EmitterRay sample_ray(const SurfacePoint& point, SampleSource& source) const override {
-        return sample_beam(scene_, point.ng, source);
-    }
-    double ray_pdf(const SurfacePoint& /*point*/, const Vec3& /*w*/) const override { return beam_pdf(scene_); }
     Rgb radiance(const SurfacePoint& /*point*/, const Vec3& w) const override { return pixel(pixel_at(-w)); }
-    const char* kind() const override { return "environment"; }
 
   private:
     std::size_t width() const { return static_cast<std::size_t>(image_.width); }
@@ -88,7 +80,6 @@ class ImageEnvironment final : public Emitter {
     Imath::M33d to_world_, from_world_; // for row vectors
     EmitterDistribution pixels_;
     double flux_ = 0; // luminance over the sphere [W/m^2]
-    BoundingSphere scene_;
 };
 
 bool is_rotation(const Imath::M33d& m) {

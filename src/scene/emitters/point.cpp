@@ -1,5 +1,6 @@
-#include "scene/emitters/point.h"
+#include "scene/emitters/emitters.h"
 
+#include "scene/load/properties.h"
 #include "scene/warp.h"
 
 namespace keyhole {
@@ -39,10 +40,18 @@ class PointEmitter final : public Emitter {
     Rgb intensity_;
 };
 
+EmitterPtr read_point(Properties& p) {
+    const Vec3 position = p.position({"position", "from"});
+    const Rgb intensity = p.light({"intensity", "I"}, "power", 4 * kPi);
+    return is_black(intensity) ? nullptr : make_point_emitter(position, intensity);
+}
+
 } // namespace
 
 std::unique_ptr<Emitter> make_point_emitter(const Vec3& position, const Rgb& intensity) {
     return std::make_unique<PointEmitter>(position, intensity);
 }
+
+EmitterKinds point_kinds() { return {{"point", "a point emitter", {"position", "intensity", "power"}, read_point}}; }
 
 } // namespace keyhole

@@ -1,6 +1,7 @@
-#include "scene/emitters/spot.h"
+#include "scene/emitters/emitters.h"
 
 #include "core/error.h"
+#include "scene/load/properties.h"
 #include "scene/warp.h"
 
 namespace keyhole {
@@ -78,6 +79,18 @@ class SpotEmitter final : public Emitter {
     double full_share_ = 0;
 };
 
+EmitterPtr read_spot(Properties& p) {
+    SpotParameters spot;
+    spot.position = p.position({"position", "from"});
+    spot.axis = p.direction({"direction", ""}, {"position", "from"}, "to");
+    spot.edge_degrees = p.number({"angle", "coneangle"}, {"an angle from the axis", 0.001, 180}, 30);
+    const NumberRange falloff{"an angle up to 'angle'", 0, spot.edge_degrees};
+    spot.full_degrees =
+        spot.edge_degrees - p.number({"falloff", "conedeltaangle"}, falloff, std::min(5.0, spot.edge_degrees));
+    spot.intensity = p.light({"intensity", "I"}, "power", spot_solid_angle(spot));
+    return is_black(spot.intensity) ? nullptr : make_spot_emitter(spot);
+}
+
 } // namespace
 
 double spot_solid_angle(const SpotParameters& parameters) {
@@ -92,6 +105,13 @@ std::unique_ptr<Emitter> make_spot_emitter(const SpotParameters& parameters) {
                          parameters.edge_degrees > 0 && parameters.edge_degrees <= 180;
     if (!ordered) throw InputError("a spot light needs 0 <= inner angle <= outer angle <= 180 degrees, and some width");
     return std::make_unique<SpotEmitter>(parameters);
+}
+
+EmitterKinds spot_kinds() {
+    return {{"spot",
+             "a spot emitter",
+             {"position", "to", "direction", "angle", "falloff", "intensity", "power"},
+             read_spot}};
 }
 
 } // namespace keyhole

@@ -21,7 +21,7 @@ std::vector<std::string> picture_channels(const Imf::ChannelList& channels, cons
 
 } // namespace
 
-Image read_exr_image(const std::string& path) {
+TextureImage read_exr_image(const std::string& path) {
     try {
         Imf::InputFile file(path.c_str(), 1);
         const Imath::Box2i& window = file.header().dataWindow();
@@ -29,9 +29,9 @@ Image read_exr_image(const std::string& path) {
         const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
         check_image_size(path, width, height);
         const auto names = picture_channels(file.header().channels(), path);
-        Image image;
-        auto& texels = image.allocate<Image::Floats>(static_cast<int>(width), static_cast<int>(height),
-                                                     static_cast<int>(names.size()));
+        TextureImage image;
+        auto& texels = image.allocate<TextureImage::Floats>(static_cast<int>(width), static_cast<int>(height),
+                                                            static_cast<int>(names.size()));
         Imf::FrameBuffer buffer;
         const std::size_t pixel = names.size() * sizeof(float), row = pixel * static_cast<std::size_t>(width);
         for (std::size_t i = 0; i < names.size(); ++i)

@@ -16,7 +16,7 @@ namespace {
 /// Images that somebody holds, by canonical path.
 struct Cache {
     std::mutex mutex;
-    std::map<std::string, std::weak_ptr<const Image>> images;
+    std::map<std::string, std::weak_ptr<const TextureImage>> images;
 };
 
 Cache& cache() {
@@ -24,7 +24,7 @@ Cache& cache() {
     return instance;
 }
 
-Image read_image(const std::string& path) {
+TextureImage read_image(const std::string& path) {
     std::string extension = std::filesystem::path(path).extension().string();
     std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
     if (extension == ".exr") return read_exr_image(path);
@@ -36,7 +36,7 @@ Image read_image(const std::string& path) {
 
 } // namespace
 
-std::size_t Image::bytes() const {
+std::size_t TextureImage::bytes() const {
     return std::visit([](const auto& t) { return t.size() * sizeof(t[0]); }, texels);
 }
 
@@ -48,7 +48,7 @@ void check_image_size(const std::string& path, std::int64_t width, std::int64_t 
                                  path, width, height, kMaxImageSide, kMaxImagePixels));
 }
 
-std::shared_ptr<const Image> load_image(const std::string& path) {
+std::shared_ptr<const TextureImage> load_image(const std::string& path) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error))
         throw InputError(fmt::format("{}: found no such file, expected an image", path));
@@ -57,7 +57,7 @@ std::shared_ptr<const Image> load_image(const std::string& path) {
     const std::lock_guard lock(cache().mutex);
     auto& entry = cache().images[key];
     auto image = entry.lock();
-    if (image == nullptr) entry = image = std::make_shared<const Image>(read_image(path));
+    if (image == nullptr) entry = image = std::make_shared<const TextureImage>(read_image(path));
     return image;
 }
 

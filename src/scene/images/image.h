@@ -15,7 +15,7 @@ namespace keyhole {
 
 /// One or three channels, row by row from the top, without alpha. Integers hold what the file holds, of 255 or 65535;
 /// floats are linear.
-struct Image {
+struct TextureImage {
     using Bytes = std::vector<std::uint8_t>;
     using Words = std::vector<std::uint16_t>;
     using Floats = std::vector<float>;
@@ -46,13 +46,13 @@ void check_image_size(const std::string& path, std::int64_t width, std::int64_t 
 /// The image of a file, from a cache while anybody holds it: EXR, PFM, TGA and JPEG, and what OpenImageIO reads, which
 /// is loaded when first needed, because it costs a third of a second and 130 MB.
 /// @throws InputError "path: what is wrong"
-std::shared_ptr<const Image> load_image(const std::string& path);
+std::shared_ptr<const TextureImage> load_image(const std::string& path);
 
 // The readers behind load_image(), by kind of file.
-Image read_exr_image(const std::string& path);
-Image read_pfm_image(const std::string& path);
-Image read_tga_image(const std::string& path);
-Image read_jpeg_image(const std::string& path);
-Image read_other_image(const std::string& path);
+TextureImage read_exr_image(const std::string& path);
+TextureImage read_pfm_image(const std::string& path);
+TextureImage read_tga_image(const std::string& path);
+TextureImage read_jpeg_image(const std::string& path);
+TextureImage read_other_image(const std::string& path);
 
 } // namespace keyhole

@@ -27,7 +27,7 @@ void leave(j_common_ptr decoder) {
 enum class Outcome { fine, broken, other_colors };
 
 /// Holds no object of its own that needs a destructor, since errors jump out of it.
-Outcome decode(std::FILE* file, jpeg_decompress_struct& decoder, ErrorManager& errors, Image& image,
+Outcome decode(std::FILE* file, jpeg_decompress_struct& decoder, ErrorManager& errors, TextureImage& image,
                const std::string& path) {
     if (setjmp(errors.caller) != 0) return Outcome::broken;
     jpeg_create_decompress(&decoder);
@@ -37,8 +37,8 @@ Outcome decode(std::FILE* file, jpeg_decompress_struct& decoder, ErrorManager& e
     decoder.out_color_space = decoder.num_components == 1 ? JCS_GRAYSCALE : JCS_RGB;
     check_image_size(path, decoder.image_width, decoder.image_height);
     jpeg_start_decompress(&decoder);
-    auto& texels = image.allocate<Image::Bytes>(static_cast<int>(decoder.output_width),
-                                                static_cast<int>(decoder.output_height), decoder.output_components);
+    auto& texels = image.allocate<TextureImage::Bytes>(
+        static_cast<int>(decoder.output_width), static_cast<int>(decoder.output_height), decoder.output_components);
     const std::size_t row = std::size_t{decoder.output_width} * static_cast<std::size_t>(decoder.output_components);
     while (decoder.output_scanline < decoder.output_height) {
         JSAMPROW at = texels.data() + decoder.output_scanline * row;
@@ -50,7 +50,7 @@ Outcome decode(std::FILE* file, jpeg_decompress_struct& decoder, ErrorManager& e
 
 } // namespace
 
-Image read_jpeg_image(const std::string& path) {
+TextureImage read_jpeg_image(const std::string& path) {
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
     if (file == nullptr) throw InputError(path + ": can't be read");
     ErrorManager errors{};
@@ -60,7 +60,7 @@ Image read_jpeg_image(const std::string& path) {
     errors.base.output_message = [](j_common_ptr) {}; // warnings are counted
     const std::unique_ptr<jpeg_decompress_struct, void (*)(jpeg_decompress_struct*)> owner(
         &decoder, [](jpeg_decompress_struct* d) { jpeg_destroy_decompress(d); });
-    Image image;
+    TextureImage image;
     switch (decode(file.get(), decoder, errors, image, path)) {
     case Outcome::broken:
         throw InputError(path + ": found a broken JPEG file: " + errors.message);

@@ -43,9 +43,9 @@ ReadImage* load_module() {
 
 } // namespace
 
-Image read_other_image(const std::string& path) {
+TextureImage read_other_image(const std::string& path) {
     static ReadImage* const read = load_module();
-    Image image;
+    TextureImage image;
     std::string error;
     if (!read(path, image, error)) throw InputError(path + ": " + error);
     return image;

@@ -13,7 +13,7 @@ float swapped(float x) { return std::bit_cast<float>(__builtin_bswap32(std::bit_
 
 } // namespace
 
-Image read_pfm_image(const std::string& path) {
+TextureImage read_pfm_image(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     std::string magic;
     std::int64_t width = 0, height = 0;
@@ -30,9 +30,9 @@ Image read_pfm_image(const std::string& path) {
     if (static_cast<std::int64_t>(std::filesystem::file_size(path, error)) - file.tellg() < size)
         throw InputError(path + ": found the end of the file, expected more pixels");
 
-    Image image;
+    TextureImage image;
     auto& texels =
-        image.allocate<Image::Floats>(static_cast<int>(width), static_cast<int>(height), magic == "PF" ? 3 : 1);
+        image.allocate<TextureImage::Floats>(static_cast<int>(width), static_cast<int>(height), magic == "PF" ? 3 : 1);
     const auto row = static_cast<std::size_t>(width * image.channels);
     for (auto y = static_cast<std::size_t>(height); y-- > 0;)
         file.read(reinterpret_cast<char*>(&texels[y * row]), static_cast<std::streamsize>(row * sizeof(float)));

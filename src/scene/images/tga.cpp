@@ -67,7 +67,7 @@ std::vector<std::uint8_t> unpack(const std::string& path, const std::vector<std:
 
 } // namespace
 
-Image read_tga_image(const std::string& path) {
+TextureImage read_tga_image(const std::string& path) {
     std::ifstream stream(path, std::ios::binary);
     const std::vector<std::uint8_t> file{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
     if (file.size() < kHeaderBytes) throw InputError(path + ": found no TGA header, expected 18 bytes of it");
@@ -76,8 +76,8 @@ Image read_tga_image(const std::string& path) {
     check_image_size(path, h.width, h.height);
     const std::vector<std::uint8_t> raw = unpack(path, file, h);
 
-    Image image;
-    auto& texels = image.allocate<Image::Bytes>(h.width, h.height, h.channels());
+    TextureImage image;
+    auto& texels = image.allocate<TextureImage::Bytes>(h.width, h.height, h.channels());
     const std::uint8_t* in = raw.data();
     for (int j = 0; j < h.height; ++j) {
         for (int i = 0; i < h.width; ++i, in += h.stored_channels()) {

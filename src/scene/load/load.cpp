@@ -1,6 +1,6 @@
 #include "scene/load/load.h"
 
-#include "scene/pbrt/load_pbrt.h"
+#include "scene/load/load_pbrt.h"
 
 namespace keyhole {
 
@@ -8,7 +8,7 @@ LoadedScene load(const std::string& path, const std::vector<std::string>& overri
                  std::vector<std::string>* warnings) {
     if (!is_pbrt(path)) return load_scene(path, overrides, warnings);
     LoadedScene scene = load_pbrt(path, warnings);
-    for (const auto& o : overrides) apply_override(scene.settings, o);
+    for (const auto& o : overrides) apply_override(scene.settings, o, warnings);
     return scene;
 }
 

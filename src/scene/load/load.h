@@ -1,7 +1,7 @@
 // Scenes from files of any format that we read.
 #pragma once
 
-#include "scene/load/scene_yaml.h"
+#include "scene/load/load_yaml.h"
 
 #include <string>
 #include <vector>

@@ -1,4 +1,5 @@
 #include "core/error.h"
+#include "scene/load/properties.h"
 #include "scene/materials/make_material.h"
 
 #include <fmt/format.h>
@@ -15,6 +16,22 @@ double checked_index(double eta) {
 /// Closer to 1, directions of light differ by too little to tell the microfacet that refracted it; and refract too
 /// little to tell at all.
 constexpr double kNoRefraction = 2e-3;
+
+/// pbrt's kind of this name is v3's, which is rough where it is rough along its tangent or across it.
+MaterialPtr read_glass(Properties& p) {
+    constexpr NumberRange kTint{"a tint", 0, 1};
+    const Roughness rough = p.roughness({"", "roughness"}, RoughnessScale::pbrt_v3);
+    const Key index{"", "index"};
+    const double eta = p.refractive_index(p.has(index) ? index : Key("ior", "eta"));
+    if (p.has({"", "uroughness"}) || p.has({"", "vroughness"})) return make_dielectric(eta, rough.x, rough.y);
+    return make_glass(eta, p.color({"reflect_tint", "Kr"}, ColorUse::reflectance, kTint, Rgb(1.0)),
+                      p.color({"transmit_tint", "Kt"}, ColorUse::reflectance, kTint, Rgb(1.0)));
+}
+
+MaterialPtr read_dielectric(Properties& p) {
+    const Roughness rough = p.roughness("roughness");
+    return make_dielectric(p.refractive_index({"ior", "eta"}), rough.x, rough.y);
+}
 
 } // namespace
 
@@ -42,6 +59,19 @@ MaterialPtr make_thin_dielectric(double eta) {
 
 MaterialPtr make_interface() {
     return make_material("interface", {}, [](const SurfacePoint& /*point*/) -> Bsdf::Model { return InterfaceBsdf{}; });
+}
+
+MaterialKinds dielectric_kinds() {
+    return {{"glass", "glass", {"ior", "reflect_tint", "transmit_tint", "bump"}, read_glass},
+            {"dielectric", "a dielectric", {"ior", "roughness", "bump"}, read_dielectric},
+            {{"thin_dielectric", "thindielectric"},
+             "a pane",
+             {"ior", "bump"},
+             [](Properties& p) {
+                 return make_thin_dielectric(p.refractive_index({"ior", "eta"}));
+             }},
+            {"interface", "an interface", {}, [](Properties&) { return make_interface(); }},
+            {{"", "none"}, "", {}, [](Properties&) { return make_interface(); }}};
 }
 
 } // namespace keyhole

@@ -1,4 +1,7 @@
+#include "scene/load/properties.h"
 #include "scene/material.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 
@@ -31,10 +34,26 @@ class MixMaterial final : public Material {
     std::uint32_t salt_;
 };
 
+/// pbrt-v4 names both in one list; v3's amount is the share of the first.
+MaterialPtr read_mix(Properties& p) {
+    const FloatTexture amount = p.number_texture("amount", kShare, 0.5);
+    if (!p.is_pbrt()) return make_mix(p.materials("a")[0], p.materials("b")[0], amount);
+    const Key list{"", "materials"}, first{"", "namedmaterial1"}, second{"", "namedmaterial2"};
+    if (p.has(list)) {
+        const auto both = p.materials(list);
+        if (both.size() != 2) p.fail(fmt::format("found {} 'materials', expected 2", both.size()));
+        return make_mix(both[0], both[1], amount);
+    }
+    if (!p.has(first) || !p.has(second)) p.fail("found no 'materials', expected the names of two");
+    return make_mix(p.materials(second)[0], p.materials(first)[0], amount);
+}
+
 } // namespace
 
 MaterialPtr make_mix(MaterialPtr a, MaterialPtr b, FloatTexture amount) {
     return std::make_shared<MixMaterial>(std::move(a), std::move(b), std::move(amount));
 }
+
+MaterialKinds mix_kinds() { return {{"mix", "a mix of materials", {"a", "b", "amount", "bump"}, read_mix}}; }
 
 } // namespace keyhole

@@ -1,5 +1,9 @@
 #include "scene/images/image.h"
+#include "core/error.h"
+#include "scene/load/properties.h"
 #include "scene/texture.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +27,7 @@ double decode(double x, const ImageOptions& options) {
 template <class Texels> class Decoder {
   public:
     explicit Decoder(const ImageOptions& options) {
-        constexpr bool integers = !std::is_same_v<Texels, Image::Floats>;
+        constexpr bool integers = !std::is_same_v<Texels, TextureImage::Floats>;
         if constexpr (integers) {
             constexpr auto most = std::numeric_limits<typename Texels::value_type>::max();
             table_.resize(static_cast<std::size_t>(most) + 1);
@@ -32,7 +36,7 @@ template <class Texels> class Decoder {
         }
     }
     double operator()(typename Texels::value_type x) const {
-        if constexpr (std::is_same_v<Texels, Image::Floats>)
+        if constexpr (std::is_same_v<Texels, TextureImage::Floats>)
             return x;
         else
             return static_cast<double>(table_[x]);
@@ -52,7 +56,7 @@ int wrapped(std::int64_t i, int n, Wrap wrap) {
 
 template <class T, class Texels> class ImageTexture final : public Texture<T> {
   public:
-    ImageTexture(std::shared_ptr<const Image> image, const ImageOptions& options)
+    ImageTexture(std::shared_ptr<const TextureImage> image, const ImageOptions& options)
         : image_(std::move(image)), texels_(std::get<Texels>(image_->texels)), options_(options), decoder_(options) {}
 
     T value(const SurfacePoint& point) const override {
@@ -101,13 +105,63 @@ template <class T, class Texels> class ImageTexture final : public Texture<T> {
             return adjust(x);
     }
 
-    std::shared_ptr<const Image> image_;
+    std::shared_ptr<const TextureImage> image_;
     const Texels& texels_;
     ImageOptions options_;
     Decoder<Texels> decoder_;
 };
 
+void read_encoding(Properties& p, ImageOptions& o) {
+    if (!p.is_pbrt()) {
+        const std::string word = p.choice("encoding", "an encoding", {"automatic", "srgb", "linear", "gamma"});
+        if (word == "srgb") o.encoding = Encoding::srgb;
+        if (word == "linear") o.encoding = Encoding::linear;
+        if (word == "gamma") o.encoding = Encoding::gamma;
+        o.gamma = p.number("gamma", {"a gamma", 0.01, 100}, o.gamma);
+        return;
+    }
+    // The value of a gamma stands in the same word.
+    const std::string word = p.word("encoding");
+    if (word == "sRGB") o.encoding = Encoding::srgb;
+    if (word == "linear") o.encoding = Encoding::linear;
+    if (word.starts_with("gamma")) {
+        o.encoding = Encoding::gamma;
+        o.gamma = std::atof(word.c_str() + 5);
+        if (!(o.gamma > 0)) p.fail(fmt::format("found the encoding '{}', expected a positive gamma", word));
+    }
+    if (!word.empty() && o.encoding == Encoding::automatic)
+        p.fail(fmt::format("found the encoding '{}', expected sRGB, linear or gamma with a number", word));
+    if (!p.boolean("gamma", true)) o.encoding = Encoding::linear; // v3
+}
+
+template <class T> std::shared_ptr<const Texture<T>> read_image(Properties& p) {
+    const Key file{"file", "filename"};
+    const std::string path = p.path(file, "an image");
+    ImageOptions o;
+    read_encoding(p, o);
+    const std::string wrap = p.choice("wrap", "a way to wrap", {"repeat", "black", "clamp"});
+    o.wrap = wrap == "black" ? Wrap::black : wrap == "clamp" ? Wrap::clamp : Wrap::repeat;
+    // pbrt's other filters are finer than ours.
+    const bool nearest = p.is_pbrt() ? p.word("filter") == "point"
+                                     : p.choice("filter", "a filter", {"bilinear", "nearest"}) == "nearest";
+    o.filter = nearest ? Filter::nearest : Filter::bilinear;
+    p.ignore({"maxanisotropy", "trilinear"});
+    o.scale = p.number("scale", kFactor, o.scale);
+    o.invert = p.boolean("invert", false);
+    o.mapping = p.mapping();
+    return p.make_at(file, [&] { return image_texture<T>(path, o); });
+}
+
 } // namespace
+
+template <class T> TextureKinds<T> image_kinds() {
+    return {{{"image", "imagemap"},
+             "an image",
+             {"file", "encoding", "gamma", "wrap", "filter", "scale", "invert", "repeat", "shift"},
+             read_image<T>}};
+}
+template TextureKinds<Rgb> image_kinds();
+template TextureKinds<double> image_kinds();
 
 template <class T>
 std::shared_ptr<const Texture<T>> image_texture(const std::string& path, const ImageOptions& options) {

@@ -1,4 +1,5 @@
 // Textures that need no files.
+#include "scene/load/properties.h"
 #include "scene/texture.h"
 
 #include <algorithm>
@@ -63,6 +64,27 @@ template <class T> class CheckerboardTexture final : public Texture<T> {
     UvMapping mapping_;
 };
 
+/// pbrt-v3 has 'tex2' for v4's 'scale', and 'tex1' for 'tex'.
+template <class T> std::shared_ptr<const Texture<T>> read_scale(Properties& p) {
+    const bool v3 = p.has({"", "tex2"});
+    auto value = p.operand<T>({"texture", v3 ? "tex1" : "tex"}, 1);
+    const Key factor{"factor", v3 ? "tex2" : "scale"};
+    p.require(factor);
+    return scale_texture<T>(std::move(value), p.number_texture(factor, kFactor, 1));
+}
+
+template <class T> std::shared_ptr<const Texture<T>> read_mix(Properties& p) {
+    auto a = p.operand<T>({"a", "tex1"}, 0), b = p.operand<T>({"b", "tex2"}, 1);
+    return mix_texture<T>(std::move(a), std::move(b), p.number_texture("amount", kShare, 0.5));
+}
+
+template <class T> std::shared_ptr<const Texture<T>> read_checkerboard(Properties& p) {
+    if (p.number({"", "dimension"}, {}, 2) != 2) p.fail("found a checkerboard of 3 dimensions, expected 2");
+    p.ignore({"aamode"});
+    auto a = p.operand<T>({"a", "tex1"}, 1), b = p.operand<T>({"b", "tex2"}, 0);
+    return checkerboard_texture<T>(std::move(a), std::move(b), p.mapping());
+}
+
 /// The finaliser of MurmurHash3.
 std::uint64_t scramble(std::uint64_t z) {
     z = (z ^ (z >> 33)) * 0xFF51AFD7ED558CCDULL;
@@ -76,6 +98,17 @@ constexpr double kCellsPerUv = 65536;
 std::uint64_t cell(float x) { return std::bit_cast<std::uint64_t>(std::floor(static_cast<double>(x) * kCellsPerUv)); }
 
 } // namespace
+
+template <class T> TextureKinds<T> simple_kinds() {
+    return {{"scale", "a scaled texture", {"texture", "factor"}, read_scale<T>},
+            {"mix", "a mix of textures", {"a", "b", "amount"}, read_mix<T>},
+            {"checkerboard", "a checkerboard", {"a", "b", "repeat", "shift"}, read_checkerboard<T>},
+            {{"", "constant"}, "", {}, [](Properties& p) {
+                 return p.operand<T>({"", "value"}, 1);
+             }}};
+}
+template TextureKinds<Rgb> simple_kinds();
+template TextureKinds<double> simple_kinds();
 
 ColorTexture constant_texture(const Rgb& value) { return std::make_shared<ConstantTexture<Rgb>>(value); }
 FloatTexture constant_texture(double value) { return std::make_shared<ConstantTexture<double>>(value); }

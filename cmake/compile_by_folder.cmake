@@ -1,0 +1,15 @@
+# keyhole_compile_by_folder(<target>): with KEYHOLE_UNITY, the sources of each folder are compiled as one. Names in their
+# anonymous namespaces have to differ, then.
+function(keyhole_compile_by_folder target)
+  if(NOT KEYHOLE_UNITY)
+    return()
+  endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  get_target_property(sources ${target} SOURCES)
+  foreach(source ${sources})
+    cmake_path(RELATIVE_PATH source BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} OUTPUT_VARIABLE name)
+    cmake_path(GET name PARENT_PATH folder)
+    string(REPLACE "/" "_" group "${folder}")
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP "${group}")
+  endforeach()
+endfunction()

@@ -1,0 +1,133 @@
+#include "cli/checkpoints.h"
+
+#include "cli/real_range.h"
+#include "core/error.h"
+#include "core/work_item_set.h"
+#include "film/files/exr.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+
+namespace keyhole {
+namespace {
+
+/// Between checkpoints of a render that goes on, where nobody says.
+constexpr double kSeconds = 600;
+
+constexpr int kMostRanks = 16'384;
+
+namespace fs = std::filesystem;
+
+std::pair<std::int64_t, std::int64_t> parse_range(const std::string& text) {
+    std::int64_t begin = 0, end = 0;
+    const char *at = text.data(), *last = at + text.size();
+    const auto colon = std::from_chars(at, last, begin);
+    const bool half = colon.ec == std::errc() && colon.ptr != last && *colon.ptr == ':';
+    const auto rest = half ? std::from_chars(colon.ptr + 1, last, end) : colon;
+    if (!half || rest.ec != std::errc() || rest.ptr != last || begin < 0 || end <= begin)
+        throw InputError(fmt::format("--pass-range: found '{}', expected A:B, the passes from A (counted from 0) to "
+                                     "before B",
+                                     text));
+    return {begin, end};
+}
+
+} // namespace
+
+void Checkpoints::add_options(CLI::App& command) {
+    command.add_option("--pass-range", pass_range,
+                       "A:B, render only passes A to B-1, counted from 0; `keyhole merge` joins the shares");
+    command
+        .add_option("--checkpoint", checkpoint,
+                    "every so many SECONDS keep what is done, beside the picture as NAME.checkpoint.exr")
+        ->check(real_range(0.0, 1e9));
+    command.add_flag("--resume", resume, "go on from that file");
+}
+
+std::string Checkpoints::file(const std::string& exr, int rank) const {
+    if (!checkpoint && !resume) return {};
+    const std::string ending = rank == 0 ? ".checkpoint.exr" : fmt::format(".checkpoint.{}.exr", rank);
+    return fs::path(exr).replace_extension(ending).string();
+}
+
+/// Several processes leave a file each. They become one, whatever the number of processes now.
+void Checkpoints::read(const std::string& exr, const NamedPicture& render) {
+    const std::string own = file(exr); // of the first process, which the others go on from, too
+    std::vector<std::string> files;
+    for (int rank = 0; rank < kMostRanks; ++rank)
+        if (const std::string path = file(exr, rank); fs::exists(path)) files.push_back(path);
+    if (files.empty()) return;
+    for (const std::string& path : files) {
+        NamedPicture next{path, read_exr(path)};
+        check_same_render(render, next, SameRender::seed);
+        if (next.picture.metadata["units"].empty()) continue; // written before the first unit was whole
+        if (done_.name.empty()) {
+            done_ = std::move(next);
+        } else if (!units_of(done_).contains(units_of(next))) {
+            Picture joined = join_shares(std::array{std::move(done_), std::move(next)});
+            done_ = {own, std::move(joined)};
+        }
+    }
+    if (done_.name.empty() || (files.size() == 1 && files.front() == own)) return;
+    // Once it is written what is in the others is in it, so that a death at any point here loses nothing.
+    write_exr(own, done_.picture);
+    for (const std::string& path : files)
+        if (path != own) fs::remove(path);
+}
+
+WorkPartition Checkpoints::share(const std::string& exr, const Picture& render, const Settings& settings,
+                                 ProcessGroup* team) {
+    WorkPartition share;
+    if (!pass_range.empty()) {
+        const auto [begin, end] = parse_range(pass_range);
+        share.first_pass = begin;
+        share.end_pass = end;
+    }
+    share.keep_sums = !pass_range.empty() || team != nullptr;
+    if (share.keep_sums && (settings.passes < share.end_pass.value_or(1) || settings.target_error > 0))
+        throw InputError(fmt::format("found passes={} and target_error={}, expected a number of passes that is known "
+                                     "beforehand and not below what is to be shared out",
+                                     settings.passes, settings.target_error));
+    if (team != nullptr) {
+        share.take_number = [team] { return team->take_number(); };
+        share.processes = team->size();
+        share.communicator = team;
+    }
+    if (checkpoint && std::isnan(*checkpoint)) throw InputError("--checkpoint: found nan, expected seconds");
+    if (file(exr).empty()) return share;
+    const int rank = team != nullptr ? team->rank() : 0;
+    if (resume) {
+        if (rank == 0) read(exr, {"the render", render});
+        if (team != nullptr) team->wait_for_all(); // until the first has made one file of all
+        if (rank > 0 && fs::exists(file(exr))) {
+            done_ = {file(exr), read_exr(file(exr))};
+            done_.picture.sums.clear(); // the first process has them
+        }
+        // Whoever goes on before all have read would write over it, and its new units would be done twice.
+        if (team != nullptr) team->wait_for_all();
+        if (!done_.name.empty()) share.done = &done_.picture;
+    }
+    share.save_every = checkpoint.value_or(kSeconds);
+    // What more processes left of an earlier render would stand in the way of going on from this one.
+    std::vector<std::string> left_over;
+    if (!resume && rank == 0)
+        for (int r = team != nullptr ? team->size() : 1; r < kMostRanks; ++r)
+            if (const std::string path = file(exr, r); fs::exists(path)) left_over.push_back(path);
+    share.save = [path = file(exr, rank), identity = render.metadata, left_over](Picture picture) mutable {
+        picture.metadata.insert(identity.begin(), identity.end());
+        try {
+            write_exr(path, picture);
+            for (const std::string& old : left_over) fs::remove(old);
+            left_over.clear();
+        } catch (const InputError& e) {
+            // A full disk is no reason to lose the render as well: there may be room again.
+            fmt::print(stderr, "keyhole: warning: no checkpoint: {}\n", e.what());
+        }
+    };
+    return share;
+}
+
+} // namespace keyhole

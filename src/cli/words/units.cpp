@@ -1,0 +1,31 @@
+#include "cli/words/units.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace keyhole {
+
+std::string with_prefix(double x) {
+    constexpr std::array<const char*, 5> kPrefixes{"", "k", "M", "G", "T"};
+    std::size_t k = 0;
+    // 999.5 and more would print as 1000.
+    while (std::abs(x) >= 999.5 && k + 1 < kPrefixes.size()) {
+        x /= 1000;
+        ++k;
+    }
+    const double size = std::abs(x);
+    const int decimals = size >= 99.95 || (k == 0 && x == std::floor(x)) ? 0 : size >= 9.995 ? 1 : 2;
+    return fmt::format("{:.{}f} {}", x, decimals, kPrefixes[k]);
+}
+
+std::string duration(double seconds) {
+    if (seconds < 59.95) return fmt::format("{:.1f} s", seconds);
+    const auto whole = static_cast<long long>(std::min(std::round(seconds), 1e15));
+    if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
+    return fmt::format("{} h {:02} min", whole / 3600, whole % 3600 / 60);
+}
+
+} // namespace keyhole

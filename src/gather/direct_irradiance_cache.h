@@ -1,0 +1,46 @@
+// What gather rays may take over from the places of an irradiance map besides indirect light.
+#pragma once
+
+#include "core/progress.h"
+#include "photonmap/photon.h"
+#include "scene/scene.h"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace keyhole {
+
+struct DirectIrradianceOptions {
+    int direct_samples = 4; ///< of emitters, at each place
+    std::uint64_t seed = 1;
+};
+
+/// Direct light at the places of an irradiance map. Immutable and thread-safe once built.
+class DirectIrradianceCache {
+  public:
+    /// `places` are those of the irradiance map, and must outlive this.
+    DirectIrradianceCache(const Scene& scene, std::span<const Photon> places, const DirectIrradianceOptions& options,
+                          const RunContext& context);
+
+    /// Irradiance that emitters bring to `position`, near place i [W/m^2]; none where it may change too fast for
+    /// another place's.
+    std::optional<Rgb> direct(std::uint32_t i, const Vec3& position) const;
+
+    std::size_t bytes() const { return entries_.capacity() * sizeof(Entry); }
+    /// Of it, for one place [bytes].
+    static constexpr std::size_t bytes_per_place() { return sizeof(Entry); }
+
+  private:
+    struct Entry {
+        SharedExponentRgb direct;
+        float reach = 0; ///< [m]
+    };
+    Entry at(const Scene& scene, std::uint32_t i, const DirectIrradianceOptions& options) const;
+
+    std::span<const Photon> places_;
+    std::vector<Entry> entries_;
+};
+
+} // namespace keyhole

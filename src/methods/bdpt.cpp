@@ -1,0 +1,85 @@
+// --method bdpt: bidirectional path tracing (Veach 1997, chapter 10). Paths whose light sub-path is joined to the eye
+// itself choose their pixel; all others belong to the pixel that the eye sub-path was traced for.
+#include "film/splats.h"
+#include "methods/method.h"
+#include "methods/pixel_sink.h"
+#include "methods/sample_report.h"
+#include "sampling/paths/bidirectional_tracer.h"
+#include "session/pixels.h"
+#include "session/stage_clock.h"
+#include "session/work.h"
+
+namespace keyhole {
+namespace {
+
+constexpr Stage kBidirectionalTracing{"bidirectional path tracing", &Settings::spp, 1};
+
+struct BidirectionalSink {
+    PixelSink& pixel;
+    SplatFilm& splats;
+    const ImageWindow& window;
+
+    void contribution(const Connection& connection, const Rgb& value, LightClass light) {
+        if (connection.t() > 1)
+            pixel.add(value, light);
+        else if (is_finite(value))
+            splats.add(window.to_pixel(connection.image()), SplatFilm::layer_of(light), value);
+    }
+};
+
+PixelSample sample_pixel(const Scene& scene, const Vec2& image, int depth, MisHeuristic heuristic, SplatFilm& splats,
+                         SampleSource& source) {
+    SubPathPair& pair = SubPathPair::scratch();
+    auto& [eye, light] = pair;
+    trace_eye_subpath(scene, image, most_eye_vertices(depth), source, &source, eye);
+    trace_light_subpath(scene, most_light_vertices(depth), source, &source, light);
+    PixelSink pixel;
+    for (std::size_t i = 1; i < eye.vertices.size() && !pixel.saw_surface; ++i)
+        pixel.see(eye.vertices[i], eye.vertices[i - 1], eye.notes[i].throughput, i == 1);
+    BidirectionalSink sink{pixel, splats, scene.camera().window()};
+    connect_subpaths(scene, pair, image, {depth, PathSet::all, heuristic}, sink);
+    return pixel.pixel;
+}
+
+RenderResult render_bdpt(const RenderTask& task) {
+    const auto& [scene, settings, paths, context, share, findings] = task;
+    RenderResult result;
+    const ImageWindow& window = scene.camera().window();
+    RunningStats luminance;
+    Work work(settings, window, AccumulationBuffer::Parts::both, share, settings.spp, Work::PassStart::free);
+    SplatFilm splats(window.width, window.height, PixelFilter(settings));
+    // One light sub-path for each pixel and round, each an estimate of the whole window.
+    const double scale = window.pixels() / window.size();
+    {
+        const StageClock clock(result.stats, kBidirectionalTracing);
+        const SamplingStage stage(scene, work.left(), "bidirectional path tracing", context);
+        const auto depth = static_cast<int>(settings.max_depth);
+        while (const auto round = work.take(context)) {
+            Film& film = *work.unit().film;
+            const bool whole = sample_round(scene, film, *round, static_cast<std::uint64_t>(settings.seed),
+                                            StreamPurpose::bidirectional, context, luminance,
+                                            [&](const Vec2& image, SampleSource& source) {
+                                                return sample_pixel(scene, image, depth, settings.mis, splats, source);
+                                            });
+            // Of later rounds that are cut short the eye's samples are enough.
+            const double share_of_round = whole ? 1 : work.is_first() ? film.samples_per_pixel() : 0;
+            if (share_of_round > 0) work.unit().drawn->add(splats, scale / share_of_round);
+            splats.clear();
+            if (whole) work.end_unit(result.stats);
+        }
+    }
+    report_samples(luminance, result.stats);
+    report_lost_light(luminance, scene, result.stats);
+    result.picture = work.finish(result.stats);
+    return result;
+}
+
+} // namespace
+
+constinit const Method methods::bdpt{.name = "bdpt",
+                                     .help = "bidirectional path tracing",
+                                     .samples_pixels = true,
+                                     .trial = {.share = 0.08, .by_work = true},
+                                     .render = render_bdpt};
+
+} // namespace keyhole

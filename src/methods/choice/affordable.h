@@ -1,0 +1,20 @@
+// How much effort a time is enough for.
+#pragma once
+
+#include "methods/choice/effort.h"
+#include "methods/choice/experience.h"
+
+#include <set>
+#include <string>
+
+namespace keyhole {
+
+/// CPU time of a unit of effort, on scenes/ at 320x240 [s]: what is known before anything was measured.
+constexpr double kSecondsOfEffort = 5;
+
+/// The most effort of which a render by the method of `cost` is predicted to take at most `seconds`; `least` where that
+/// is too much already.
+double affordable_effort(const Experience& cost, const Settings& settings, const std::set<std::string>& given,
+                         const StageBalance& balance, double pixels, double seconds, double least = 1e-4);
+
+} // namespace keyhole

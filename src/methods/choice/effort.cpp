@@ -1,0 +1,59 @@
+#include "methods/choice/effort.h"
+
+#include "methods/method.h"
+#include "methods/photons/memory_plan.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace keyhole {
+namespace {
+
+constexpr double kPixels = 320 * 240; // of the picture that effort is measured by
+
+/// Passes that bring `wanted` photons, as many of them as the memory holds at a time.
+std::int64_t passes_for(std::int64_t wanted, Settings settings) {
+    settings.photons = 0;
+    const auto held = static_cast<std::int64_t>(plan_memory(settings, settings.method->importance, 2).photons);
+    return std::max<std::int64_t>(1, (wanted + held - 1) / std::max<std::int64_t>(1, held));
+}
+
+} // namespace
+
+Settings with_effort(const Settings& settings, double effort, std::int64_t pixels, const std::set<std::string>& given,
+                     const StageBalance& balance) {
+    Settings s = settings;
+    const auto set = [&](const char* key, std::int64_t Settings::*member, double value, double least, double most) {
+        if (!given.contains(key)) s.*member = static_cast<std::int64_t>(std::clamp(value, least, most));
+    };
+    // Small pictures get more samples a pixel, large ones fewer, so that photons and pixels share the time alike.
+    const double spp = 12 * std::sqrt(effort * kPixels / static_cast<double>(pixels));
+    const double photons = 100e3 * std::pow(effort, 0.7);
+    const double passes = given.contains("passes") || !s.method->keeps_photons
+                              ? 1
+                              : std::min(static_cast<double>(passes_for(static_cast<std::int64_t>(photons), s)),
+                                         std::floor(std::max(1.0, spp)));
+    set("passes", &Settings::passes, passes, 1, 1 << 20);
+    set("spp", &Settings::spp, spp / passes, 1, 1 << 24);
+    set("photons", &Settings::photons, photons / passes, 1000, 1 << 30);
+    set("light_paths", &Settings::light_paths, 500e3 * effort / passes, 1000, 0x1p50);
+    set("mutations", &Settings::mutations, s.method->mutations_of_effort * effort * balance.chains / passes, 1000,
+        0x1p50);
+    set("brightness_samples", &Settings::brightness_samples,
+        s.method->brightness_samples_of_effort * effort * balance.brightness / passes, 5000, 0x1p40);
+    // More of them where the render is short, though not where they would take all of its time: without them photons
+    // would be weighed, or looked for, by chance, which costs more.
+    set("importons", &Settings::importons, 100e3 * effort / passes, std::clamp(1e6 * effort, 10e3, 50e3), 1 << 30);
+    // Where there is time for few rays, they are better spent on few records than on poor ones.
+    if (!given.contains("cache_error"))
+        s.cache_error = Settings().cache_error * std::clamp(std::pow(effort, -0.3), 1.0, 2.0);
+    set("cache_rays", &Settings::cache_rays, 1500 * std::pow(effort, 0.7) / std::sqrt(passes), 64, 1 << 20);
+    return s;
+}
+
+Settings with_quality(const Settings& settings, Quality quality, const std::set<std::string>& given) {
+    const double effort = quality == Quality::draft ? 0.5 : quality == Quality::good ? 4 : 24;
+    return with_effort(settings, effort, static_cast<std::int64_t>(kPixels), given);
+}
+
+} // namespace keyhole

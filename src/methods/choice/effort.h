@@ -1,0 +1,30 @@
+// How much effort a render makes, as one number.
+#pragma once
+
+#include "core/settings.h"
+
+#include <set>
+#include <string>
+
+namespace keyhole {
+
+/// How time is split between stage one and chains: factors on what a unit of effort gives each.
+struct StageBalance {
+    double brightness = 1, chains = 1;
+};
+
+/// `settings` with everything that makes a render longer and better set by `effort`: 1 takes about 5 s of CPU time on
+/// the scenes of scenes/ at 320x240. More effort is more samples, more photons, a finer cache, in proportions that
+/// served well there; photons grow more slowly than the paths that bring them, so that bias and noise of
+/// lookups shrink together. Settings named in `given` stay as they are. Photons that the memory can't hold at once are
+/// spread over passes.
+/// @param pixels of the picture.
+Settings with_effort(const Settings& settings, double effort, std::int64_t pixels, const std::set<std::string>& given,
+                     const StageBalance& balance = {});
+
+/// What `--quality` names: the effort that makes a draft, a good picture, or a final one, at any size of the picture.
+enum class Quality { draft, good, final };
+constexpr auto words_of(Quality) { return std::to_array<std::string_view>({"draft", "good", "final"}); }
+Settings with_quality(const Settings& settings, Quality quality, const std::set<std::string>& given);
+
+} // namespace keyhole

@@ -1,0 +1,64 @@
+#include "methods/choice/expected_cost.h"
+
+#include "methods/choice/method_trials.h"
+#include "methods/method.h"
+
+#include <algorithm>
+
+namespace keyhole {
+namespace {
+
+/// What a trial of one method should take, and may take; what those of all methods may [s].
+constexpr double kTrialOfCost = 0.1, kLongest = 0.6, kAll = 0.6;
+/// More time than any trial waits for: only the caps on trials count.
+constexpr double kEver = 1e6;
+
+/// Trials with so much time left.
+template <class Body> auto with_time(const TrialContext& c, double seconds, const Body& body) {
+    StopToken stop;
+    stop.set_cpu_limit(cpu_seconds() + seconds);
+    RunContext context;
+    context.stop = &stop;
+    return body(TrialContext{c.scene, c.settings, c.given, context, c.user_paths, c.findings});
+}
+
+std::optional<TrialCost> cost_of(const TrialContext& c, const Method& method) {
+    return with_time(c, kEver, [&](const TrialContext& t) { return try_cost(t, method, kTrialOfCost, kLongest); });
+}
+
+} // namespace
+
+double ExpectedCost::cpu_seconds() const {
+    double sum = 0;
+    for (const auto& stage : stages) sum += stage.second;
+    return sum;
+}
+
+ExpectedCost expect_cost(Scene& scene, const Settings& settings, const UserPathFile& user_paths, Findings& findings) {
+    const UserPaths paths = bind_user_paths(scene, user_paths);
+    const std::set<std::string> given;
+    const RunContext none;
+    Settings s = settings;
+    const TrialContext c{scene, s, given, none, paths, findings};
+    const double pixels = scene.camera().window().size();
+    ExpectedCost expected;
+    if (settings.method == &methods::automatic) {
+        s.method = &methods::ipm;
+        const auto ipm = cost_of(c, *s.method);
+        const double seconds = ipm ? ipm->cost.predict(s, pixels) : kEver;
+        const auto tried = with_time(c, seconds, [](const TrialContext& t) { return try_methods(t, kAll); });
+        if (!tried.empty()) {
+            expected.remarks.push_back(describe_choice(tried));
+            s = settings_of_same_work(c, tried);
+        }
+    }
+    expected.method = s.method->name;
+    if (const auto cost = cost_of(c, *s.method))
+        for (const auto& [stage, time] : cost->cost.stages)
+            expected.stages.emplace_back(stage->name, cost->cost.predict(*stage, time, s, pixels));
+    if (s.method->keeps_photons && findings.plan && findings.plan->photons)
+        expected.photon_bytes = static_cast<std::uint64_t>(s.photon_memory);
+    return expected;
+}
+
+} // namespace keyhole

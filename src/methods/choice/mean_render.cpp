@@ -1,0 +1,50 @@
+#include "methods/choice/mean_render.h"
+
+#include "film/join.h"
+
+#include <utility>
+
+namespace keyhole {
+namespace {
+
+/// Renders with less weight than this share of a later one's tell nothing that it doesn't.
+constexpr double kNegligible = 0.05;
+
+} // namespace
+
+void MeanRender::add(RenderResult&& result, double weight) {
+    if (!result_ || weight_ <= kNegligible * weight) {
+        if (result_) add_time_of(result_->stats);
+        result_ = std::move(result);
+        weight_ = most_ = weight;
+        return;
+    }
+    weight_ += weight;
+    blend(result_->picture, result.picture, weight / weight_);
+    result_->picture.sums.clear(); // they are of one render
+    const double samples = result_->stats.samples + result.stats.samples;
+    if (weight > most_) {
+        most_ = weight;
+        std::swap(result_->stats, result.stats);
+        result_->settings = result.settings;
+    }
+    result_->stats.samples = samples;
+    add_time_of(result.stats);
+}
+
+/// One line for all stages of it.
+void MeanRender::add_time_of(const RenderStats& stats) {
+    for (const StageStats& stage : stats.stages) {
+        others_.wall_seconds += stage.wall_seconds;
+        others_.cpu_seconds += stage.cpu_seconds;
+        others_.rays += stage.rays;
+    }
+}
+
+RenderResult MeanRender::take() {
+    auto& stages = result_->stats.stages;
+    if (others_.cpu_seconds > 0) stages.insert(stages.begin(), others_);
+    return std::move(*result_);
+}
+
+} // namespace keyhole

@@ -1,0 +1,325 @@
+#include "methods/choice/method_trials.h"
+
+#include "core/shared_work.h"
+#include "methods/choice/affordable.h"
+#include "methods/choice/first_look.h"
+#include "methods/choice/stage_balance.h"
+#include "methods/method.h"
+#include "session/passes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace keyhole {
+namespace {
+
+/// Of the whole time, at most; and so many seconds with a smaller share of longer times.
+constexpr double kMost = 0.115, kSeconds = 0.55, kShare = 0.03;
+/// Of the whole time, what the survey that methods with photons start with may take.
+constexpr double kPlan = 0.08;
+/// A trial that takes so many times as long as it should is given up.
+constexpr double kPatience = 3;
+/// Photons need some time however little they are to do: that share of all of it, up to so many seconds. To do without
+/// them may cost a hundred times the error.
+constexpr double kPatienceForPhotons = 0.055, kMostPatience = 0.4;
+/// What traces importance costs is told by so many walks.
+constexpr std::int64_t kImportons = 4000;
+/// Number of the first render of a trial, for its seed; those that count have others.
+constexpr std::int64_t kTrialSeed = std::int64_t{1} << 20;
+/// What photons and records err falls as this power of the effort at least: often faster while they are few, but two
+/// renders don't tell what both have wrong.
+constexpr double kSlope = 0.85;
+/// Of the grain that a trial shows, what stays at least where pixels of the picture are smaller.
+constexpr double kLeastGrain = 0.3;
+/// Of trials by work: seconds that a window of their size is for, and samples of its pixels.
+constexpr double kTrialOfWork = 0.7;
+constexpr std::int64_t kSamplesOfTrial = 4;
+/// A single trial has the window of as many seconds as all would take together.
+constexpr double kTrialsOfATrial = 8;
+
+/// Pixels of the window of trials that take so many seconds together: enough to tell errors by, few enough for several
+/// samples of each.
+double trial_pixels(double seconds) { return std::clamp(1800 * seconds, 600.0, 4800.0); }
+
+ImageWindow trial_window(ImageWindow window, double seconds) {
+    const double scale = std::max(1.0, std::sqrt(window.size() / trial_pixels(seconds)));
+    window.width = std::max(1, static_cast<int>(window.width / scale));
+    window.height = std::max(1, static_cast<int>(window.height / scale));
+    return window;
+}
+
+/// Sets a window for as long as it lives.
+class WindowScope {
+  public:
+    WindowScope(Scene& scene, const Settings& settings, const ImageWindow& window)
+        : scene_(scene), before_(scene.camera().window()) {
+        scene_.set_window(window);
+        set_window_margin(scene_, settings);
+    }
+    ~WindowScope() { scene_.set_window(before_); }
+    WindowScope(const WindowScope&) = delete;
+    WindowScope& operator=(const WindowScope&) = delete;
+
+  private:
+    Scene& scene_;
+    ImageWindow before_;
+};
+
+/// Settings of a render of the scene's window with so much effort.
+Settings trial_settings(const TrialContext& c, const Method& method, double effort) {
+    Settings s = c.settings;
+    s.method = &method;
+    // What is given may be much: it is left for the render.
+    s = with_effort(s, effort, static_cast<std::int64_t>(c.scene.camera().window().size()), {});
+    s.importons = std::min(s.importons, kImportons);
+    s.save_map.clear();
+    s.chain_groups = 1;
+    if (method.samples_pixels) s.spp = 1 << 24; // as many as the cap leaves time for, unless somebody says how many
+    return s;
+}
+
+struct TrialRender {
+    Image luminance, direct;
+    TrialCost of;
+};
+
+/// A render of the scene's window; none if it leaves holes. @throws Interrupted
+std::optional<TrialRender> render_trial(const TrialContext& c, Settings settings, double effort,
+                                        const RunContext& context) {
+    const auto left = [&] { return context.stop != nullptr ? context.stop->seconds_left() : 0; };
+    const bool in_time = std::isfinite(left()) && context.stop != nullptr;
+    const double start = left(), pixels = c.scene.camera().window().size();
+    const RenderResult r = render_by_method({c.scene, settings, c.user_paths, context, {}, c.findings});
+    if (!has_picture(r) || empty_pixels(r) > 0) return std::nullopt;
+    settings.spp = std::max<std::int64_t>(1, static_cast<std::int64_t>(r.stats.samples));
+    const Experience cost = in_time ? Experience(settings, effort, pixels, r.stats, start - left())
+                                    : Experience::in_rays(settings, effort, pixels, r.stats);
+    return TrialRender{luminance_of(r.picture),
+                       luminance_of(r.picture, "direct"),
+                       {.cost = cost,
+                        .taken = in_time ? start - left() : cost.total(),
+                        .samples = r.stats.samples,
+                        .balance = in_time ? rebalance({}, r.stats) : StageBalance()}};
+}
+
+/// The same under a cap; none if it was given up.
+std::optional<TrialRender> render_trial(const TrialContext& c, const Settings& settings, double effort, double most) {
+    RunContext limited = c.context;
+    limited.progress = nullptr;
+    limited.reserve = std::max(0.0, c.context.stop->seconds_left() - most);
+    try {
+        return render_trial(c, settings, effort, limited);
+    } catch (const Interrupted&) {
+        return std::nullopt;
+    }
+}
+
+/// The share of the grain that only samples of pixels make less: that of direct light, and of all light on surfaces
+/// that no record serves. Light of photons and records looks like grain as well where pixels are large.
+double by_samples(const TrialContext& c, const TrialRender& first, const TrialRender& second) {
+    const double direct = share_of_grain({first.direct, second.direct}, {first.luminance, second.luminance});
+    const double glossy = c.findings.plan ? std::min(1.0, c.findings.plan->survey.glossy) : 1;
+    return direct + (1 - direct) * glossy;
+}
+
+/// Finds out what methods with photons need to know; false if that takes longer than so many seconds.
+bool plan(const TrialContext& c, double most) {
+    Settings s = c.settings;
+    s.importons = std::min(s.importons, kImportons);
+    RunContext limited = c.context;
+    limited.progress = nullptr;
+    limited.reserve = std::max(0.0, c.context.stop->seconds_left() - most);
+    try {
+        plan_photons(c.scene, s, c.user_paths, limited, c.findings);
+    } catch (const Interrupted&) {
+        return false;
+    }
+    return true;
+}
+
+/// Pixels of the picture in the middles of those of a window that is smaller by `scale`.
+void narrow_pixels(Settings& s, double scale) {
+    s.filter = FilterShape::box;
+    s.filter_radius = 0.5 / scale;
+}
+
+double effort_of(double seconds) { return std::min(seconds / kSecondsOfEffort, 0.1); }
+
+/// The two renders of a method with settings `s`, and of path tracing those with narrow pixels; none if one is missing.
+/// `scale`: of the picture over the window. `render(settings, is_first)` makes one.
+template <class Render>
+std::optional<TriedMethod> try_with(const TrialContext& c, Settings s, double scale, const Render& render) {
+    s.seed = seed_of_render(c.settings, kTrialSeed);
+    auto first = render(s, true);
+    if (!first) return std::nullopt;
+    if (s.method->samples_pixels) s.spp = first->of.cost.settings.spp; // both are to cost the same
+    s.seed = seed_of_render(c.settings, kTrialSeed + 1);
+    auto second = render(s, false);
+    if (!second) return std::nullopt;
+    const double samples = s.method->keeps_photons ? by_samples(c, *first, *second) : 1;
+    TriedMethod tried{.method = s.method,
+                      .pictures = {std::move(first->luminance), std::move(second->luminance)},
+                      .narrow = {},
+                      .by_samples = samples,
+                      .of = std::move(second->of),
+                      .error = {}};
+    if (s.method == &methods::path) {
+        narrow_pixels(s, scale);
+        auto third = render(s, false);
+        s.seed = seed_of_render(c.settings, kTrialSeed);
+        auto fourth = render(s, false);
+        if (third && fourth) tried.narrow = {std::move(third->luminance), std::move(fourth->luminance)};
+    }
+    return tried;
+}
+
+/// A trial of one method in about so many seconds; none where it is too slow for that.
+std::optional<TriedMethod> try_method(const TrialContext& c, const Method& method, const ImageWindow& small,
+                                      double seconds) {
+    const double scale = static_cast<double>(c.scene.camera().window().width) / small.width;
+    const WindowScope window(c.scene, c.settings, small);
+    const double half = seconds / 2, effort = effort_of(half);
+    double most = kPatience * half;
+    if (method.keeps_photons)
+        most = std::max(most, std::min(kPatienceForPhotons * c.context.stop->seconds_left(), kMostPatience));
+    return try_with(c, trial_settings(c, method, effort), scale, [&](const Settings& s, bool is_first) {
+        return render_trial(c, s, effort, is_first && method.samples_pixels ? half : most);
+    });
+}
+
+/// The squared error in the time that is left, told from that of a trial.
+double predict(const TriedMethod& t, const TrialContext& c, double left) {
+    const double pixels = c.scene.camera().window().size();
+    const double time = t.of.taken / left, size = pixels / t.of.cost.pixels;
+    const TrialError& e = t.error;
+    if (t.method->samples_pixels) {
+        // Light that was missed is that of rare, bright samples, and grain where they are found.
+        const double missing = e.missing * t.of.cost.pixels / kTrialParts;
+        return (e.grain + e.blotches + missing) * time * size;
+    }
+    if (!t.method->keeps_photons)
+        return t.method->trial.doubt * (e.grain * time * size + (e.blotches + e.missing) * time);
+    Settings s = c.settings;
+    s.method = t.method;
+    const double effort = affordable_effort(t.of.cost, s, c.given, t.of.balance, pixels, left);
+    s = with_effort(s, effort, static_cast<std::int64_t>(pixels), c.given, t.of.balance);
+    const double samples = static_cast<double>(s.spp * s.passes) / t.of.samples;
+    const double growth = effort / t.of.cost.effort;
+    return t.method->trial.doubt * (e.grain * (t.by_samples / samples + (1 - t.by_samples) / growth) +
+                                    (e.blotches + e.missing) * std::pow(growth, -kSlope));
+}
+
+/// Rays that light tracing by importance would take with the settings, or else the first of the methods.
+double work_asked_for(const TrialContext& c, std::span<const TriedMethod> tried) {
+    const double pixels = c.scene.camera().window().size();
+    const auto ipm = std::ranges::find(tried, &methods::ipm, &TriedMethod::method);
+    if (ipm == tried.end()) {
+        const TrialCost& of = tried.front().of;
+        return of.taken / of.samples * static_cast<double>(c.settings.spp) * pixels / of.cost.pixels;
+    }
+    Settings s = c.settings;
+    s.method = &methods::ipm;
+    return ipm->of.cost.predict(s, pixels);
+}
+
+/// What the variance of a sample has of differences within a pixel of the small window that a pixel of the picture,
+/// which is smaller, doesn't have: the same for all methods that sample pixels.
+double variance_within_pixels(std::span<const TriedMethod> tried) {
+    const auto path = std::ranges::find_if(tried, [](const TriedMethod& t) { return t.narrow.has_value(); });
+    if (path == tried.end()) return 0;
+    return std::max(0.0, variance_of_most(path->pictures) - variance_of_most(*path->narrow)) * path->of.samples;
+}
+
+/// Errors of all, for so much time or work, and the best first.
+void rank(std::vector<TriedMethod>& tried, const TrialContext& c, double left) {
+    std::vector<TrialPictures> pictures;
+    for (const TriedMethod& t : tried) pictures.push_back(t.pictures);
+    const std::vector<TrialError> errors = trial_errors(pictures);
+    const double within = variance_within_pixels(tried);
+    for (std::size_t i = 0; i < tried.size(); ++i) {
+        tried[i].error = errors[i];
+        double& grain = tried[i].error.grain;
+        if (tried[i].method->keeps_photons || tried[i].method->samples_pixels)
+            grain = std::max(kLeastGrain * grain, grain - within / tried[i].of.samples);
+        tried[i].predicted = predict(tried[i], c, left);
+    }
+    std::ranges::stable_sort(tried, {}, &TriedMethod::predicted);
+}
+
+} // namespace
+
+std::optional<TrialCost> try_cost(const TrialContext& c, const Method& method, double seconds, double most) {
+    const WindowScope window(c.scene, c.settings, trial_window(c.scene.camera().window(), kTrialsOfATrial * seconds));
+    Settings s = trial_settings(c, method, effort_of(seconds));
+    s.seed = seed_of_render(c.settings, kTrialSeed);
+    auto trial = render_trial(c, s, effort_of(seconds), most);
+    return trial ? std::optional(std::move(trial->of)) : std::nullopt;
+}
+
+std::vector<TriedMethod> try_methods(const TrialContext& c, double most) {
+    const double start = c.context.stop->seconds_left();
+    const double budget = std::min({kMost * start, kSeconds + kShare * start, most});
+    const ImageWindow small = trial_window(c.scene.camera().window(), budget);
+    std::vector<TriedMethod> tried;
+    for (const Method* method : all_methods()) {
+        const double part = method->trial.share * budget;
+        if (part == 0) continue;
+        const double spent = start - c.context.stop->seconds_left();
+        if (c.context.stopped() || spent + part > budget) break;
+        if (method->keeps_photons && !plan(c, std::min(kPlan * start, most))) continue;
+        if (auto t = try_method(c, *method, small, part)) tried.push_back(std::move(*t));
+    }
+    rank(tried, c, c.context.stop->seconds_left());
+    return tried;
+}
+
+std::vector<TriedMethod> try_methods_by_work(const TrialContext& c) {
+    std::vector<TriedMethod> tried;
+    {
+        const ImageWindow small = trial_window(c.scene.camera().window(), kTrialOfWork);
+        const double scale = static_cast<double>(c.scene.camera().window().width) / small.width;
+        const WindowScope window(c.scene, c.settings, small);
+        RunContext context = c.context;
+        context.progress = nullptr;
+        const double asked = static_cast<double>(std::max(c.settings.light_paths, c.settings.mutations)) / 500e3;
+        const double effort = std::clamp(0.02 * asked, 0.001, 0.01);
+        for (const Method* method : all_methods()) {
+            if (!method->trial.by_work) continue;
+            Settings s = trial_settings(c, *method, effort);
+            if (method->samples_pixels) s.spp = kSamplesOfTrial;
+            const auto render = [&](const Settings& of, bool) { return render_trial(c, of, effort, context); };
+            if (auto t = try_with(c, s, scale, render)) tried.push_back(std::move(*t));
+        }
+    }
+    if (!tried.empty()) rank(tried, c, work_asked_for(c, tried));
+    return tried;
+}
+
+Settings settings_of_same_work(const TrialContext& c, std::span<const TriedMethod> tried) {
+    const TriedMethod& best = tried.front();
+    Settings s = c.settings;
+    s.method = best.method;
+    const double pixels = c.scene.camera().window().size(), work = work_asked_for(c, tried);
+    if (best.method->samples_pixels) {
+        const double per_sample = best.of.taken / best.of.samples * pixels / best.of.cost.pixels;
+        s.spp = std::max(s.spp, static_cast<std::int64_t>(work / per_sample));
+    } else if (!best.method->keeps_photons) {
+        const double effort = affordable_effort(best.of.cost, s, {}, {}, pixels, work);
+        const Settings same = with_effort(s, effort, static_cast<std::int64_t>(pixels), {});
+        s.mutations = std::max(s.mutations, same.mutations);
+    }
+    return s;
+}
+
+std::string describe_choice(std::span<const TriedMethod> tried) {
+    std::string text = fmt::format("method {} chosen by trial: squared relative errors in this time would be about",
+                                   tried.front().method->name);
+    for (const TriedMethod& t : tried)
+        text += fmt::format("{} {} {:.2g}", &t == tried.data() ? "" : ",", t.method->name, t.predicted);
+    return text;
+}
+
+} // namespace keyhole

@@ -1,0 +1,296 @@
+#include "methods/choice/render_in_time.h"
+
+#include "core/error.h"
+#include "core/shared_work.h"
+#include "methods/choice/affordable.h"
+#include "methods/choice/first_look.h"
+#include "methods/choice/mean_render.h"
+#include "methods/choice/method_trials.h"
+#include "methods/method.h"
+#include "session/passes.h"
+#include "session/stage_clock.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace keyhole {
+namespace {
+
+/// Two methods are close if the one promises less than so many times the error of the other.
+constexpr double kClose = 1.8;
+/// Of the time, each of the two renders of either method that show how large their errors are.
+constexpr double kPart = 1.0 / 16;
+/// What counts less than this share of the better method's seconds would only cost it its statistics.
+constexpr double kNoWeight = 0.2;
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+/// Of the time for a render with photons or chains that its predicted cost is to fill. What is left then goes into more
+/// samples of pixels, or more mutations.
+constexpr double kUse = 0.92, kMoreMutations = 1.5;
+/// Less than this share of all time is not worth a render with photons.
+constexpr double kLeast = 0.05;
+/// The trial of a method by name: of the time, what it is to take and what it may take.
+constexpr double kTrialShare = 0.02, kLongestTrial = 0.6, kTrialSeconds = 0.5;
+
+/// " key=value" for each setting of `b` that `a` has otherwise.
+std::string differences(const Settings& a, const Settings& b) {
+    const auto list = [](const Settings& s) {
+        std::vector<std::string> texts;
+        visit_settings(s, [&](const char* key, const auto& value, const auto&...) {
+            texts.push_back(fmt::format(" {}={}", key, printable(value)));
+        });
+        return texts;
+    };
+    const std::vector<std::string> from = list(a), to = list(b);
+    std::string text;
+    for (std::size_t i = 0; i < to.size(); ++i)
+        if (to[i] != from[i]) text += to[i];
+    return text;
+}
+
+/// Renders a scene for as long as there is time.
+class RenderInTime {
+  public:
+    RenderInTime(Scene& scene, const Settings& settings, const std::set<std::string>& given, const RunContext& context,
+                 const UserPathFile& user_paths, const WorkPartition& share)
+        : scene_(scene), settings_(settings), given_(given), context_(context),
+          user_paths_(bind_user_paths(scene, user_paths)), share_(share), start_(left()) {
+        pixels_ = scene.camera().window().size();
+    }
+
+    RenderResult run() {
+        try {
+            choose();
+            if (is_close()) spend_in_parts();
+            while (mean_.empty() || (left() > kLeast * start_ && !used_up_)) {
+                if (context_.stop->requested() || (context_.stopped() && !method_->samples_pixels)) break;
+                render_rest();
+                if (context_.stopped()) break;
+            }
+        } catch (const Interrupted&) { // too slow for the time, or somebody doesn't want to wait
+        }
+        if (mean_.empty()) return without_picture();
+        return finish();
+    }
+
+  private:
+    double left() const { return context_.stop->seconds_left(); }
+    TrialContext trial_context() { return {scene_, settings_, given_, context_, user_paths_, findings_}; }
+    /// Whether two methods are so close that a longer look is worth its time. Several small photon maps are worse than
+    /// a large one, and what they show of it is little.
+    bool is_close() const {
+        return tried_.size() > 1 && tried_[1].predicted < kClose * tried_[0].predicted &&
+               !tried_[0].method->keeps_photons && !tried_[1].method->keeps_photons;
+    }
+
+    /// The method, and what it costs.
+    void choose() {
+        if (settings_.method != &methods::automatic) {
+            use(*settings_.method);
+            if (method_->samples_pixels) return;
+            const StageClock clock(trials_, stages::trials);
+            cost_ = try_cost(trial_context(), *method_, std::min(kTrialShare * start_, kTrialSeconds),
+                             kLongestTrial * start_);
+            forget_rough_findings();
+            if (!cost_) throw Interrupted();
+            return;
+        }
+        const StageClock clock(trials_, stages::trials);
+        tried_ = try_methods(trial_context());
+        forget_rough_findings();
+        if (tried_.empty()) return use(methods::path);
+        remarks_.push_back(describe_choice(tried_));
+        take_over(tried_.front());
+        at_choice_ = left();
+    }
+    /// How far gather rays come is found out anew, with more rays than trials spend on it, where it matters.
+    void forget_rough_findings() { findings_.forget_coverage(); }
+    void use(const Method& method) { method_ = &method; }
+    void take_over(const TriedMethod& t) {
+        use(*t.method);
+        cost_ = t.of;
+    }
+
+    /// A part of the time by each of the two methods that promise most; the rest is for the one whose error turns out
+    /// smaller. What the other has made counts by its error.
+    void spend_in_parts() {
+        const double part = kPart * left();
+        std::array<Parts, 2> made;
+        for (std::size_t k = 0; k < made.size(); ++k) {
+            take_over(tried_[k]);
+            made[k] = render_parts(part);
+            if (cost_) tried_[k].of = *cost_; // these have shown more
+            if (made[k].error < kNever)
+                remarks_.push_back(fmt::format("the error of {} turns out to be {:.2g} where {:.2g} was predicted",
+                                               method_->name, made[k].error, tried_[k].predicted));
+            if (k == 0 && kClose * made[0].error < tried_[1].predicted) break; // not so close after all
+        }
+        const std::size_t better = made[1].error < made[0].error ? 1 : 0;
+        take_over(tried_[better]);
+        for (std::size_t k = 0; k < made.size(); ++k) {
+            const double weight = k == better ? 1 : made[better].error / made[k].error;
+            if (!made[k].mean.empty() && weight > kNoWeight) mean_.add(made[k].mean.take(), weight * made[k].seconds);
+        }
+        remarks_.push_back("the rest of the time went to " + std::string(method_->name));
+    }
+
+    /// Two renders of the method, of so many seconds each.
+    struct Parts {
+        MeanRender mean;
+        double seconds = 0;    ///< that they took
+        double error = kNever; ///< that all of the time would leave, by what they differ in
+    };
+    Parts render_parts(double seconds) {
+        Parts parts;
+        std::vector<Image> pictures;
+        try {
+            while (pictures.size() < 2 && !context_.stopped()) {
+                auto part = render_part(seconds, false);
+                if (!part) break;
+                pictures.push_back(luminance_of(part->result.picture));
+                parts.seconds += part->seconds;
+                parts.mean.add(std::move(part->result), part->seconds);
+            }
+        } catch (const Interrupted&) { // too slow
+        }
+        if (pictures.size() < 2) return parts;
+        const TrialPictures halves{std::move(pictures[0]), std::move(pictures[1])};
+        const TrialError e = trial_errors(std::span(&halves, 1)).front();
+        parts.error = (e.grain + e.blotches) * seconds / at_choice_;
+        return parts;
+    }
+
+    /// Settings that use so many seconds, and of a method whose last stage goes on as long as there is time: more than
+    /// that. All of these are good at any length.
+    Settings settings_for(double seconds, bool open_ended) {
+        Settings s = settings_;
+        s.method = method_;
+        if (method_->samples_pixels) {
+            if (!given_.contains("spp")) s.spp = 1 << 24;
+            return s;
+        }
+        effort_ = affordable_effort(cost_->cost, s, given_, cost_->balance, pixels_, kUse * seconds);
+        s = with_effort(s, effort_, static_cast<std::int64_t>(pixels_), given_, cost_->balance);
+        if (!method_->keeps_photons) {
+            s.chain_groups = 1;
+            if (!given_.contains("mutations"))
+                s.mutations = static_cast<std::int64_t>(kMoreMutations * static_cast<double>(s.mutations));
+        } else if (open_ended && s.passes == 1 && !given_.contains("spp")) {
+            s.spp = 1 << 24;
+        }
+        return s;
+    }
+
+    struct Part {
+        RenderResult result;
+        double seconds; ///< that it took
+    };
+    /// A render of so many seconds; the last one goes on to the end of the time. None where it leaves no picture.
+    std::optional<Part> render_part(double seconds, bool last) {
+        const double start = left();
+        Settings chosen = settings_for(seconds, last);
+        RunContext limited = context_;
+        limited.whole_round = last && mean_.empty(); // a noisy picture is better than one with holes
+        if (!last) limited.reserve = std::max(0.0, start - seconds);
+        WorkPartition share = share_to_look_at();
+        if (method_->keeps_photons) {
+            Settings planned = chosen;
+            planned.spp = std::min<std::int64_t>(
+                chosen.spp, with_effort(chosen, effort_, static_cast<std::int64_t>(pixels_), {}).spp);
+            share.for_gather = std::min(1.2 * cost_->cost.predict(Stage::Work::gather, planned, pixels_), seconds / 2) /
+                               static_cast<double>(std::max<std::int64_t>(1, chosen.passes));
+            if (!last) limited.reserve = std::max(0.0, start - 1.5 * seconds); // ends by itself
+        }
+        chosen.seed = seed_of_render(settings_, renders_++);
+        if (renders_ > 1) chosen.save_map.clear();
+        RenderResult result = render_by_method({scene_, chosen, user_paths_, limited, share, findings_});
+        used_up_ = last && method_->samples_pixels && given_.contains("spp");
+        const bool holes = empty_pixels(result) > 0;
+        if (!has_picture(result) || (holes && (!last || !mean_.empty()))) {
+            mean_.add_time_of(result.stats);
+            return std::nullopt;
+        }
+        if (chosen.spp == 1 << 24)
+            chosen.spp = std::max<std::int64_t>(1, static_cast<std::int64_t>(std::lround(result.stats.samples)));
+        if (effort_ > 0) result.stats.effort = effort_;
+        result.stats.remarks.push_back("set by the time:" + differences(settings_, chosen));
+        result.settings = chosen;
+        if (cost_ && (method_->keeps_photons || result.stats.complete))
+            cost_->cost = Experience(chosen, effort_, pixels_, result.stats, start - left());
+        return Part{std::move(result), start - left()};
+    }
+
+    /// The last one, or one of several if there is a limit to what a render can do.
+    void render_rest() {
+        if (auto part = render_part(left(), true)) mean_.add(std::move(part->result), part->seconds);
+    }
+
+    /// Paths are a noisy picture, not a wrong one; but a method that somebody named isn't replaced in silence.
+    RenderResult without_picture() {
+        if (context_.stop->requested() || (settings_.method == &methods::automatic && context_.stopped()))
+            return first_look(scene_, settings_);
+        if (settings_.method != &methods::automatic)
+            throw InputError(fmt::format("too little time for {0}: what it does before its first picture takes longer "
+                                         "here; expected more than {1:.2g} s, or another method",
+                                         method_->name, start_));
+        remarks_.push_back("paths are traced: " + std::string(method_->name) + " was not done in its time");
+        use(methods::path);
+        render_rest();
+        return mean_.empty() ? first_look(scene_, settings_) : finish();
+    }
+
+    RenderResult finish() {
+        RenderResult result = mean_.take();
+        const bool by_number = method_->samples_pixels && given_.contains("spp");
+        result.stats.complete = !context_.stop->requested() && (result.stats.complete || !by_number);
+        if (result.stats.passes == 0) result.stats.passes.reset();
+        result.stats.remarks.insert(result.stats.remarks.begin(), remarks_.begin(), remarks_.end());
+        result.settings.seed = settings_.seed;
+        result.stats.stages.insert(result.stats.stages.begin(), trials_.stages.begin(), trials_.stages.end());
+        return result;
+    }
+
+    /// Who looks sees the mean once there is one, not the begin of what comes after.
+    WorkPartition share_to_look_at() const {
+        WorkPartition share = share_;
+        if (share.look && !mean_.empty()) share.look = [this](const Picture&) { share_.look(mean_.picture()); };
+        return share;
+    }
+
+    Scene& scene_;
+    const Settings& settings_;
+    const std::set<std::string>& given_;
+    const RunContext& context_;
+    const UserPaths user_paths_;
+    const WorkPartition& share_;
+    const double start_; // of time, in the beginning [s]
+    double pixels_ = 0;
+    Findings findings_;
+    const Method* method_ = nullptr;
+    std::optional<TrialCost> cost_;  // of the method; none for those that sample pixels
+    std::vector<TriedMethod> tried_; // the best first
+    double at_choice_ = 0;           // time that was left then [s]
+    double effort_ = 0;              // of the render under way
+    bool used_up_ = false;           // everything that was asked for by number is done before the time
+    std::int64_t renders_ = 0;       // begun
+    std::vector<std::string> remarks_;
+    RenderStats trials_; // their time
+    MeanRender mean_;
+};
+
+} // namespace
+
+RenderResult render_in_time(Scene& scene, const Settings& settings, const std::set<std::string>& given,
+                            const RunContext& context, const UserPathFile& user_paths, const WorkPartition& share) {
+    set_window_margin(scene, settings);
+    Settings s = settings;
+    if (!given.contains("brightness_error")) s.brightness_error = 0; // stage one gets its part of the time, no more
+    return RenderInTime{scene, s, given, context, user_paths, share}.run();
+}
+
+} // namespace keyhole

@@ -1,0 +1,178 @@
+#include "methods/choice/trial_error.h"
+
+#include "core/vec.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace keyhole {
+namespace {
+
+constexpr int kBlock = 4;      // pixels
+constexpr int kParts = 4;      // of the picture, each way, in which light may be missing
+constexpr int kSmooth = 3;     // pixels, each way: a pixel's noise must not be what it is compared with
+constexpr double kDark = 0.01; // squared mean of the picture that is added to a pixel's square
+// Share of the pixels, those with the largest errors, that are left out: more than of a picture, for pixels are larger.
+constexpr double kTrimmed = 0.01;
+constexpr double kStandardErrors = 2; // that two means differ by before light is missing
+
+using Values = std::vector<double>;
+
+double mean(const Values& v) {
+    return v.empty() ? 0 : std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size());
+}
+
+double trimmed_mean(Values v, double trimmed) {
+    std::ranges::sort(v);
+    v.resize(v.size() - static_cast<std::size_t>(std::ceil(trimmed * static_cast<double>(v.size()))));
+    return mean(v);
+}
+
+/// A grid of numbers, row by row.
+struct Grid {
+    int width, height;
+    Values values;
+
+    double at(int x, int y) const {
+        return values[static_cast<std::size_t>(std::clamp(y, 0, height - 1)) * static_cast<std::size_t>(width) +
+                      static_cast<std::size_t>(std::clamp(x, 0, width - 1))];
+    }
+    /// Means over blocks; a rest at the border is left out, unless there is nothing else.
+    Grid blocks(int across, int down) const {
+        Grid b{std::max(1, width / across), std::max(1, height / down), {}};
+        for (int y = 0; y < b.height; ++y)
+            for (int x = 0; x < b.width; ++x) {
+                double sum = 0;
+                for (int j = 0; j < down; ++j)
+                    for (int i = 0; i < across; ++i) sum += at(x * across + i, y * down + j);
+                b.values.push_back(sum / (across * down));
+            }
+        return b;
+    }
+    /// Means over squares about each pixel.
+    Grid smooth() const {
+        Grid s{width, height, {}};
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x) {
+                double sum = 0;
+                for (int j = -kSmooth; j <= kSmooth; ++j)
+                    for (int i = -kSmooth; i <= kSmooth; ++i) sum += at(x + i, y + j);
+                s.values.push_back(sum / ((2 * kSmooth + 1) * (2 * kSmooth + 1)));
+            }
+        return s;
+    }
+};
+
+template <class F> Grid combined(const TrialPictures& m, const F& f) {
+    Grid g{m.first.width, m.first.height, {}};
+    const auto finite = [](float v) { return std::isfinite(v) ? static_cast<double>(v) : 0.0; };
+    for (std::size_t i = 0; i < m.first.data.size(); ++i)
+        g.values.push_back(f(finite(m.first.data[i]), finite(m.second.data[i])));
+    return g;
+}
+Grid mean_of(const TrialPictures& m) {
+    return combined(m, [](double a, double b) { return (a + b) / 2; });
+}
+Grid difference_of(const TrialPictures& m) {
+    return combined(m, [](double a, double b) { return a - b; });
+}
+
+/// Half the squared difference is the variance of one of two. Relative to `picture`.
+double relative_variance(const Grid& difference, const Grid& picture, double trimmed = kTrimmed) {
+    const double dark = kDark * mean(picture.values) * mean(picture.values);
+    Values v;
+    for (std::size_t i = 0; i < difference.values.size(); ++i) {
+        const double d = difference.values[i], p = picture.values[i];
+        v.push_back(p * p + dark > 0 ? d * d / 2 / (p * p + dark) : 0);
+    }
+    return trimmed_mean(std::move(v), trimmed);
+}
+
+/// The mean of all, each weighted by the reciprocal of its variance relative to itself.
+Grid common_picture(std::span<const TrialPictures> methods) {
+    Grid sum{methods[0].first.width, methods[0].first.height, Values(methods[0].first.data.size(), 0.0)};
+    double weights = 0;
+    for (const TrialPictures& m : methods) {
+        const Grid own = mean_of(m);
+        const double weight = 1 / (relative_variance(difference_of(m), own.smooth()) + 1e-9);
+        if (!(mean(own.values) > 0)) continue; // a black picture agrees with itself
+        weights += weight;
+        for (std::size_t i = 0; i < sum.values.size(); ++i) sum.values[i] += weight * own.values[i];
+    }
+    for (double& v : sum.values) v /= weights > 0 ? weights : 1;
+    return sum;
+}
+
+/// Means of the picture's parts, and what they may be off by.
+struct Parts {
+    Grid means, errors;
+    explicit Parts(const TrialPictures& m) : means(part_means(mean_of(m))), errors(means) {
+        const Grid d = difference_of(m);
+        Grid squares = d;
+        for (double& v : squares.values) v *= v;
+        const int across = std::max(1, d.width / kParts), down = std::max(1, d.height / kParts);
+        const Grid of_pixels = squares.blocks(across, down), of_parts = part_means(d);
+        // By pixels, or, where neighbours err alike, by the parts themselves.
+        for (std::size_t i = 0; i < errors.values.size(); ++i)
+            errors.values[i] =
+                std::sqrt(std::max(of_pixels.values[i] / (across * down), of_parts.values[i] * of_parts.values[i]) / 4);
+    }
+    static Grid part_means(const Grid& g) {
+        return g.blocks(std::max(1, g.width / kParts), std::max(1, g.height / kParts));
+    }
+};
+
+} // namespace
+
+Image luminance_of(const Picture& picture, const std::string& layer) {
+    const Image& beauty = picture.layers.at(layer);
+    Image y(beauty.width, beauty.height, 1);
+    for (std::size_t i = 0; i < y.data.size(); ++i)
+        y.data[i] = static_cast<float>(luminance({beauty.data[3 * i], beauty.data[3 * i + 1], beauty.data[3 * i + 2]}));
+    return y;
+}
+
+double variance_of_most(const TrialPictures& pictures) {
+    return relative_variance(difference_of(pictures), mean_of(pictures).smooth(), 0.05);
+}
+
+double share_of_grain(const TrialPictures& part, const TrialPictures& whole) {
+    const Grid picture = mean_of(whole).smooth();
+    const auto grain = [&](const TrialPictures& m) { return relative_variance(difference_of(m), picture); };
+    const double all = grain(whole);
+    return all > 0 ? std::min(1.0, grain(part) / all) : 1;
+}
+
+std::vector<TrialError> trial_errors(std::span<const TrialPictures> methods) {
+    std::vector<TrialError> errors(methods.size());
+    if (methods.empty()) return errors;
+    const Grid picture = common_picture(methods), smooth = picture.smooth();
+    const Grid in_blocks = picture.blocks(kBlock, kBlock), in_parts = Parts::part_means(picture);
+    std::vector<Parts> parts;
+    for (const TrialPictures& m : methods) parts.emplace_back(m);
+    // What the picture has at least, in each part, by the method that is surest of most.
+    Values least(in_parts.values.size(), 0.0);
+    for (const Parts& p : parts)
+        for (std::size_t i = 0; i < least.size(); ++i)
+            least[i] = std::max(least[i], p.means.values[i] - kStandardErrors * p.errors.values[i]);
+    const double whole = mean(picture.values);
+    for (std::size_t k = 0; k < methods.size(); ++k) {
+        const Grid d = difference_of(methods[k]);
+        const double pixel = relative_variance(d, smooth);
+        const double block = relative_variance(d.blocks(kBlock, kBlock), in_blocks);
+        constexpr double kPixels = kBlock * kBlock;
+        errors[k].grain = std::max(0.0, pixel - block) * kPixels / (kPixels - 1);
+        errors[k].blotches = std::max(0.0, pixel - errors[k].grain);
+        double missing = 0;
+        for (std::size_t i = 0; i < least.size(); ++i) {
+            const double most = parts[k].means.values[i] + kStandardErrors * parts[k].errors.values[i];
+            const double lost = std::max(0.0, least[i] - most), p = std::max(in_parts.values[i], least[i]);
+            if (p > 0) missing += lost * lost / (p * p + kDark * whole * whole);
+        }
+        errors[k].missing = missing / static_cast<double>(least.size());
+    }
+    return errors;
+}
+
+} // namespace keyhole

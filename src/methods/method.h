@@ -1,0 +1,80 @@
+// Methods of rendering: each has a file beside this one, or in photons/, and a line in table.inc.
+#pragma once
+
+#include "methods/findings.h"
+#include "methods/render.h"
+#include "sampling/guidance/user_paths.h"
+
+#include <memory>
+#include <string_view>
+
+namespace keyhole {
+
+class PhotonSampler;
+struct SamplerContext;
+
+/// What a method is given. The scene's window margin has to be set.
+struct RenderTask {
+    const Scene& scene;
+    const Settings& settings;
+    const UserPaths& user_paths;
+    const RunContext& context;
+    const WorkPartition& share;
+    Findings& findings;
+};
+
+/// When importance maps have to be there.
+enum class ImportanceUse {
+    none,   ///< never
+    guide,  ///< before photons are stored; less than a third of it stays
+    beside, ///< while photons are stored
+};
+
+/// What the file of a method says of it.
+struct Method {
+    std::string_view name, help;
+    bool keeps_photons = false;      ///< in maps, which can be saved and loaded
+    bool samples_pixels = false;     ///< one by one, and needs nothing before that
+    bool follows_user_paths = false; ///< that a scene has
+    ImportanceUse importance = ImportanceUse::none;
+
+    /// What `auto` tries it with; docs/charts.md.
+    struct Trial {
+        double share = 0;     ///< of the time for all trials; 0: it isn't tried
+        bool by_work = false; ///< tried where there is no time to go by, too
+        double doubt = 1;     ///< by how much a trial flatters its error: chains are too short to show what they miss
+    } trial{};
+
+    /// What a unit of effort is spent on, where the method runs chains.
+    double mutations_of_effort = 500e3, brightness_samples_of_effort = 100e3;
+
+    /// @throws Interrupted, and InputError as render()
+    RenderResult (*render)(const RenderTask&);
+    /// Where photons come from: of methods that keep them.
+    std::unique_ptr<PhotonSampler> (*make_sampler)(const SamplerContext&) = nullptr;
+
+    /// Standard photon mapping knows nothing of where photons are worth having.
+    bool stores_everywhere() const { return keeps_photons && importance == ImportanceUse::none; }
+};
+
+namespace methods {
+#define KEYHOLE_METHOD(name) extern const Method name;
+#include "methods/table.inc"
+#undef KEYHOLE_METHOD
+} // namespace methods
+
+/// Names of the methods that `is` holds for, separated by commas.
+std::string names_of(bool Method::*is);
+
+/// The method that the settings name, without render()'s care for renders that are stopped before they have a picture.
+/// @throws Interrupted, and InputError as render()
+RenderResult render_by_method(const RenderTask& task);
+
+/// Everything that renders from photon maps; the method is the sampler that fills them.
+RenderResult render_photons(const RenderTask& task);
+
+/// Finds out what render_photons() has to know, all methods but pm. @throws Interrupted
+void plan_photons(const Scene& scene, const Settings& settings, const UserPaths& paths, const RunContext& context,
+                  Findings& findings);
+
+} // namespace keyhole

@@ -1,0 +1,49 @@
+// --method path: path tracing with next-event estimation, the reference.
+#include "methods/method.h"
+#include "methods/pixel_sink.h"
+#include "methods/sample_report.h"
+#include "session/pixels.h"
+#include "session/stage_clock.h"
+#include "session/work.h"
+
+namespace keyhole {
+namespace {
+
+constexpr Stage kPathTracing{"path tracing", &Settings::spp, 1};
+
+RenderResult render_path(const RenderTask& task) {
+    const auto& [scene, settings, paths, context, share, findings] = task;
+    RenderResult result;
+    RunningStats luminance;
+    Work work(settings, scene.camera().window(), AccumulationBuffer::Parts::film, share, settings.spp,
+              Work::PassStart::free);
+    {
+        const StageClock clock(result.stats, kPathTracing);
+        const SamplingStage stage(scene, work.left(), "path tracing", context);
+        const auto depth = static_cast<int>(settings.max_depth);
+        while (const auto round = work.take(context)) {
+            const bool whole = sample_round(scene, *work.unit().film, *round, static_cast<std::uint64_t>(settings.seed),
+                                            StreamPurpose::path_tracing, *round == 0 ? context.first_round() : context,
+                                            luminance, [&](const Vec2& image, SampleSource& source) {
+                                                PixelSink sink{};
+                                                trace_path(scene, image, depth, source, sink);
+                                                return sink.pixel;
+                                            });
+            if (whole) work.end_unit(result.stats);
+        }
+    }
+    report_eye_samples(luminance, scene, result.stats);
+    report_lost_light(luminance, scene, result.stats);
+    result.picture = work.finish(result.stats);
+    return result;
+}
+
+} // namespace
+
+constinit const Method methods::path{.name = "path",
+                                     .help = "path tracing, the reference",
+                                     .samples_pixels = true,
+                                     .trial = {.share = 0.05, .by_work = true},
+                                     .render = render_path};
+
+} // namespace keyhole

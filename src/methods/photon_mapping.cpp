@@ -1,0 +1,212 @@
+// The methods that render from photon maps: pass by pass a sampler, the maps, the gather.
+#include "core/shared_work.h"
+#include "methods/method.h"
+#include "methods/photons/pass_gather.h"
+#include "methods/photons/photon_file.h"
+#include "methods/photons/photon_report.h"
+#include "methods/photons/photon_sampler.h"
+#include "methods/photons/plan.h"
+#include "methods/photons/sampler_trial.h"
+#include "methods/sample_report.h"
+#include "session/passes.h"
+#include "session/pixels.h"
+#include "session/stage_clock.h"
+#include "session/work.h"
+
+#include <fmt/format.h>
+
+namespace keyhole {
+namespace {
+
+constexpr Stage kPlanning{"plan"}, kTrialOfSamplers{"trial of samplers"}, kPixelBrightness{"brightness of pixels"};
+
+/// What `auto` stands for in this scene where photons are asked for; says so.
+const Method& choose_method(const SamplerContext& c, RenderStats& stats, const RunContext& context) {
+    const StageClock clock(stats, kTrialOfSamplers);
+    const SamplerTrial trial = try_samplers(c, context);
+    const Method& method = trial.best();
+    const double better = std::min(trial.emission, trial.metropolis);
+    stats.remarks.push_back(
+        std::isfinite(better)
+            ? fmt::format("method {} chosen: for the same error ipm would need {:.2g} times the work, mps {:.2g} times",
+                          method.name, trial.emission / better, trial.metropolis / better)
+            : "method ipm chosen: no light that photon maps would hold was found in a trial");
+    return method;
+}
+
+/// Where no light is that photon maps would hold.
+class NoPhotons final : public PhotonSampler {
+  public:
+    Photons sample(std::uint64_t /*seed*/, RenderStats& /*stats*/, const RunContext& /*context*/) override {
+        return {};
+    }
+};
+
+std::unique_ptr<PhotonSampler> make_sampler(const SamplerContext& c, const RenderPlan& plan, RenderStats& stats,
+                                            const RunContext& context) {
+    if (!c.settings.load_map.empty()) return make_file_sampler(c);
+    if (!plan.photons) return std::make_unique<NoPhotons>();
+    const Method& method =
+        c.settings.method == &methods::automatic ? choose_method(c, stats, context) : *c.settings.method;
+    stats.method = method.name;
+    return method.make_sampler(c);
+}
+
+/// The weights of pixels, where the user asked for them and something can follow them.
+std::optional<ImageWeight> weigh_pixels(const SamplerContext& c, const RenderPlan& plan, RenderStats& stats,
+                                        const RunContext& context) {
+    const Settings& s = c.settings;
+    if (!s.equalise || !plan.photons || s.method->stores_everywhere() || !s.load_map.empty()) return std::nullopt;
+    const StageClock clock(stats, kPixelBrightness);
+    return measure_image_weight(c.scene, static_cast<int>(s.max_depth), static_cast<std::uint64_t>(s.seed), context);
+}
+
+/// Renders one pass after the other.
+class Passes {
+  public:
+    /// `for_gather`: as Share's.
+    Passes(const SamplerContext& c, const RenderPlan& plan, PhotonSampler& sampler, Work& work, double for_gather,
+           RenderStats& stats)
+        : c_(c), plan_(plan), sampler_(sampler), work_(work), for_gather_(for_gather), stats_(stats) {}
+
+    /// All passes that there are units of.
+    /// @throws Interrupted if there is nothing to show.
+    void run(const RunContext& context) {
+        next_ = work_.take(context);
+        try {
+            while (next_ && run_pass(work_.pass_of(*next_), context)) {
+            }
+        } catch (const Interrupted&) {
+            if (work_.is_first()) throw; // what the pass before left is a picture
+        }
+    }
+    /// The same by a process group: each helps with every pass, whether or not it gets to sample pixels from it.
+    void run_together(const RunContext& context) {
+        RunContext together = context;
+        together.communicator = work_.communicator();
+        try {
+            next_ = work_.take(context);
+            for (auto pass = work_.pass_from(0); pass; pass = work_.pass_from(*pass + 1))
+                if (!run_pass(*pass, together)) break;
+        } catch (const ProcessLost&) { // whoever collects what is done says so
+        }
+    }
+    const RunningStats& luminance() const { return luminance_; }
+    bool has_saved_photons() const { return saved_; }
+
+  private:
+    /// Returns whether to go on.
+    bool run_pass(std::int64_t pass, const RunContext& context) {
+        const std::uint64_t seed = seed_of_pass(c_.settings, pass);
+        RunContext early = context;
+        early.reserve += for_gather_;
+        Photons photons = sampler_.sample(seed, stats_, early);
+        if (pass == 0) save(photons, context);
+        // The photons of a pass that was cut short are good for a first picture, not for one that is there.
+        if (early.stopped() && (context.communicator != nullptr || !work_.is_first())) return false;
+        report_photons(photons, stats_);
+        std::optional<PassGather> gather;
+        {
+            const StageClock clock(stats_, stages::cache);
+            gather.emplace(c_, plan_, pass, seed, std::move(photons), stats_, context);
+        }
+        if (context.communicator != nullptr && context.stopped()) return false;
+        const StageClock clock(stats_, stages::gather);
+        const bool whole = sample_rounds(*gather, pass, context.alone());
+        gather->report(stats_);
+        return whole ||
+               context.communicator != nullptr; // a process group ends where all can agree on it: in the next pass
+    }
+
+    /// Where a file is asked for.
+    void save(const Photons& photons, const RunContext& context) {
+        if (c_.settings.save_map.empty()) return;
+        if (context.communicator == nullptr || context.communicator->rank() == 0)
+            save_photons(c_.settings.save_map, photon_file_key(c_.scene, c_.settings, c_.coverage), photons);
+        saved_ = true;
+    }
+
+    /// Samples pixels, round by round of a pass. Returns whether the last round came to its end.
+    bool sample_rounds(const PassGather& gather, std::int64_t pass, const RunContext& context) {
+        const SamplingStage stage(c_.scene, c_.settings.spp, "gather", context);
+        while (next_ && work_.pass_of(*next_) == pass) {
+            if (!sample_round(c_.scene, *work_.unit().film, *next_, static_cast<std::uint64_t>(c_.settings.seed),
+                              StreamPurpose::gather, *next_ == 0 ? context.first_round() : context, luminance_,
+                              [&](const Vec2& image, SampleSource& source) { return gather.sample(image, source); })) {
+                next_.reset();
+                return false;
+            }
+            work_.end_unit(stats_);
+            next_ = work_.take(context);
+        }
+        return true;
+    }
+
+    const SamplerContext& c_;
+    const RenderPlan& plan_;
+    PhotonSampler& sampler_;
+    Work& work_;
+    double for_gather_;
+    RenderStats& stats_;
+    RunningStats luminance_;
+    bool saved_ = false;
+    std::optional<std::int64_t> next_; // unit
+};
+
+} // namespace
+
+void plan_photons(const Scene& scene, const Settings& settings, const UserPaths& paths, const RunContext& context,
+                  Findings& findings) {
+    if (!findings.patches) findings.patches.emplace(scene);
+    if (!findings.plan) findings.plan = plan_render({scene, settings, *findings.patches, paths}, context);
+}
+
+RenderResult render_photons(const RenderTask& task) {
+    const auto& [scene, settings, paths, context, share, findings] = task;
+    RenderResult result;
+    RenderStats& stats = result.stats;
+    if (!findings.patches) findings.patches.emplace(scene);
+    SamplerContext c{scene, settings, *findings.patches, paths};
+    // A group of processes has to come to one plan: who is stopped in the middle of a trial would make another.
+    RunContext deciding = context;
+    if (share.communicator != nullptr) deciding.stop = nullptr;
+    // Standard photon mapping plans otherwise.
+    Findings own;
+    Findings& planned = settings.method->stores_everywhere() ? own : findings;
+    if (!planned.plan) {
+        const StageClock clock(stats, kPlanning);
+        planned.plan = plan_render(c, deciding);
+    }
+    const RenderPlan& plan = *planned.plan;
+    if (!plan.photons) stats.remarks.push_back("no photon maps: " + plan.items.front().why);
+    c.coverage = plan.coverage ? &*plan.coverage : nullptr;
+    c.caustics = plan.caustics || c.coverage != nullptr;
+    if (plan.photons && settings.gather_coverage)
+        stats.values["light beyond gather rays is stored"] = plan.coverage ? 1 : 0;
+    const std::optional<ImageWeight> weight = weigh_pixels(c, plan, stats, deciding);
+    c.weight = weight ? &*weight : nullptr;
+    const auto sampler = make_sampler(c, plan, stats, deciding);
+    Work work(settings, scene.camera().window(), AccumulationBuffer::Parts::film, share, settings.spp,
+              Work::PassStart::costly);
+    Passes passes(c, plan, *sampler, work, share.for_gather, stats);
+    if (work.communicator() == nullptr)
+        passes.run(context);
+    else
+        passes.run_together(context);
+    if (!settings.save_map.empty() && !passes.has_saved_photons())
+        stats.warnings.emplace_back("no photons were saved: those of the first pass were not made here");
+    sampler->finish(stats);
+    warn_of_photons(stats, work.passes());
+    report_eye_samples(passes.luminance(), scene, stats);
+    result.picture = work.finish(stats);
+    return result;
+}
+
+constinit const Method methods::automatic{.name = "auto",
+                                          .help = "the one that leaves the least error, by trials",
+                                          .keeps_photons = true,
+                                          .follows_user_paths = true,
+                                          .importance = ImportanceUse::guide,
+                                          .render = render_photons};
+
+} // namespace keyhole

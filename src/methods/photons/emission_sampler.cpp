@@ -1,0 +1,88 @@
+// --method pm, ipm: photons by light tracing, everywhere alike (standard photon mapping), or where they will be asked
+// for.
+#include "methods/method.h"
+#include "methods/photons/guides.h"
+#include "methods/photons/memory_plan.h"
+#include "methods/photons/photon_sampler.h"
+#include "photonmap/emission.h"
+#include "session/stage_clock.h"
+
+#include <algorithm>
+
+namespace keyhole {
+namespace {
+
+class EmissionSampler final : public PhotonSampler {
+  public:
+    EmissionSampler(const SamplerContext& context, bool by_importance) : c_(context), by_importance_(by_importance) {}
+
+    Photons sample(std::uint64_t seed, RenderStats& stats, const RunContext& context) override {
+        const MemoryPlan plan =
+            plan_memory(c_.settings, by_importance_ ? ImportanceUse::guide : ImportanceUse::none, c_.caustics ? 2 : 1);
+        Guides guides;
+        if (by_importance_) guides = make_guides(c_, seed, plan.importons, stats, context);
+        if (by_importance_ && !learned_) learn(stats, context);
+
+        const StageClock clock(stats, stages::photons_of_light_paths);
+        EmittedPhotons photons =
+            emit_photons(c_.scene, guides.both(),
+                         {.paths = c_.settings.light_paths,
+                          .photons = plan.photons,
+                          .rule = c_.storage(),
+                          .seed = seed,
+                          .user_paths = by_importance_ ? LightGuides(c_.scene, c_.user_paths) : LightGuides(),
+                          .learned = learned_ ? &*learned_ : nullptr},
+                         context);
+        stats.values["light paths"] += static_cast<double>(photons.paths);
+        stats.values["photons before storing"] += static_cast<double>(photons.arrivals);
+        stats.photon_bytes = std::max<std::uint64_t>(stats.photon_bytes, photons.bytes + stats.importon_bytes);
+        return photons;
+    }
+
+  private:
+    /// Where light paths begin, once for all passes: whoever makes one of them makes the same photons.
+    void learn(RenderStats& stats, const RunContext& context) {
+        if (!LearnedEmission::can_learn(c_.scene)) return;
+        const StageClock clock(stats, stages::emission);
+        learned_.emplace(
+            c_.scene,
+            EmissionLearning{.paths = std::clamp(c_.settings.light_paths / kPathsOfLearning, kLeastPaths, kMostPaths),
+                             .max_scatterings = static_cast<int>(c_.settings.max_depth),
+                             .set = c_.path_set(),
+                             .seed = static_cast<std::uint64_t>(c_.settings.seed),
+                             .most_bytes = static_cast<std::size_t>(c_.settings.photon_memory) / kMemoryOfLearning},
+            context);
+        stats.values["emitters that matter"] = learned_->effective_emitters();
+    }
+
+    /// Light paths for each path that learns where they are to begin, and the bounds of these.
+    static constexpr std::int64_t kPathsOfLearning = 32, kLeastPaths = 2048, kMostPaths = 1 << 16;
+    static constexpr std::size_t kMemoryOfLearning = 10;
+
+    SamplerContext c_;
+    bool by_importance_;
+    std::optional<LearnedEmission> learned_;
+};
+
+} // namespace
+
+constinit const Method methods::ipm{.name = "ipm",
+                                    .help = "photon mapping with photons stored where they are seen",
+                                    .keeps_photons = true,
+                                    .follows_user_paths = true,
+                                    .importance = ImportanceUse::guide,
+                                    .trial = {.share = 0.30, .by_work = true},
+                                    .render = render_photons,
+                                    .make_sampler = [](const SamplerContext& c) -> std::unique_ptr<PhotonSampler> {
+                                        return std::make_unique<EmissionSampler>(c, true);
+                                    }};
+
+constinit const Method methods::pm{.name = "pm",
+                                   .help = "standard photon mapping (Jensen 2001)",
+                                   .keeps_photons = true,
+                                   .render = render_photons,
+                                   .make_sampler = [](const SamplerContext& c) -> std::unique_ptr<PhotonSampler> {
+                                       return std::make_unique<EmissionSampler>(c, false);
+                                   }};
+
+} // namespace keyhole

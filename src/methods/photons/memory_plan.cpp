@@ -1,0 +1,40 @@
+#include "methods/photons/memory_plan.h"
+
+#include "gather/direct_irradiance_cache.h"
+#include "photonmap/irradiance/irradiance_map.h"
+#include "photonmap/photon_store.h"
+
+#include <algorithm>
+
+namespace keyhole {
+namespace {
+
+// Bytes.
+constexpr double kFixed = 64 * 1024; // what small maps round up
+const double kIndexed = sizeof(Photon) + PhotonMap::index_bytes_per_photon(PhotonMap::Wanted::many);
+const double kPilotPhoton = sizeof(Photon) + PhotonMap::index_bytes_per_photon(PhotonMap::Wanted::one);
+constexpr double kEstimate = IrradianceMap::bytes_per_place(); // what each pilot photon of a map adds
+const double kInStageThree =
+    ((kPilotEvery - 1) * kIndexed + kPilotPhoton + kEstimate + DirectIrradianceCache::bytes_per_place()) / kPilotEvery;
+constexpr double kList = sizeof(std::uint32_t); // while an index is built; later places are as large
+constexpr double kInStageTwo = PhotonStore::bytes_per_photon() * 1.0625; // buffers on their way to the stores
+
+} // namespace
+
+MemoryPlan plan_memory(const Settings& settings, ImportanceUse use, int maps) {
+    const double memory = std::max(static_cast<double>(settings.photon_memory) - kFixed, kFixed);
+    // Importance that stays beside the photons decides how good their power is: half of what is left for it.
+    double photons = memory / (use == ImportanceUse::beside ? 2 * kInStageThree : kInStageThree);
+    if (settings.photons > 0) photons = std::min(photons, static_cast<double>(settings.photons));
+    double importons = 0;
+    if (use == ImportanceUse::beside) importons = (memory - photons * kInStageTwo) / (kIndexed * maps);
+    // All importons, and the index and the places of one map; later the places of all, beside the stores.
+    const double places = (kPilotPhoton + kEstimate) / kPilotEvery;
+    if (use == ImportanceUse::guide)
+        importons = std::min(memory / (sizeof(Photon) * (maps - 1) + kIndexed + kList + places),
+                             (memory - photons * kInStageTwo) / (places * maps));
+    return {static_cast<std::size_t>(photons),
+            std::clamp<std::int64_t>(static_cast<std::int64_t>(importons), 1, settings.importons)};
+}
+
+} // namespace keyhole

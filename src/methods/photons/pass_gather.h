@@ -1,0 +1,44 @@
+// Stage three of a pass: what the eye sees, from the photons of the pass.
+#pragma once
+
+#include "gather/direct_irradiance_cache.h"
+#include "gather/final_gather.h"
+#include "gather/irradiance_cache.h"
+#include "methods/photons/photon_sampler.h"
+#include "methods/photons/plan.h"
+#include "photonmap/irradiance/irradiance_map.h"
+#include "photonmap/photons.h"
+#include "photonmap/piloted_map.h"
+
+#include <cstdint>
+#include <optional>
+
+namespace keyhole {
+
+/// The maps of a pass and its irradiance cache, ready to be asked for samples of pixels. Thread-safe once it is made.
+class PassGather {
+  public:
+    /// Takes the photons of pass number `pass`, whose seed is `seed`. What `c` and `plan` refer to must outlive this.
+    /// Puts figures of the maps into `stats`. A stop leaves a cache with fewer records.
+    PassGather(const SamplerContext& c, const RenderPlan& plan, std::int64_t pass, std::uint64_t seed, Photons photons,
+               RenderStats& stats, const RunContext& context);
+    PassGather(const PassGather&) = delete;
+    PassGather& operator=(const PassGather&) = delete;
+
+    /// A sample of what is seen at a point of the window.
+    PixelSample sample(const Vec2& image, SampleSource& source) const { return gather_->sample(image, source); }
+
+    /// Says what the samples have shown of the cache, and looks for spots that are not there.
+    void report(RenderStats& stats) const;
+
+  private:
+    std::uint64_t seed_;
+    PilotedMap global_, caustic_;
+    std::optional<IrradianceMap> irradiance_;
+    std::optional<DirectIrradianceCache> direct_irradiance_;
+    std::optional<GatherRays> rays_;
+    std::optional<IrradianceCache> cache_;
+    std::optional<FinalGather> gather_;
+};
+
+} // namespace keyhole

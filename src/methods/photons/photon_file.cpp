@@ -1,0 +1,124 @@
+#include "methods/photons/photon_file.h"
+
+#include "core/bytes.h"
+#include "core/error.h"
+#include "film/files/atomic_file.h"
+#include "methods/photons/find_coverage.h"
+#include "sampling/scene_hash.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <type_traits>
+
+namespace keyhole {
+namespace {
+
+constexpr std::array<char, 8> kMagic{'K', 'H', 'P', 'H', 'O', 'T', 'O', 'N'};
+constexpr std::uint32_t kVersion = 4; ///< to be raised whenever Photon, or what a map holds, changes
+constexpr std::uint32_t kByteOrder = 0x01020304;
+
+constexpr std::size_t kParts = 4;
+/// The parts in the order of the file.
+auto parts(auto& photons) {
+    return std::array{&photons.global.pilots, &photons.global.main_photons, &photons.caustic.pilots,
+                      &photons.caustic.main_photons};
+}
+
+struct Header {
+    std::array<char, 8> magic = kMagic;
+    std::uint32_t byte_order = kByteOrder;
+    std::uint32_t version = kVersion;
+    std::uint64_t scene = 0;
+    std::int64_t max_scatterings = 0;
+    std::int64_t coverage = 0;
+    std::array<std::uint64_t, kParts> photons{};
+    std::uint64_t checksum = 0;
+};
+static_assert(std::is_trivially_copyable_v<Header> && sizeof(Header) == 80);
+
+[[noreturn]] void refuse(const std::string& path, const std::string& why) {
+    throw InputError(fmt::format("{}: {}", path, why));
+}
+
+void check(const std::string& path, const Header& found, const PhotonFileKey& key) {
+    if (found.magic != kMagic) refuse(path, "found no photon map, expected a file that --save-map wrote");
+    if (found.byte_order != kByteOrder) refuse(path, "found a photon map from a machine of another byte order");
+    if (found.version != kVersion)
+        refuse(path, fmt::format("found a photon map of version {}, expected version {}", found.version, kVersion));
+    if (found.scene != key.scene)
+        refuse(path, "found the photon map of another scene, camera included; expected that of the scene to render");
+    if (found.max_scatterings != key.max_scatterings)
+        refuse(path, fmt::format("found a photon map made with max_depth={}, expected max_depth={}",
+                                 found.max_scatterings, key.max_scatterings));
+    if (found.coverage != key.coverage)
+        refuse(path,
+               found.coverage == 0
+                   ? "found a photon map with nothing outside the coverage of gather rays (as pm makes it), expected "
+                     "one with that; set gather_coverage=false to use it"
+                   : "found a photon map with light outside the coverage of gather rays, expected the settings "
+                     "gather_coverage, plan and importons that it was made with");
+}
+
+void read(std::ifstream& file, std::span<char> into, const std::string& path) {
+    file.read(into.data(), static_cast<std::streamsize>(into.size()));
+    if (!file) refuse(path, "cannot be read");
+}
+
+std::uint64_t checksum(const Photons& photons) {
+    Hash hash;
+    for (const auto* part : parts(photons)) hash.add(*part);
+    return hash.value();
+}
+
+std::vector<Photon> read_photons(std::ifstream& file, const std::string& path, std::uint64_t count) {
+    std::vector<Photon> photons(count, Photon({0, 0, 0}, {0, 0, 1}, {0, 0, 1}, Rgb(0.0)));
+    read(file, bytes_of(photons.data(), count), path);
+    return photons;
+}
+
+} // namespace
+
+PhotonFileKey photon_file_key(const Scene& scene, const Settings& settings, const GatherCoverage* coverage) {
+    return {scene_hash(scene), settings.max_depth, coverage != nullptr ? reach_paths(settings) : 0};
+}
+
+void save_photons(const std::string& path, const PhotonFileKey& key, const Photons& photons) {
+    Header header;
+    header.scene = key.scene;
+    header.max_scatterings = key.max_scatterings;
+    header.coverage = key.coverage;
+    for (std::size_t i = 0; i < kParts; ++i) header.photons[i] = parts(photons)[i]->size();
+    header.checksum = checksum(photons);
+    std::vector<std::span<const char>> bytes{bytes_of(&header)};
+    for (const auto* part : parts(photons)) bytes.push_back(bytes_of(part->data(), part->size()));
+    write_file_atomically(path, bytes); // a copy of them all would go beyond the memory that they may take
+}
+
+Photons load_photons(const std::string& path, const PhotonFileKey& key) {
+    std::ifstream file(path, std::ios::binary | std::ios::ate);
+    if (!file) refuse(path, fmt::format("cannot be opened: {}", std::strerror(errno)));
+    const auto size = static_cast<std::uint64_t>(file.tellg());
+    Header header;
+    if (size < sizeof header) refuse(path, "found no photon map, expected a file that --save-map wrote");
+    file.seekg(0);
+    read(file, bytes_of(&header), path);
+    check(path, header, key);
+    const std::uint64_t most = (size - sizeof header) / sizeof(Photon);
+    std::uint64_t all = 0;
+    for (const std::uint64_t n : header.photons) all += std::min(n, most + 1); // no sum may wrap around
+    if (size != sizeof header + all * sizeof(Photon))
+        refuse(path,
+               fmt::format("found {} bytes where the header promises {} photons: the file is damaged", size, all));
+    Photons photons;
+    for (std::size_t i = 0; i < kParts; ++i) *parts(photons)[i] = read_photons(file, path, header.photons[i]);
+    if (checksum(photons) != header.checksum)
+        refuse(path, "the photons are not those that were saved: the file is damaged");
+    return photons;
+}
+
+} // namespace keyhole

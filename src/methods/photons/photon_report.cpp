@@ -1,0 +1,106 @@
+#include "methods/photons/photon_report.h"
+
+#include "core/parallel.h"
+#include "core/vec.h"
+#include "sampling/paths/image_lattice.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+
+namespace keyhole {
+namespace {
+
+/// Beyond these photons are not to be trusted.
+constexpr double kMostOfPower = 0.25;
+constexpr double kLeastEffective = 0.5; ///< of those found; where that is known
+constexpr double kLeastFound = 0.25;
+constexpr double kMostStarving = 0.1;
+constexpr double kShows = 0.1;       ///< of the light of a sample, or of the picture's mean where that is more
+constexpr double kMostFalse = 0.004; ///< of the picture
+constexpr double kMostNoise = 0.2;   ///< of irradiance records, where passes don't make it less
+
+double share_of_brightest(const std::vector<Photon>& photons) {
+    if (photons.empty()) return 0;
+    std::vector<double> powers;
+    powers.reserve(photons.size());
+    for (const Photon& p : photons) powers.push_back(luminance(p.power()));
+    const auto few = powers.begin() + static_cast<std::ptrdiff_t>((powers.size() + 999) / 1000);
+    std::ranges::nth_element(powers, few - 1, std::greater<>());
+    const double all = std::accumulate(powers.begin(), powers.end(), 0.0);
+    return all > 0 ? std::accumulate(powers.begin(), few, 0.0) / all : 0;
+}
+
+} // namespace
+
+void report_photons(const Photons& photons, RenderStats& stats) {
+    stats.photons_global = photons.global.size();
+    stats.photons_caustic = photons.caustic.size();
+    stats.photon_quality.of_brightest =
+        std::max(share_of_brightest(photons.global.main_photons), share_of_brightest(photons.caustic.main_photons));
+}
+
+void report_lookups(const IrradianceMap& map, double asked, RenderStats& stats) {
+    stats.photon_quality.lookups = {map.mean_photons(), map.effective_photons(), map.mean_photons() / asked};
+}
+
+void report_cache(const IrradianceCache& cache, double starving, RenderStats& stats) {
+    stats.photon_quality.cache = {static_cast<double>(cache.size()), cache.noise(), starving};
+}
+
+void report_false_spots(const FinalGather& gather, std::uint64_t seed, RenderStats& stats) {
+    constexpr int kPoints = 4096;
+    std::vector<FinalGather::Confirmation> seen(kPoints);
+    parallel_for(kPoints, [&](std::int64_t i) {
+        Rng rng(seed, StreamPurpose::survey, static_cast<std::uint64_t>(i));
+        seen[static_cast<std::size_t>(i)] = gather.confirm(lattice_image_point(seed, StreamPurpose::survey, i), rng);
+    });
+    double mean = 0;
+    for (const auto& s : seen) mean += s.all / kPoints;
+    const auto shows = [&](const auto& s) { return s.unconfirmed > kShows * std::max(s.all, mean); };
+    stats.photon_quality.unconfirmed = static_cast<double>(std::ranges::count_if(seen, shows)) / kPoints;
+}
+
+void warn_of_photons(RenderStats& stats, std::int64_t passes) {
+    const PhotonQuality& q = stats.photon_quality;
+    const auto lookups = q.lookups.value_or(PhotonQuality::Lookups{0, 0, 1});
+    const auto cache = q.cache.value_or(PhotonQuality::Cache{});
+    const double brightest = q.of_brightest.value_or(0), all_passes = std::max(1.0, static_cast<double>(passes));
+    if (stats.photons_global + stats.photons_caustic == 0) {
+        stats.warnings.emplace_back("no photon was stored: only direct light is rendered. If there is more, try more "
+                                    "light_paths or mutations");
+        return;
+    }
+    // Where light is brightest no lookup may ask: a room behind a narrow door has most of the power, in few photons.
+    if (brightest > kMostOfPower && lookups.effective < kLeastEffective * (q.lookups ? lookups.found : 1))
+        stats.warnings.push_back(fmt::format("the brightest 0.1 % of the photons carry {:.0f} % of the power: expect "
+                                             "blotches. Try more passes, or another method",
+                                             100 * brightest));
+    if (lookups.share < kLeastFound)
+        stats.warnings.push_back(fmt::format("the photon map is too sparse where it is asked: {:.1f} photons within "
+                                             "reach of a lookup, {:.0f} % of those asked for. Try more photons",
+                                             lookups.found, 100 * lookups.share));
+    // Each pass has spots of its own, and shows them less the more passes there are.
+    if (const double share = q.unconfirmed.value_or(0) / all_passes; share > kMostFalse)
+        stats.warnings.push_back(fmt::format("in {:.1f} % of the picture a good part of the light comes from a few "
+                                             "photons of great power that lie close together: expect bright discs that "
+                                             "are not there. Try more photons, light_paths or mutations, more passes, "
+                                             "or another method",
+                                             100 * share));
+    if (const double noise = cache.noise / std::sqrt(all_passes); noise > kMostNoise)
+        stats.warnings.push_back(
+            fmt::format("so few gather rays find light that it is known to {:.0f} % only where the "
+                        "irradiance cache estimates it (standard error): expect blotches. Try more "
+                        "cache_rays, user paths, or another method",
+                        100 * noise));
+    if (cache.starving > kMostStarving)
+        stats.warnings.push_back(fmt::format("the irradiance cache has no record for {:.0f} % of what is seen: a few "
+                                             "gather rays of each sample have to do, "
+                                             "and make noise. Try more spp, or more gather_rays",
+                                             100 * cache.starving));
+}
+
+} // namespace keyhole

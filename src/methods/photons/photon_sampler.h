@@ -1,0 +1,50 @@
+// What the methods that render from photon maps differ in.
+#pragma once
+
+#include "core/progress.h"
+#include "core/render_stats.h"
+#include "core/settings.h"
+#include "photonmap/photon_weighing.h"
+#include "photonmap/photons.h"
+#include "photonmap/surface/surface_patches.h"
+#include "sampling/guidance/user_paths.h"
+#include "sampling/paths/path_set.h"
+#include "scene/scene.h"
+
+#include <memory>
+
+namespace keyhole {
+
+/// Stages one and two of a pass: everything up to the photons. Called for one pass after the other.
+class PhotonSampler {
+  public:
+    virtual ~PhotonSampler() = default;
+
+    /// The photons of a pass that are independent of those of other passes. `seed` is that of the pass. Adds what it
+    /// did to `stats`.
+    virtual Photons sample(std::uint64_t seed, RenderStats& stats, const RunContext& context) = 0;
+    /// Says what the last pass leaves to be said.
+    virtual void finish(RenderStats& /*stats*/) {}
+};
+
+/// What a sampler works with. All must outlive it.
+struct SamplerContext {
+    const Scene& scene;
+    const Settings& settings;
+    const SurfacePatches& patches;
+    const UserPaths& user_paths;              ///< for chains, and for emission by importance
+    bool caustics = true;                     ///< whether there is to be a caustic map
+    const GatherCoverage* coverage = nullptr; ///< of gather rays; null: they come everywhere
+    const ImageWeight* weight = nullptr;      ///< of pixels; null: photons follow the light
+
+    /// The paths that chains sample.
+    PathSet path_set() const { return {settings.paths == SampledPaths::all, coverage, weight}; }
+    /// What goes to which map.
+    StorageRule storage() const { return {static_cast<int>(settings.max_depth), caustics, coverage}; }
+};
+
+/// The photons of settings.load_map. sample() throws InputError if the file isn't for this scene.
+/// @throws InputError if more than one pass is asked for.
+std::unique_ptr<PhotonSampler> make_file_sampler(const SamplerContext& context);
+
+} // namespace keyhole

@@ -1,0 +1,195 @@
+// --method pssmlt (Kelemen et al. 2002), mmlt (Hachisuka, Kaplanyan and Dachsbacher 2014) and rjmlt (after Bitterli et
+// al. 2017): chains in primary sample space, drawn to the film.
+#include "core/parallel.h"
+#include "film/splats.h"
+#include "methods/chain_report.h"
+#include "methods/method.h"
+#include "methods/primary_report.h"
+#include "sampling/primary/p_large.h"
+#include "sampling/primary/primary_chains.h"
+#include "session/passes.h"
+#include "session/stage_clock.h"
+#include "session/work.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace keyhole {
+namespace {
+
+/// Rounds after the first batch: the brightness that weights refer to is brought up to date between them.
+constexpr std::int64_t kRounds = 64;
+
+/// Steps of all chains that a stop waits for, at most: a second or two.
+constexpr std::int64_t kMostSteps = 1 << 20;
+
+/// So many steps of each chain, in `least` rounds at least.
+ChainRounds rounds_of(std::int64_t steps, std::int64_t chains, std::int64_t least) {
+    return ChainRounds::even(
+        steps, std::min(steps, std::max(least, steps / std::max<std::int64_t>(1, kMostSteps / chains) + 1)));
+}
+
+/// Stage one; the methods differ in it.
+struct StageOneTask {
+    BuilderContext builders;
+    const EmitterInverse& inverses;
+    const Settings& settings;
+    PrimaryStartOptions options;
+    const RunContext& context;
+};
+using StageOneOf = PrimaryStart (*)(const StageOneTask&);
+
+PrimaryStart start_pssmlt(const StageOneTask& t) {
+    auto builder = t.settings.builder == PathBuilderKind::path        ? make_path_builder(t.builders)
+                   : t.settings.builder == PathBuilderKind::endpoints ? make_endpoint_builder(t.builders)
+                                                                      : make_bidirectional_builder(t.builders);
+    return PrimaryStart::whole(std::move(builder), t.options, t.context);
+}
+PrimaryStart start_mmlt(const StageOneTask& t) {
+    return PrimaryStart::by_length(t.builders, nullptr, t.options, t.context);
+}
+PrimaryStart start_rjmlt(const StageOneTask& t) {
+    return PrimaryStart::by_length(t.builders, &t.inverses, t.options, t.context);
+}
+
+void report(const PrimaryChains& chains, RenderStats& stats) {
+    report_steps(chains.counts(), chains.size(), stats);
+    if (const ChangeCounts& c = chains.changes(); c.proposed > 0) {
+        const auto of_changes = [&](std::uint64_t n) {
+            return static_cast<double>(n) / static_cast<double>(c.proposed);
+        };
+        stats.values["reversible jumps"] = static_cast<double>(c.proposed);
+        stats.values["reversible jumps accepted"] = of_changes(c.accepted);
+        stats.values["reversible jumps without inverse"] = of_changes(c.no_inverse);
+        stats.values["reversible jumps that drifted"] = of_changes(c.drifted);
+    }
+}
+
+/// Collects what is to be told of one pass after the other.
+class PassReports {
+  public:
+    void add(const PrimaryChains& chains, RenderStats& stats) {
+        RenderStats pass;
+        report(chains, pass);
+        add_pass(stats, std::move(pass));
+        report_convergence(stats, chains.convergence());
+        if (passes_ == 0) warn_of_convergence(stats, chains.convergence(), chains.steps());
+        broken_ += chains.broken();
+        brightness_ += chains.brightness();
+        variance_ += chains.brightness_error() * chains.brightness_error();
+        ++passes_;
+    }
+
+    void finish(RenderStats& stats) const {
+        if (passes_ == 0) {
+            stats.warnings.emplace_back("no sampled path carried light: the picture is black. If there is any, try "
+                                        "more brightness_samples");
+            return;
+        }
+        stats.brightness = brightness_ / passes_;
+        stats.brightness_error = std::sqrt(variance_) / passes_;
+        warn_of_broken(stats, broken_);
+        if (stats.brightness_error > 0.05 * stats.brightness)
+            stats.warnings.push_back(
+                fmt::format("the brightness of the picture is known to {:.0f} % only (standard error): "
+                            "raise brightness_samples",
+                            100 * stats.brightness_error / stats.brightness));
+    }
+
+  private:
+    std::uint64_t broken_ = 0;
+    double brightness_ = 0, variance_ = 0; // sums over passes
+    double passes_ = 0;
+};
+
+/// Runs the chains of a group and adds what they draw. Returns whether they got to their end.
+bool draw(PrimaryChains& chains, const Scene& scene, const Settings& settings, Work& work, RenderStats& stats,
+          const RunContext& context) {
+    const StageClock clock(stats, stages::chains);
+    const ImageWindow& window = scene.camera().window();
+    SplatFilm film(window.width, window.height, PixelFilter(settings));
+    // Deposits are of the size of the brightness; the film's sums want numbers about 1.
+    const double unit = std::exp2(std::round(std::log2(chains.brightness())));
+    const auto deposit = [&](const Splat& s, double factor) {
+        film.add(window.to_pixel(s.image), SplatFilm::layer_of(s.light), s.value * (factor / unit));
+    };
+    const std::int64_t per_chain =
+        std::max<std::int64_t>(1, settings.mutations / chain_groups(settings) / chains.size());
+    const LearningBatch batch(per_chain);
+    context.begin("chains", static_cast<std::uint64_t>(per_chain * chains.size()), "steps");
+    const auto [rule, kernel] = learn_large_steps(chains, settings.failures, settings.p_large.value,
+                                                  rounds_of(batch.steps, chains.size(), 1), context);
+    report_large_steps(rule, kernel.p_large, stats);
+    const std::int64_t drawn = rounds_of(batch.rest, chains.size(), kRounds).run(context, [&](std::int64_t n) {
+        chains.advance(kernel, n, context, deposit);
+    });
+    context.end();
+    if (drawn < batch.rest && !work.is_first()) return false;
+    work.unit().drawn->add(film, unit * window.pixels() / static_cast<double>(drawn * chains.size()));
+    return drawn == batch.rest;
+}
+
+template <StageOneOf start> RenderResult render_primary(const RenderTask& task) {
+    const auto& [scene, settings, paths, context, share, findings] = task;
+    RenderResult result;
+    RenderStats& stats = result.stats;
+    const EmitterInverse inverses(scene);
+    const ImageWindow& window = scene.camera().window();
+    const std::int64_t groups = chain_groups(settings);
+    Work work(settings, window, AccumulationBuffer::Parts::drawn, share, groups, Work::PassStart::costly);
+    PassReports reports;
+    std::optional<PrimaryStart> started;
+    std::int64_t pass = -1; // that it is of
+    while (const auto unit = work.take(context)) {
+        const std::uint64_t seed = seed_of_pass(settings, work.pass_of(*unit));
+        if (work.pass_of(*unit) != pass) {
+            const StageClock clock(stats, stages::brightness);
+            started.emplace(start({{&scene, static_cast<int>(settings.max_depth), settings.mis},
+                                   inverses,
+                                   settings,
+                                   {.samples = settings.brightness_samples, .seed = seed},
+                                   context}));
+        }
+        pass = work.pass_of(*unit);
+        const auto group = static_cast<std::uint64_t>(*unit % groups);
+        PrimaryChains chains(started->choose_seeds(settings.chains / groups, group), seed, settings.large_step_mis,
+                             group);
+        bool whole = !context.stopped();
+        if (!whole && !work.is_first()) break;
+        if (chains.size() > 0) {
+            whole = draw(chains, scene, settings, work, stats, context) && whole;
+            if (whole || work.is_first()) reports.add(chains, stats);
+        } else {
+            work.unit().drawn->add(SplatFilm(window.width, window.height), 0);
+        }
+        if (whole) work.end_unit(stats);
+    }
+    reports.finish(stats);
+    result.picture = work.finish(stats);
+    return result;
+}
+
+} // namespace
+
+constinit const Method methods::pssmlt{.name = "pssmlt",
+                                       .help = "Metropolis light transport in primary sample space",
+                                       .trial = {.share = 0.07, .doubt = 1.5},
+                                       .render = render_primary<start_pssmlt>};
+
+// Samples of all techniques, which stage one of these takes, cost as much as many of their steps.
+constinit const Method methods::mmlt{.name = "mmlt",
+                                     .help = "the same as pssmlt, with chains for each length of path",
+                                     .trial = {.share = 0.12, .by_work = true, .doubt = 1.5},
+                                     .mutations_of_effort = 1500e3,
+                                     .brightness_samples_of_effort = 50e3,
+                                     .render = render_primary<start_mmlt>};
+
+constinit const Method methods::rjmlt{.name = "rjmlt",
+                                      .help = "mmlt that changes techniques by reversible jumps",
+                                      .trial = {.share = 0.07, .doubt = 1.5},
+                                      .mutations_of_effort = 1500e3,
+                                      .brightness_samples_of_effort = 50e3,
+                                      .render = render_primary<start_rjmlt>};
+
+} // namespace keyhole

@@ -1,0 +1,69 @@
+#include "methods/render.h"
+
+#include "core/shared_work.h"
+#include "film/filter.h"
+#include "methods/choice/first_look.h"
+#include "methods/choice/method_trials.h"
+#include "methods/method.h"
+
+#include <algorithm>
+
+namespace keyhole {
+
+namespace {
+
+/// Photons that are saved, read or weighed by pixels leave no choice but that between samplers of photons.
+bool may_choose(const Settings& s) {
+    return s.method == &methods::automatic && s.save_map.empty() && s.load_map.empty() && !s.equalise &&
+           s.plan != Plan::all;
+}
+
+/// By trials of a known amount of work. @param choice receives the choice in words.
+Settings choose(const TrialContext& c, std::string& choice) {
+    const std::vector<TriedMethod> tried = try_methods_by_work(c);
+    if (tried.empty()) return c.settings;
+    c.findings.forget_coverage();
+    choice = describe_choice(tried);
+    if (c.findings.plan && !c.findings.plan->photons)
+        choice += "; no photon maps: " + c.findings.plan->items.front().why;
+    return settings_of_same_work(c, tried);
+}
+
+} // namespace
+
+void set_window_margin(Scene& scene, const Settings& settings) {
+    ImageWindow window = scene.camera().window();
+    window.margin = std::max({2.0f, 0.03f * static_cast<float>(std::max(window.width, window.height)),
+                              static_cast<float>(PixelFilter(settings).radius())});
+    scene.set_window(window);
+}
+
+RenderResult render(Scene& scene, const Settings& settings, const RunContext& context, const UserPathFile& user_paths,
+                    const WorkPartition& share) {
+    set_window_margin(scene, settings);
+    Findings findings;
+    RenderResult result;
+    // A group of processes has to come to one choice: who is stopped in the middle of a trial would make another.
+    const std::set<std::string> none;
+    RunContext deciding = context.alone();
+    if (share.communicator != nullptr) deciding.stop = nullptr;
+    try {
+        const UserPaths paths = bind_user_paths(scene, user_paths);
+        std::string choice;
+        const Settings chosen =
+            may_choose(settings) ? choose({scene, settings, none, deciding, paths, findings}, choice) : settings;
+        result = render_by_method({scene, chosen, paths, context, share, findings});
+        result.settings = settings;
+        if (!choice.empty()) result.stats.remarks.insert(result.stats.remarks.begin(), choice);
+    } catch (const Interrupted&) { // before there was a picture
+        result.settings = settings;
+        result.stats.complete = false;
+    }
+    // What others are to go on from has its sums, which a first look has not.
+    const bool asked = context.stop != nullptr && context.stop->stopped();
+    if (asked && !has_picture(result) && !share.keep_sums && !share.save && share.communicator == nullptr)
+        return first_look(scene, settings);
+    return result;
+}
+
+} // namespace keyhole

@@ -1,0 +1,85 @@
+#include "methods/sample_report.h"
+
+#include "core/rng.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+namespace keyhole {
+namespace {
+
+/// Of the mean over the picture; pixels are worse.
+constexpr double kMostSampleError = 0.05;
+
+/// Samples that have to meet an emitter before their variance tells how well it is known.
+constexpr double kFewHits = 16;
+
+/// An emitter as the picture shows it.
+struct Image {
+    double share;     ///< of the window that it covers, at most
+    double luminance; ///< what it adds to the mean of the picture, at most [W/(m^2 sr)]
+};
+
+std::optional<Image> image_of(const Scene& scene, const Emitter& emitter) {
+    const auto bounds = emitter.bounds();
+    if (!bounds || emitter.is_delta()) return std::nullopt;
+    Rng rng(0, StreamPurpose::path_tracing, 0);
+    const SurfacePoint eye = scene.camera().eye(0.5, 0.5);
+    SurfacePoint point = emitter.sample_point(rng).point;
+    const auto is_seen = [&] {
+        const Vec3 to = direction(eye, point);
+        return scene.camera().image_point(eye, to) && luminance(emitter.radiance(point, -to)) > 0 &&
+               scene.visible(eye, point);
+    };
+    // Half of a closed emitter's points lie on its far side.
+    for (int i = 1; i < 16 && !is_seen(); ++i) point = emitter.sample_point(rng).point;
+    if (!is_seen()) return std::nullopt;
+    const Vec3 w = direction(eye, point);
+    const double distance2 = (point.p - eye.p).length2(), radius2 = (bounds->upper - bounds->lower).length2() / 4.0;
+    const double pdf = scene.camera().direction_pdf(w);
+    return Image{kPi * radius2 / distance2 * pdf, bounds->intensity / distance2 * pdf};
+}
+
+void report_small_emitters(const RunningStats& luminance, const Scene& scene, RenderStats& stats) {
+    double missed = 0;
+    for (const auto& emitter : scene.emitters()) {
+        const auto image = image_of(scene, *emitter);
+        if (image && image->share * static_cast<double>(luminance.count()) < kFewHits) missed += image->luminance;
+    }
+    if (missed > kMostSampleError * luminance.mean())
+        stats.warnings.push_back(fmt::format("emitters that the eye sees are so small that hardly a sample meets them, "
+                                             "and may be {:.0f} % of the picture's light: try more spp, or bdpt",
+                                             100 * missed / (missed + luminance.mean())));
+}
+
+} // namespace
+
+void report_samples(const RunningStats& luminance, RenderStats& stats) {
+    if (!(luminance.mean() > 0)) return;
+    const double error = luminance.standard_error() / luminance.mean();
+    stats.values["relative error of the mean"] = error;
+    if (luminance.count() < 2 || error > kMostSampleError)
+        stats.warnings.push_back(fmt::format("samples of pixels are so few or unequal that the mean of the picture is "
+                                             "known to {:.0f} % only (standard error): try more spp",
+                                             100 * error));
+}
+
+void report_eye_samples(const RunningStats& luminance, const Scene& scene, RenderStats& stats) {
+    report_samples(luminance, stats);
+    report_small_emitters(luminance, scene, stats);
+}
+
+void report_lost_light(const RunningStats& luminance, const Scene& scene, RenderStats& stats) {
+    if (luminance.count() > 0 && !(luminance.mean() > 0))
+        stats.warnings.emplace_back("no sample carried light: the picture is black. If there is light in the scene, it "
+                                    "comes where paths from the eye don't find it: try mps");
+    const bool no_extent = std::ranges::any_of(scene.emitters(), [](const auto& e) { return e->is_delta(); });
+    if (no_extent && scene.traits().delta)
+        stats.warnings.emplace_back("light from emitters without extent that comes through specular surfaces is "
+                                    "missing, or what is seen of it in others: paths from the eye can't find it. Use "
+                                    "mps");
+}
+
+} // namespace keyhole

@@ -1,0 +1,42 @@
+#include "core/error.h"
+#include "methods/method.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace keyhole {
+namespace {
+
+#define KEYHOLE_METHOD(name) &methods::name,
+constexpr const Method* kMethods[] = {
+#include "methods/table.inc"
+};
+#undef KEYHOLE_METHOD
+
+} // namespace
+
+std::span<const Method* const> all_methods() { return kMethods; }
+std::string_view name_of(const Method& method) { return method.name; }
+
+const Method& method_named(std::string_view name) {
+    const auto found = std::ranges::find(kMethods, name, [](const Method* m) { return m->name; });
+    if (found == std::end(kMethods)) throw InputError(fmt::format("unknown method '{}'", name));
+    return **found;
+}
+
+std::string names_of(bool Method::*is) {
+    std::vector<std::string_view> names;
+    for (const Method* method : kMethods)
+        if (method->*is) names.push_back(method->name);
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+
+RenderResult render_by_method(const RenderTask& task) {
+    const Method& method = *task.settings.method;
+    RenderResult result = method.render(task);
+    if (result.stats.method.empty()) result.stats.method = method.name;
+    result.settings = task.settings;
+    return result;
+}
+
+} // namespace keyhole

@@ -1,0 +1,117 @@
+#include "photonmap/irradiance/irradiance_map.h"
+
+#include "core/shared_work.h"
+#include "photonmap/surface/sight.h"
+
+#include <algorithm>
+
+namespace keyhole {
+namespace {
+
+/// How high above the surface two places are tested for sight of each other, as a share of their distance.
+constexpr float kLift = 0.25f;
+constexpr unsigned kLevels = 8;
+
+/// Distance of a place over the largest radius of estimates. Farther than the estimates themselves look: where photons
+/// are rare, most places have none that near, and to call them dark would take light away.
+constexpr float kFarthest = 4;
+/// Size of a cell for which one place will do, over the radius of its estimate.
+constexpr float kMostOfRadius = 1;
+
+/// Bit i is set if something may stand on the region of radius r / 2^i. It looks from half to three halves of the
+/// height kLift r / 2^i, where lines of sight run between places that are more than half as far from each other.
+std::uint8_t obstructed_levels(const SurfacePatches& patches, const SurfaceRegion& region, float r) {
+    unsigned levels = 0;
+    for (unsigned i = 0; i < kLevels; ++i, r /= 2) levels |= patches.obstructed(region, r) ? 1u << i : 0u;
+    return static_cast<std::uint8_t>(levels);
+}
+
+} // namespace
+
+IrradianceMap::IrradianceMap(const PhotonMap& pilots, const PhotonMap& main_photons, const IrradianceOptions& options,
+                             const RunContext& context)
+    : pilots_(pilots), estimates_(pilots.photons().size()), max_radius_(options.max_radius), scene_(options.scene) {
+    const Range own = own_part(static_cast<std::int64_t>(estimates_.size()), context);
+    std::vector<Count> used(static_cast<std::size_t>(blocks_of(own)));
+    context.begin("irradiance", static_cast<std::uint64_t>(own.size()), "estimates");
+    shared_blocks(estimates_, context, [&](std::int64_t b, std::int64_t i) {
+        used[static_cast<std::size_t>(b)] += estimate(static_cast<std::uint32_t>(i), main_photons, options);
+    });
+    if (options.scene != nullptr)
+        grid_.emplace(
+            options.scene->shapes(), kGridBytesPerPlace * estimates_.size(),
+            [this](const Vec3& middle, const Vec3& normal) { return place_for_cell(middle, normal); }, context);
+    context.end();
+    if (own.size() == 0) return;
+    for (const Count& u : used) mean_ += u;
+    mean_.photons /= static_cast<double>(own.size());
+    mean_.effective /= static_cast<double>(own.size());
+}
+
+IrradianceMap::Count IrradianceMap::estimate(std::uint32_t i, const PhotonMap& main_photons,
+                                             const IrradianceOptions& options) {
+    const Photon& place = pilots_[i];
+    const PhotonQuery query{{place.position(), place.normal().decode()}, options.max_radius, options.k, options.shrink};
+    // The pilot photon in the middle is there by choice of the place, so it is no evidence of the density there.
+    const float r = piloted_radius(pilots_, query, 1);
+    double sum = 0, squares = 0;
+    const auto one = [&](const Photon& p) {
+        const double power = luminance(p.power());
+        sum += power;
+        squares += power * power;
+        return 1.0;
+    };
+    DensityEstimate e =
+        options.scene != nullptr
+            ? estimate_density_in_sight(*options.scene, main_photons, query.region, r, *options.patches, one)
+            : estimate_density(main_photons, query.region, r, options.patches, one);
+    e.value /= share_in_reach(options.coverage, query.region, r);
+    estimates_[i] =
+        Estimate(e.value, r, e.obstructed ? obstructed_levels(*options.patches, query.region, r) : std::uint8_t{0});
+    return {static_cast<double>(e.photons), squares > 0 ? sum * sum / squares : 0.0};
+}
+
+SurfaceLookupGrid::Found IrradianceMap::place_for_cell(const Vec3& middle, const Vec3& normal) const {
+    const auto near = pilots_.nearest_one({middle, normal}, kFarthest * max_radius_);
+    if (!near) return {SurfaceLookupGrid::kNothing, max_radius_};
+    return {near->index, kMostOfRadius * radius(near->index)};
+}
+
+IrradianceMap::Answer IrradianceMap::irradiance(const Vec3& position, const Vec3& normal) const {
+    const SurfaceRegion region{position, normal};
+    const auto near = pilots_.nearest_one(region, kFarthest * max_radius_);
+    return near ? answer(near->index, region) : Answer{};
+}
+
+IrradianceMap::Answer IrradianceMap::irradiance(const SurfacePoint& point, const Vec3& normal) const {
+    const std::uint32_t place = grid_ ? grid_->at(point, normal) : SurfaceLookupGrid::kSearch;
+    if (place == SurfaceLookupGrid::kSearch) return irradiance(point.p, normal);
+    return place == SurfaceLookupGrid::kNothing ? Answer{} : answer(place, {point.p, normal});
+}
+
+IrradianceMap::Answer IrradianceMap::answer(std::uint32_t place, const SurfaceRegion& region) const {
+    const auto visible = [&](const Photon& p) {
+        const float lift = kLift * (p.position() - region.position).length();
+        return in_sight(*scene_, region, lift, p.position());
+    };
+    if (may_be_hidden(place, region.position) && !visible(pilots_[place])) {
+        const auto other = pilots_.nearest_accepted(region, kFarthest * max_radius_, visible);
+        if (!other) return {};
+        place = other->index;
+    }
+    return {estimates_[place].irradiance(), true, place};
+}
+
+bool IrradianceMap::may_be_hidden(std::uint32_t place, const Vec3& position) const {
+    if (scene_ == nullptr) return false;
+    const Estimate& e = estimates_[place];
+    const float distance2 = (pilots_[place].position() - position).length2();
+    float reach2 = e.radius() * e.radius();
+    // Nothing is known of what stands beyond the region of the estimate.
+    if (distance2 > reach2) return true;
+    for (unsigned levels = e.obstructed(); levels != 0; levels >>= 1, reach2 /= 4)
+        if (distance2 > reach2 / 4) return (levels & 1) != 0;
+    return false;
+}
+
+} // namespace keyhole

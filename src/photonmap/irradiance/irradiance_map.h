@@ -1,0 +1,107 @@
+// Irradiance computed beforehand at some places (after Christensen 1999, "Faster Photon Map Global Illumination").
+#pragma once
+
+#include "core/progress.h"
+#include "photonmap/irradiance/surface_lookup_grid.h"
+#include "photonmap/piloted_map.h"
+#include "sampling/paths/gather_coverage.h"
+#include "scene/scene.h"
+
+#include <bit>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace keyhole {
+
+struct IrradianceOptions {
+    int k = 60;                               ///< photons to be expected in an estimate
+    float max_radius;                         ///< [m]
+    float shrink = 1;                         ///< of regions, as in PhotonQuery
+    const SurfacePatches* patches = nullptr;  ///< for the area at edges; null: the disc's
+    const GatherCoverage* coverage = nullptr; ///< that the map ends at; null: nowhere
+    const Scene* scene = nullptr; ///< for walls that stand on a surface and part it; needs `patches`; null: none do
+};
+
+/// Answers with the estimate at the nearest pilot photon on the same piece of surface. Where other surfaces stand on
+/// it, photons and estimates that they hide don't count: a floor that goes on beneath a wall would let light through.
+/// Immutable and thread-safe once built.
+class IrradianceMap {
+  public:
+    /// Estimates are made at the pilot photons, which must outlive this. `main photons` are only read here.
+    IrradianceMap(const PhotonMap& pilots, const PhotonMap& main_photons, const IrradianceOptions& options,
+                  const RunContext& context);
+
+    struct Answer {
+        Rgb irradiance{0.0};     ///< W/m^2, through the geometric surface
+        bool known = false;      ///< false: no pilot photon of this surface within 4 max_radius; irradiance is 0
+        std::uint32_t place = 0; ///< index among places()
+    };
+
+    /// Irradiance on the side of unit `normal`.
+    Answer irradiance(const Vec3& position, const Vec3& normal) const;
+    /// The same at a point of the scene. On triangles it takes a fraction of the time: all points of a cell are
+    /// answered by the place nearest to its middle (SurfaceLookupGrid).
+    Answer irradiance(const SurfacePoint& point, const Vec3& normal) const;
+
+    /// Where irradiance was estimated.
+    std::span<const Photon> places() const { return pilots_.photons(); }
+    /// Radius of the estimate at place i [m].
+    float radius(std::uint32_t i) const { return estimates_[i].radius(); }
+
+    /// Memory without that of the pilot photons [bytes].
+    std::size_t bytes() const { return estimates_.capacity() * sizeof(Estimate) + (grid_ ? grid_->bytes() : 0); }
+    /// Of it, for one pilot photon [bytes].
+    static constexpr std::size_t bytes_per_place() { return sizeof(Estimate) + kGridBytesPerPlace; }
+    /// Number of photons that went into an estimate, on average over those that this process made.
+    double mean_photons() const { return mean_.photons; }
+    /// How many equal ones would be as good, on average over estimates: squared sum of power over sum of squares
+    /// (Kish).
+    double effective_photons() const { return mean_.effective; }
+
+  private:
+    static constexpr std::size_t kGridBytesPerPlace = 6;
+
+    class Estimate {
+      public:
+        Estimate() = default;
+        /// `obstructed`, bit i: something may stand on the region of radius / 2^i.
+        Estimate(const Rgb& e, float radius, std::uint8_t obstructed)
+            : irradiance_(e), obstructed_(obstructed),
+              radius_(static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(radius) >> 16)) {}
+
+        Rgb irradiance() const { return irradiance_.decode(); }
+        unsigned obstructed() const { return obstructed_; }
+        /// At most the one given, and at least 127/128 of it [m].
+        float radius() const { return std::bit_cast<float>(std::uint32_t{radius_} << 16); }
+
+      private:
+        SharedExponentRgb irradiance_;
+        std::uint8_t obstructed_ = 0;
+        std::uint16_t radius_ = 0; ///< the upper half of a float
+    };
+    /// The estimate at `place`, or another one where something hides that from the region's middle.
+    Answer answer(std::uint32_t place, const SurfaceRegion& region) const;
+    SurfaceLookupGrid::Found place_for_cell(const Vec3& middle, const Vec3& normal) const;
+    /// Whether something may stand between place and position.
+    bool may_be_hidden(std::uint32_t place, const Vec3& position) const;
+    struct Count {
+        double photons = 0, effective = 0;
+        Count& operator+=(const Count& o) {
+            photons += o.photons;
+            effective += o.effective;
+            return *this;
+        }
+    };
+    /// Fills in place i; returns the number of photons that it is made from.
+    Count estimate(std::uint32_t i, const PhotonMap& main_photons, const IrradianceOptions& options);
+
+    const PhotonMap& pilots_;
+    std::vector<Estimate> estimates_;
+    float max_radius_;
+    const Scene* scene_;
+    std::optional<SurfaceLookupGrid> grid_;
+    Count mean_;
+};
+
+} // namespace keyhole

@@ -1,0 +1,43 @@
+// A photon map whose lookups are sized by pilot photons.
+#pragma once
+
+#include "photonmap/density_estimate.h"
+#include "photonmap/photons.h"
+
+#include <cmath>
+#include <utility>
+
+namespace keyhole {
+
+/// The index of a PhotonSet. Immutable and thread-safe.
+class PilotedMap {
+  public:
+    explicit PilotedMap(PhotonSet photons)
+        : pilots_(std::move(photons.pilots), PhotonMap::Wanted::one), main_photons_(std::move(photons.main_photons)) {}
+
+    const PhotonMap& pilots() const { return pilots_; }
+    const PhotonMap& main_photons() const { return main_photons_; }
+    std::size_t bytes() const { return pilots_.bytes() + main_photons_.bytes(); }
+
+  private:
+    PhotonMap pilots_, main_photons_;
+};
+
+/// Radius of the region in which about `k` main photons are to be expected [m]: up to the pilot photon that has so many
+/// pilot photons nearer, and at most max_radius. `own`: pilot photons to leave out because the region was put where
+/// they are.
+inline float piloted_radius(const PhotonMap& pilots, const PhotonQuery& query, int own = 0) {
+    PhotonQuery among = query;
+    among.k = std::max(1, query.k / (kPilotEvery - 1)) + own;
+    return query.shrink * std::sqrt(pilots.nearest(among).radius2);
+}
+
+/// estimate_density() over the main photons in a region that the pilot photons decide. Its expectation is the mean
+/// density of the region, whatever the photons know of each other.
+template <class Weight>
+DensityEstimate estimate_density(const PilotedMap& map, const PhotonQuery& query, const SurfacePatches* patches,
+                                 Weight&& weight) {
+    return estimate_density(map.main_photons(), query.region, piloted_radius(map.pilots(), query), patches, weight);
+}
+
+} // namespace keyhole

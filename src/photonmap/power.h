@@ -1,0 +1,60 @@
+// The power of photons: every rule, and the factor that makes the sum of power over a region the flux that arrives
+// there. docs/photon-maps.md compares the rules.
+//
+// A photon of a chain over whole paths x stands for paths drawn in proportion to Y(f(x)), of which the photon is to
+// keep the light's side alone: f = f_map rest, and the camera sub-path has to be taken out of its power. Times B / N,
+// where B is the integral of Y(f) and N the number of steps, the sum of power over a region is then the flux in it.
+#pragma once
+
+#include "core/choices.h"
+#include "sampling/paths/path.h"
+
+#include <cstdint>
+
+namespace keyhole {
+
+/// Power f_map / Y(f_map E), for weight 1: the photons that lie somewhere share f_map E, the integral over all eye
+/// sides. Black where E says that nobody sees it.
+inline Rgb marginal_power(const Rgb& flux, const Rgb& importance) {
+    const double visible = luminance(flux * importance);
+    return visible > 0 ? flux / visible : Rgb(0.0);
+}
+
+/// Power f_map * mean of q / Y(f) * n, for weight 1, where q is a density of camera sub-paths and n the number of draws
+/// from it until one is valid: its expectation is the reciprocal of q's integral over those (Booth 2007; Zeltner et al.
+/// 2020).
+inline Rgb reciprocal_power(const Rgb& flux, double mean_density, std::int64_t draws) {
+    return flux * (mean_density * static_cast<double>(draws));
+}
+
+/// Power f_map * mean of 1 / Y(f), for weight 1: MPS 3.2.
+inline Rgb literal_power(const Rgb& flux, double mean_factor) { return flux * mean_factor; }
+
+/// 1 / Y(flux * rest), where `rest` is what the contribution of a measured path has from vertex d2 on: the literal
+/// factor of a photon of RGB `flux` at d2 (MPS 3.2). 0 where that isn't finite.
+double literal_factor(const Path& path, int d2, const Rgb& flux);
+
+/// Light that was drawn with density p as it was emitted and scattered: the walk carries its power f_map / p, and what
+/// is stored with weight w has that over w.
+inline Rgb emitted_power(const Rgb& carried, double weight) { return carried / weight; }
+
+/// B / N of N steps of chains over whole paths: what the maps' power is multiplied by in the end.
+inline double path_chain_scale(double brightness, double steps) { return brightness / steps; }
+/// The literal rule leaves a scale open: that which makes the photons as visible as the paths were, where `weight` is
+/// theirs and `visible` the sum of Y(power E) over them.
+inline double literal_scale(double path_chain_scale, double weight, double visible) {
+    return visible > 0 ? path_chain_scale * weight / visible : path_chain_scale;
+}
+/// 1 / N of N light paths.
+inline double emission_scale(std::int64_t light_paths) { return 1 / static_cast<double>(light_paths); }
+/// B / N of N steps of chains over light sub-paths, where B is the `unit` that their photons' weights are counted in.
+inline double light_chain_scale(double unit, std::int64_t steps) { return unit / static_cast<double>(steps); }
+
+/// Weight of a light sub-path of a chain in the unit of light_chain_scale(), over its share of the photons' weight:
+/// B / target, or, where large steps deposit on their own account with probability p, that of both together by the
+/// balance heuristic, B / (target + p B) (Kelemen et al. 2002).
+inline double light_chain_weight(double target, double brightness, double large, double unit) {
+    return 1 / (unit * (target / brightness + large));
+}
+
+} // namespace keyhole

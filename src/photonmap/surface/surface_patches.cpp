@@ -1,0 +1,187 @@
+#include "photonmap/surface/surface_patches.h"
+
+#include "photonmap/surface/disc_area.h"
+
+#include <algorithm>
+
+namespace keyhole {
+namespace {
+
+using Imath::V3d;
+
+constexpr double kFlat = SurfaceRegion::kFlattening;
+
+/// Of a scene: a tree of more would take longer to build than a short render lasts.
+constexpr std::size_t kMostInTree = 150'000;
+constexpr int kRing = 8, kDisc = 32; // rays that look for edges of a region, and that measure it there
+constexpr double kRingRadius = 0.85;
+
+bool holds_photons(const Shape& shape) {
+    return !is_interface(shape) && (shape.material == nullptr || shape.material->traits().finite);
+}
+
+/// Area inside the region of the sphere that it is centred on; 0 for a sphere that it isn't centred on.
+double cap_area(const Sphere& sphere, const SurfaceRegion& region, double r) {
+    const V3d out = V3d(region.position) - V3d(sphere.center);
+    const double radius = sphere.radius, distance = out.length();
+    if (std::abs(distance - radius) > 1e-3 * radius) return 0;
+    if (std::abs(out.dot(V3d(region.normal))) < 0.99 * distance) return 0;
+    // A point at depth h below the top of the cap has distance^2 = 2 R h + (flat^2 - 1) h^2 in the region's measure.
+    const double depth = r * r / (radius + std::sqrt(radius * radius + (kFlat * kFlat - 1) * r * r));
+    return 2 * kPi * radius * std::min(depth, radius * (1 - SurfaceRegion::kMinCosine));
+}
+
+Bounds bounds_of(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& t) {
+    Bounds b{mesh.positions[t[0]], mesh.positions[t[0]]};
+    for (const std::uint32_t i : {t[1], t[2]}) b.extend({mesh.positions[i], mesh.positions[i]});
+    return b;
+}
+
+Bounds bounds_of(const Sphere& sphere) {
+    return {sphere.center - Vec3(sphere.radius), sphere.center + Vec3(sphere.radius)};
+}
+
+std::vector<Bounds> bounds_of(const std::vector<Shape>& shapes) {
+    std::vector<Bounds> boxes;
+    for (const Shape& shape : shapes) {
+        if (!holds_photons(shape)) continue;
+        if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) {
+            boxes.push_back(bounds_of(*sphere));
+        } else {
+            const auto& mesh = std::get<TriangleMesh>(shape.geometry);
+            for (const auto& t : mesh.triangles) boxes.push_back(bounds_of(mesh, t));
+        }
+    }
+    return boxes;
+}
+
+/// Box around the ellipsoid of a region.
+Bounds bounds_of(const SurfaceRegion& region, double r) {
+    Vec3 half;
+    for (int i = 0; i < 3; ++i) {
+        const double n = region.normal[i];
+        half[i] = static_cast<float>(r * std::sqrt(std::max(0.0, 1 - n * n * (1 - 1 / (kFlat * kFlat)))) * 1.0001);
+    }
+    return {region.position - half, region.position + half};
+}
+
+} // namespace
+
+SurfacePatches::SurfacePatches(const Scene& scene)
+    : shapes_(scene.shapes()), scene_(&scene),
+      tree_(scene.triangle_count() <= kMostInTree ? bounds_of(shapes_) : std::vector<Bounds>()),
+      has_tree_(scene.triangle_count() <= kMostInTree) {
+    if (has_tree_) add_patches();
+}
+
+SurfacePatches::SurfacePatches(const std::vector<Shape>& shapes)
+    : shapes_(shapes), tree_(bounds_of(shapes)), has_tree_(true) {
+    add_patches();
+}
+
+void SurfacePatches::add_patches() {
+    for (std::uint32_t s = 0; s < shapes_.size(); ++s) {
+        if (!holds_photons(shapes_[s])) continue;
+        const auto* mesh = std::get_if<TriangleMesh>(&shapes_[s].geometry);
+        const auto n = static_cast<std::uint32_t>(mesh != nullptr ? mesh->triangles.size() : 1);
+        for (std::uint32_t t = 0; t < n; ++t) patches_.push_back({s, t});
+    }
+}
+
+double SurfacePatches::area(const SurfaceRegion& region, double r) const {
+    if (!has_tree_) return area_by_rays(region, r);
+    double sum = 0;
+    int met = 0;
+    const bool all = tree_.overlapping(bounds_of(region, r), [&](std::uint32_t i) {
+        if (scene_ != nullptr && ++met > kMostTriangles) return false;
+        const auto* sphere = std::get_if<Sphere>(&shapes_[patches_[i].shape].geometry);
+        sum += sphere != nullptr ? cap_area(*sphere, region, r) : triangle_area(patches_[i], region, r);
+        return true;
+    });
+    return all ? std::min(sum, kPi * r * r) : area_by_rays(region, r);
+}
+
+/// Rays go through the region against its normal. Nearly all regions lie away from edges, which a few rays near the
+/// border tell.
+double SurfacePatches::area_by_rays(const SurfaceRegion& region, double r) const {
+    const Frame frame(region.normal);
+    // Area of the surface over that of its projection, where a ray at a place of the disc finds some in the region.
+    const auto stretch = [&](double distance, double angle) {
+        const double height = std::sqrt(r * r - distance * distance) / kFlat;
+        SurfacePoint start;
+        start.site = Site::point;
+        start.p = region.position + frame.s * static_cast<float>(distance * std::cos(angle)) +
+                  frame.t * static_cast<float>(distance * std::sin(angle)) + frame.n * static_cast<float>(height);
+        const auto hit = scene_->trace(start, -frame.n);
+        if (!hit || hit->site != Site::surface || !holds_photons(shapes_[hit->shape])) return 0.0;
+        const double cosine = std::abs(static_cast<double>(hit->ng.dot(frame.n)));
+        return (hit->p - start.p).length() <= 2 * height && cosine > SurfaceRegion::kMinCosine ? 1 / cosine : 0.0;
+    };
+    int covered = 0;
+    while (covered < kRing && stretch(kRingRadius * r, 2 * kPi * covered / kRing) > 0) ++covered;
+    if (covered == kRing) return kPi * r * r;
+    double sum = 0;
+    for (int i = 0; i < kDisc; ++i) sum += stretch(r * std::sqrt((i + 0.5) / kDisc), kGoldenAngle * i);
+    return kPi * r * r * std::min(1.0, sum / kDisc);
+}
+
+bool SurfacePatches::obstructed(const SurfaceRegion& region, double r) const {
+    if (!has_tree_) return obstructed_by_rays(region, r);
+    // The slab above what counts as the same surface.
+    SurfaceRegion above = region;
+    above.position += region.normal * static_cast<float>(2 * r / kFlat);
+    const Bounds slab = bounds_of(above, r);
+    int met = 0;
+    bool found = false;
+    const bool all = tree_.overlapping(slab, [&](std::uint32_t i) {
+        if (scene_ != nullptr && ++met > kMostTriangles) return false;
+        const Shape& shape = shapes_[patches_[i].shape];
+        if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) {
+            found |= bounds_of(*sphere).overlaps(slab);
+        } else {
+            const auto& mesh = std::get<TriangleMesh>(shape.geometry);
+            found |= bounds_of(mesh, mesh.triangles[patches_[i].triangle]).overlaps(slab);
+        }
+        return true;
+    });
+    return all ? found : obstructed_by_rays(region, r);
+}
+
+/// Rays go out from above the middle, through the slab, to the region's border.
+bool SurfacePatches::obstructed_by_rays(const SurfaceRegion& region, double r) const {
+    const Frame frame(region.normal);
+    const Vec3 from = region.position + frame.n * static_cast<float>(2 * r / kFlat);
+    for (int i = 0; i < kRing; ++i) {
+        const double angle = 2 * kPi * i / kRing;
+        const Vec3 w = frame.s * static_cast<float>(std::cos(angle)) + frame.t * static_cast<float>(std::sin(angle));
+        if (!scene_->visible(from, from + w * static_cast<float>(r))) return true;
+    }
+    return false;
+}
+
+/// Stretched along the normal, the ellipsoid becomes a sphere, which cuts the triangle's plane in a disc; areas in that
+/// plane all shrink by one factor on the way back.
+double SurfacePatches::triangle_area(const Patch& patch, const SurfaceRegion& region, double r) const {
+    const auto& mesh = std::get<TriangleMesh>(shapes_[patch.shape].geometry);
+    const auto& t = mesh.triangles[patch.triangle];
+    const V3d n(region.normal);
+    std::array<V3d, 3> p;
+    for (std::size_t i = 0; i < 3; ++i) p[i] = V3d(mesh.positions[t[i]]) - V3d(region.position);
+    const V3d cross = (p[1] - p[0]).cross(p[2] - p[0]);
+    const double cosine = std::abs(cross.dot(n)), twice_area = cross.length();
+    if (!(cosine > SurfaceRegion::kMinCosine * twice_area)) return 0; // two-sided: either orientation counts
+
+    for (V3d& v : p) v += n * ((kFlat - 1) * v.dot(n));
+    const V3d stretched = (p[1] - p[0]).cross(p[2] - p[0]);
+    const double twice_stretched = stretched.length();
+    const V3d plane_normal = stretched / twice_stretched;
+    const double height = p[0].dot(plane_normal);
+    if (std::abs(height) >= r) return 0;
+
+    const V3d s = (p[1] - p[0]).normalized(), u = plane_normal.cross(s);
+    const auto flat = [&](const V3d& v) { return Imath::V2d(v.dot(s), v.dot(u)); };
+    const double disc = std::sqrt(r * r - height * height);
+    return disc_triangle_area(flat(p[0]), flat(p[1]), flat(p[2]), disc) * (twice_area / twice_stretched);
+}
+
+} // namespace keyhole

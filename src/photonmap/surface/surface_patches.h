@@ -1,0 +1,53 @@
+// How much surface lies around a point: what a density estimate divides by where a disc would stick out over an edge.
+#pragma once
+
+#include "photonmap/surface/box_tree.h"
+#include "photonmap/surface/surface_region.h"
+#include "scene/scene.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace keyhole {
+
+/// The surfaces of a scene that photons can lie on: those whose material has a finite part. A question costs the same
+/// however fine the meshes are: where more than kMostTriangles lie in a region, and everywhere in scenes too fine for a
+/// tree of their triangles, a few rays look instead of exact sums. Immutable and thread-safe; refers to the shapes and
+/// the scene, which must outlive it.
+class SurfacePatches {
+  public:
+    explicit SurfacePatches(const Scene& scene);
+    /// Without a scene to send rays into: always exact, whatever that takes.
+    explicit SurfacePatches(const std::vector<Shape>& shapes);
+
+    /// Area [m^2] of the surface inside the region of radius `r`, counted on the region's side. Exact for triangles,
+    /// and on a sphere for regions about a point of it; a sphere that is only near by is left out. By rays it is known
+    /// to about 4 % of the disc where an edge goes through the region, and exact away from edges. Surfaces in contact
+    /// (a box on a floor) both count, although photons reach only one; so the area is held to that of the disc, pi r^2.
+    double area(const SurfaceRegion& region, double r) const;
+
+    /// Whether other surfaces may stand on the region of radius `r`, where they could part one half of it from the
+    /// other. By bounding boxes: true more often than need be on slanted and curved surfaces; by rays along the surface
+    /// where there are too many.
+    bool obstructed(const SurfaceRegion& region, double r) const;
+
+    /// Triangles in a region that are added up one by one.
+    static constexpr int kMostTriangles = 64;
+
+  private:
+    struct Patch {
+        std::uint32_t shape, triangle;
+    };
+    void add_patches();
+    double triangle_area(const Patch& patch, const SurfaceRegion& region, double r) const;
+    double area_by_rays(const SurfaceRegion& region, double r) const;
+    bool obstructed_by_rays(const SurfaceRegion& region, double r) const;
+
+    const std::vector<Shape>& shapes_;
+    const Scene* scene_ = nullptr; // null: there are no rays
+    std::vector<Patch> patches_;   // of the tree's boxes
+    BoxTree tree_;
+    bool has_tree_;
+};
+
+} // namespace keyhole

@@ -1,0 +1,253 @@
+#include "sampling/guidance/learned_emission.h"
+
+#include "core/shared_work.h"
+#include "sampling/paths/image_lattice.h"
+#include "sampling/paths/independent_paths.h"
+#include "scene/emitters/sphere_map.h"
+
+#include <algorithm>
+#include <array>
+
+namespace keyhole {
+
+struct SeenLight {
+    std::uint32_t emitter;
+    Vec3 towards;  ///< unit, where the emitter is; for one at infinity
+    Vec3 p;        ///< where its light first arrives
+    double weight; ///< luminance in the picture
+};
+
+namespace {
+
+/// Of the choices of directions and of places, what goes on as if nothing had been learned.
+constexpr double kPlain = 0.2;
+/// The same of emitters: one whose light is hard to find from the eye is seldom seen, and may matter all the same.
+constexpr double kPlainEmitters = 0.5;
+/// A path counts as so many times the mean at most: what was hard to find must not draw all light to where it was.
+constexpr double kMostWeight = 20;
+/// Directions among which one is chosen by resampling (Talbot, Cline and Egbert 2005).
+constexpr std::size_t kCandidates = 8;
+/// Of an octahedral map of directions: paths for a cell, and cells along a side.
+constexpr double kPathsOfBeam = 48;
+constexpr int kLeastSide = 4, kMostSide = 16;
+/// With fewer paths the places of a beam are not learned.
+constexpr std::size_t kLeastPaths = 12;
+/// Directions that tell how much of an emitter's light lies in a cell, for each of them.
+constexpr int kDirectionsOfCell = 64;
+
+int cell_of(int side, const Vec3& towards) {
+    const Vec2d place = sphere_place(SphereLayout::octahedral, towards);
+    const auto along = [&](double x) { return std::clamp(static_cast<int>(x * side), 0, side - 1); };
+    return along(place.y) * side + along(place.x);
+}
+
+Vec3 middle_of(int side, int cell) {
+    return sphere_direction(SphereLayout::octahedral, {(cell % side + 0.5) / side, (cell / side + 0.5) / side});
+}
+
+/// Share of an emitter's light that comes from each cell.
+std::vector<double> light_by_cell(const Emitter& emitter, int side) {
+    std::vector<double> share(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
+    const int count = kDirectionsOfCell * side * side;
+    Rng rng(1, StreamPurpose::learned_emission, ~0ULL); // the emitter's own: no picture depends on the seed here
+    for (int i = 0; i < count; ++i)
+        share[static_cast<std::size_t>(cell_of(side, emitter.sample_point(rng).point.p))] += 1.0 / count;
+    return share;
+}
+
+/// Keeps what paths from the eye met whose light is for photon maps.
+struct Eye {
+    std::vector<SeenLight>& seen;
+    template <class MakePath> void contribution(const Rgb& value, PhotonKind kind, const MakePath& make_path) {
+        const double y = luminance(value);
+        if (kind == PhotonKind::none || !(y > 0) || !std::isfinite(y)) return;
+        const Path path = make_path();
+        const SurfacePoint& x0 = path.x[0].point;
+        seen.push_back({x0.emitter, x0.p, path.x[1].point.p, y});
+    }
+};
+
+std::vector<SeenLight> look_for_light(const Scene& scene, const EmissionLearning& learning, const RunContext& context) {
+    constexpr std::int64_t kBlock = 256;
+    const std::int64_t blocks = (learning.paths + kBlock - 1) / kBlock;
+    std::vector<std::vector<SeenLight>> parts(static_cast<std::size_t>(blocks));
+    const std::size_t most = learning.most_bytes / sizeof(SeenLight) / std::max<std::size_t>(parts.size(), 1);
+    context.begin("emission", static_cast<std::uint64_t>(learning.paths), "paths");
+    parallel_for(blocks, context, [&](std::int64_t b) {
+        std::vector<SeenLight>& seen = parts[static_cast<std::size_t>(b)];
+        Eye eye{seen};
+        const std::int64_t end = std::min(learning.paths, (b + 1) * kBlock);
+        for (std::int64_t i = b * kBlock; i < end && seen.size() < most; ++i) {
+            Rng rng(learning.seed, StreamPurpose::learned_emission, static_cast<std::uint64_t>(i));
+            const Vec2 image = lattice_image_point(learning.seed, StreamPurpose::learned_emission, i);
+            trace_independent(Technique::path, scene, image, {learning.max_scatterings, learning.set}, rng, eye);
+        }
+        context.advance(kBlock);
+    });
+    context.end();
+    std::vector<SeenLight> all;
+    for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+    return all;
+}
+
+SurfacePoint point_on(std::uint32_t emitter, SurfacePoint point) {
+    point.emitter = emitter;
+    return point;
+}
+
+} // namespace
+
+bool LearnedEmission::can_learn(const Scene& scene) {
+    return std::ranges::any_of(scene.emitters(), [](const auto& e) { return e->site() == Site::infinite; });
+}
+
+LearnedEmission::LearnedEmission(const Scene& scene, const EmissionLearning& learning, const RunContext& context)
+    : scene_(&scene), skies_(scene.emitters().size()) {
+    std::vector<SeenLight> seen = look_for_light(scene, learning, context);
+    choose_emitters(seen);
+    std::ranges::stable_sort(seen, {}, &SeenLight::emitter);
+    for (std::size_t begin = 0, end = 0; begin < seen.size(); begin = end) {
+        while (end < seen.size() && seen[end].emitter == seen[begin].emitter) ++end;
+        if (scene.emitter(seen[begin].emitter).site() == Site::infinite)
+            learn_sky(seen[begin].emitter, std::span(seen).subspan(begin, end - begin));
+    }
+}
+
+void LearnedEmission::choose_emitters(std::vector<SeenLight>& seen) {
+    std::vector<double> shares(skies_.size());
+    for (std::size_t i = 0; i < shares.size(); ++i)
+        shares[i] = scene_->emitter_distribution().probability(static_cast<std::uint32_t>(i));
+    double sum = 0, limited = 0;
+    for (const SeenLight& s : seen) sum += s.weight;
+    if (sum > 0) {
+        const double most = kMostWeight * sum / static_cast<double>(seen.size());
+        for (SeenLight& s : seen) limited += s.weight = std::min(s.weight, most);
+        for (double& share : shares) share *= kPlainEmitters;
+        for (const SeenLight& s : seen) shares[s.emitter] += (1 - kPlainEmitters) * s.weight / limited;
+    }
+    choice_ = EmitterDistribution(shares);
+}
+
+void LearnedEmission::learn_sky(std::uint32_t i, std::span<const SeenLight> found) {
+    const Emitter& emitter = scene_->emitter(i);
+    Sky& sky = skies_[i];
+    if (!emitter.is_delta()) {
+        const double side = std::sqrt(static_cast<double>(found.size()) / kPathsOfBeam);
+        sky.side = std::clamp(static_cast<int>(side), kLeastSide, kMostSide);
+    }
+    const auto cells = static_cast<std::size_t>(sky.side) * static_cast<std::size_t>(sky.side);
+    std::vector<std::vector<SeenLight>> by_cell(cells);
+    const auto cell = [&](const Vec3& towards) { return sky.side == 1 ? 0 : cell_of(sky.side, towards); };
+    double sum = 0;
+    for (const SeenLight& f : found) {
+        by_cell[static_cast<std::size_t>(cell(f.towards))].push_back(f);
+        sum += f.weight;
+    }
+    const std::vector<double> light = sky.side == 1 ? std::vector<double>{1.0} : light_by_cell(emitter, sky.side);
+    sky.beams.resize(cells);
+    for (std::size_t b = 0; b < cells; ++b) {
+        Beam& beam = sky.beams[b];
+        double own = 0;
+        for (const SeenLight& f : by_cell[b]) own += f.weight;
+        // Where the emitter seemed dark, some of its light may come all the same.
+        const double of_all = std::max(light[b], 1.0 / (kDirectionsOfCell * static_cast<double>(cells)));
+        beam.weight = kPlain + (1 - kPlain) * own / sum / of_all;
+        beam.w = -(sky.side == 1 ? found.front().towards : middle_of(sky.side, static_cast<int>(b)));
+        learn_beam(beam, by_cell[b]);
+    }
+}
+
+void LearnedEmission::learn_beam(Beam& beam, std::span<const SeenLight> found) const {
+    if (found.size() < kLeastPaths) return;
+    // Places of light of other directions than the middle one are told apart best on a plane near those that count.
+    Imath::V3d sum(0.0);
+    for (const SeenLight& f : found) sum += Imath::V3d(f.p);
+    beam.center = Vec3(sum / static_cast<double>(found.size()));
+    const Frame frame(beam.w);
+    std::vector<PlaneHistogram::Point> points;
+    for (const SeenLight& f : found) {
+        const Vec3 w = -f.towards, on_plane = f.p - beam.center;
+        const Vec3 local = frame.to_local(on_plane - w * (on_plane.dot(beam.w) / w.dot(beam.w)));
+        points.push_back({{local.x, local.y}, f.weight});
+    }
+    beam.places = PlaneHistogram(points);
+}
+
+const LearnedEmission::Beam& LearnedEmission::beam_of(const Sky& sky, const Vec3& towards) const {
+    return sky.beams[sky.side == 1 ? 0 : static_cast<std::size_t>(cell_of(sky.side, towards))];
+}
+
+std::optional<EmittedLight> LearnedEmission::sample(SampleSource& source) const {
+    if (choice_.empty()) return std::nullopt;
+    const std::uint32_t i = choice_.sample(source.next());
+    const Emitter& emitter = scene_->emitter(i);
+    if (!skies_[i].beams.empty()) return sample_sky(skies_[i], emitter, choice_.probability(i), i, source);
+    const EmitterPoint point = emitter.sample_point(source);
+    return emit_light(*scene_, point_on(i, point.point), choice_.probability(i) * point.pdf, source);
+}
+
+std::optional<EmittedLight> LearnedEmission::sample_sky(const Sky& sky, const Emitter& emitter, double probability,
+                                                        std::uint32_t i, SampleSource& source) const {
+    std::array<EmitterPoint, kCandidates> candidates;
+    std::array<double, kCandidates> up_to{};
+    const std::size_t count = sky.side == 1 ? 1 : kCandidates;
+    double sum = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+        candidates[k] = emitter.sample_point(source);
+        up_to[k] = sum += beam_of(sky, candidates[k].point.p).weight;
+    }
+    std::size_t k = 0;
+    if (count > 1) {
+        const double u = source.next() * sum;
+        while (k + 1 < count && u >= up_to[k]) ++k;
+    }
+    const Beam& beam = beam_of(sky, candidates[k].point.p);
+    // The chosen one's density, where its power is concerned: resampling leaves the mean alone.
+    const double pdf = candidates[k].pdf * beam.weight * static_cast<double>(count) / sum;
+    const EmitterRay ray = sample_place(beam, emitter, candidates[k].point, source);
+    return emit_along(*scene_, point_on(i, candidates[k].point), probability * pdf, ray);
+}
+
+EmitterRay LearnedEmission::sample_place(const Beam& beam, const Emitter& emitter, const SurfacePoint& point,
+                                         SampleSource& source) const {
+    const bool plain = beam.places.empty() || source.next() < kPlain;
+    EmitterRay ray = emitter.sample_ray(point, source);
+    if (beam.places.empty()) return ray;
+    const BoundingSphere scene = scene_->bounding_sphere();
+    const Frame frame(beam.w);
+    const double cosine = ray.w.dot(beam.w), plain_pdf = ray.pdf;
+    PlaneHistogram::Place place{};
+    bool in_beam = true; // whether the plain choice could have made it
+    if (plain) {
+        const Vec3 from = ray.origin.p - beam.center;
+        const Vec3 local = frame.to_local(from - ray.w * static_cast<float>(from.dot(beam.w) / cosine));
+        place = {{local.x, local.y}};
+    } else {
+        const double u0 = source.next();
+        place = beam.places.sample(u0, source.next());
+        const Vec3 x =
+            beam.center + frame.to_world(Vec3(static_cast<float>(place.x[0]), static_cast<float>(place.x[1]), 0));
+        const Vec3 offset = x - scene.center, across = offset - ray.w * offset.dot(ray.w);
+        ray.origin.p = scene.center + across - ray.w * scene.radius; // before everything in the scene
+        in_beam = across.length2() <= scene.radius * scene.radius;
+    }
+    ray.pdf = (in_beam ? kPlain * plain_pdf : 0) + (1 - kPlain) * beam.places.pdf(place) / cosine;
+    return ray;
+}
+
+double LearnedEmission::effective_emitters() const {
+    double squares = 0;
+    for (std::uint32_t i = 0; i < skies_.size(); ++i) squares += choice_.probability(i) * choice_.probability(i);
+    return squares > 0 ? 1 / squares : 0;
+}
+
+std::size_t LearnedEmission::bytes() const {
+    std::size_t sum = skies_.capacity() * sizeof(Sky);
+    for (const Sky& sky : skies_) {
+        sum += sky.beams.capacity() * sizeof(Beam);
+        for (const Beam& beam : sky.beams) sum += beam.places.bytes();
+    }
+    return sum;
+}
+
+} // namespace keyhole

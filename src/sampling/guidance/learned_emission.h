@@ -1,0 +1,75 @@
+// Where light paths begin: emitters, and directions and places of light from infinity, by what they bring to the
+// picture.
+#pragma once
+
+#include "core/progress.h"
+#include "sampling/guidance/plane_histogram.h"
+#include "sampling/paths/light_tracer.h"
+#include "sampling/paths/path_set.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace keyhole {
+
+/// What learning takes.
+struct EmissionLearning {
+    std::int64_t paths;  ///< from the eye
+    int max_scatterings; ///< of a path
+    PathSet set{};       ///< what photons are stored for
+    std::uint64_t seed = 1;
+    std::size_t most_bytes = 16 << 20;
+};
+
+struct SeenLight; // an end at an emitter of a path from the eye
+
+/// A choice of emitters and, for those at infinity, of directions and places, that follows the light which photon maps
+/// hold: learned from paths traced from the eye, which don't count in any picture. (Jensen 1995 aims by the same
+/// histograms from the light's side; Estevez and Kulla 2020, "Practical Caustics Rendering with Adaptive Photon
+/// Guiding", choose emitters by what pilot photons bring.) A share of all choices goes as if nothing had been learned,
+/// so that light arrives from everywhere with the power that it has. Immutable and thread-safe.
+class LearnedEmission {
+  public:
+    /// @throws Interrupted
+    LearnedEmission(const Scene& scene, const EmissionLearning& learning, const RunContext& context);
+
+    /// Whether it pays: where light comes from infinity. Among lamps alone paths from the eye were seen to find too
+    /// little of the light that is hardest to find, and its photons too strong.
+    static bool can_learn(const Scene& scene);
+
+    /// The first edge of a light path, its density that of all choices together; none where nothing emits.
+    std::optional<EmittedLight> sample(SampleSource& source) const;
+
+    /// How many emitters would do: the reciprocal of the sum of their squared shares.
+    double effective_emitters() const;
+    std::size_t bytes() const;
+
+  private:
+    /// Parallel light of neighbouring directions.
+    struct Beam {
+        double weight = 0;    ///< how much more of its light counts than of light of all directions
+        Vec3 w{0, 0, 1};      ///< of its middle, in which light travels
+        Vec3 center{0, 0, 0}; ///< of the plane across w that places are counted on
+        PlaneHistogram places;
+    };
+    /// Of one emitter at infinity.
+    struct Sky {
+        int side = 1; ///< beams lie on an octahedral map of side * side cells; 1 for a single direction
+        std::vector<Beam> beams;
+    };
+
+    void choose_emitters(std::vector<SeenLight>& seen);
+    void learn_sky(std::uint32_t emitter, std::span<const SeenLight> found);
+    void learn_beam(Beam& beam, std::span<const SeenLight> found) const;
+    std::optional<EmittedLight> sample_sky(const Sky& sky, const Emitter& emitter, double probability, std::uint32_t i,
+                                           SampleSource& source) const;
+    EmitterRay sample_place(const Beam& beam, const Emitter& emitter, const SurfacePoint& point,
+                            SampleSource& source) const;
+    const Beam& beam_of(const Sky& sky, const Vec3& towards) const;
+
+    const Scene* scene_;
+    EmitterDistribution choice_;
+    std::vector<Sky> skies_; ///< by emitter; no beams: nothing was learned
+};
+
+} // namespace keyhole

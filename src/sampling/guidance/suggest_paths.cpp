@@ -1,0 +1,132 @@
+#include "sampling/guidance/suggest_paths.h"
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "sampling/guidance/user_paths.h"
+#include "sampling/proposals/edit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace keyhole {
+namespace {
+
+/// The light sub-path that a user path could make of a path.
+struct Candidate {
+    Path path;
+    int vertices = 0; ///< from the light on
+    double weight = 0;
+};
+
+/// Up to the vertex before d1, which a proposal joins to d1; up to d1 itself where light comes to it by way of
+/// specular vertices. 0: there is none.
+int light_vertices(const Path& path) {
+    const int d1 = nth_finite_from_eye(path, 1);
+    if (d1 == 0) return 0;
+    const int n = path.x[static_cast<std::size_t>(d1) - 1].specular() ? d1 + 1 : d1;
+    return n >= 2 ? n : 0;
+}
+
+/// Contribution over the density of a wholly new path, summed over all ways of making it from both ends.
+double hardness(const Path& path) {
+    const double density = bidirectional_density(path);
+    return density > 0 ? path.target / density : 0;
+}
+
+std::vector<Candidate> candidates(const Scene& scene, const std::vector<Path>& pool) {
+    std::vector<Candidate> found;
+    for (const Path& path : pool) {
+        const int n = light_vertices(path);
+        if (n == 0 || scene.emitter(path.x[0].point.emitter).site() == Site::infinite) continue;
+        if (const double weight = hardness(path); weight > 0) found.push_back({path, n, weight});
+    }
+    return found;
+}
+
+bool alike(const Candidate& a, const Candidate& b, double radius) {
+    if (a.vertices != b.vertices) return false;
+    for (int i = 0; i < a.vertices; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        if (a.path.x[k].event != b.path.x[k].event && i + 1 < a.vertices) return false;
+        if ((a.path.x[k].point.p - b.path.x[k].point.p).length() > radius) return false;
+    }
+    return true;
+}
+
+/// The root mean square angle at which the paths of a cluster leave their vertex i, about the point after it of the
+/// one in the middle; doubled and within bounds.
+double cone_of(const Candidate& middle, const std::vector<const Candidate*>& cluster, int i) {
+    constexpr double least = 3 * kPi / 180, most = 30 * kPi / 180;
+    if (cluster.size() < 3) return std::clamp(kDefaultBeta, least, most);
+    double sum = 0, weights = 0;
+    for (const Candidate* c : cluster) {
+        const Vec3& from = c->path.x[static_cast<std::size_t>(i)].point.p;
+        const Vec3 axis = (middle.path.x[static_cast<std::size_t>(i) + 1].point.p - from).normalized();
+        const double chord = (leaving_direction(c->path, i, +1) - axis).length();
+        sum += c->weight * chord * chord;
+        weights += c->weight;
+    }
+    return std::clamp(2 * std::sqrt(sum / weights), least, most);
+}
+
+UserPathSpec spec_of(const Candidate& middle, const std::vector<const Candidate*>& cluster) {
+    UserPathSpec spec;
+    spec.weight = 0;
+    for (const Candidate* c : cluster) spec.weight += c->weight;
+    for (int i = 0; i < middle.vertices; ++i)
+        spec.points.push_back({Imath::V3d(middle.path.x[static_cast<std::size_t>(i)].point.p)});
+    for (int i = 0; i + 1 < middle.vertices; ++i) spec.beta.push_back(cone_of(middle, cluster, i));
+    return spec;
+}
+
+bool works(const Scene& scene, const UserPathSpec& spec) {
+    try {
+        bind_user_path(scene, spec);
+        return true;
+    } catch (const InputError&) {
+        return false; // a grazing segment, or rounding along a chain of mirrors
+    }
+}
+
+/// Names, and weights with a mean of about 1.
+void finish(UserPathFile& file) {
+    double total = 0;
+    for (const UserPathSpec& path : file.paths) total += path.weight;
+    for (std::size_t i = 0; i < file.paths.size(); ++i) {
+        file.paths[i].name = fmt::format("suggested {}", i + 1);
+        const double weight = file.paths[i].weight * static_cast<double>(file.paths.size()) / total;
+        file.paths[i].weight = std::clamp(weight, 0.1, 10.0);
+    }
+}
+
+} // namespace
+
+UserPathFile suggest_user_paths(const Scene& scene, const StageOneSettings& first, const SuggestOptions& options) {
+    const StageOne one = run_stage_one(scene, first, {});
+    std::vector<Candidate> left = candidates(scene, choose_seeds(scene, first, one, one.all_groups(), options.pool));
+    const double radius = options.radius * (scene.upper() - scene.lower()).length();
+    UserPathFile file;
+    while (!left.empty() && file.paths.size() < options.count) {
+        std::vector<double> score(left.size(), 0.0);
+        parallel_for(static_cast<std::int64_t>(left.size()), [&](std::int64_t i) {
+            for (const Candidate& c : left)
+                if (alike(left[static_cast<std::size_t>(i)], c, radius)) score[static_cast<std::size_t>(i)] += c.weight;
+        });
+        const auto best = static_cast<std::size_t>(std::ranges::max_element(score) - score.begin());
+        const Candidate middle = left[best];
+        std::vector<const Candidate*> cluster;
+        for (const Candidate& c : left)
+            if (alike(middle, c, radius)) cluster.push_back(&c);
+        if (UserPathSpec spec = spec_of(middle, cluster); works(scene, spec)) {
+            file.paths.push_back(std::move(spec));
+            std::erase_if(left, [&](const Candidate& c) { return alike(middle, c, radius); });
+        } else {
+            left.erase(left.begin() + static_cast<std::ptrdiff_t>(best));
+        }
+    }
+    if (!file.paths.empty()) finish(file);
+    return file;
+}
+
+} // namespace keyhole

@@ -1,0 +1,193 @@
+#include "sampling/guidance/user_paths.h"
+
+#include "core/error.h"
+#include "sampling/guidance/nearest_emitter.h"
+#include "sampling/paths/measure.h"
+#include "sampling/paths/walk.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace keyhole {
+namespace {
+
+std::string text(const Vec3& p) { return fmt::format("({:.4g}, {:.4g}, {:.4g})", p.x, p.y, p.z); }
+std::string text(double distance) { return fmt::format("{:.3g} m", distance); }
+
+/// Finds the points of one path, in order.
+class Binder {
+  public:
+    Binder(const Scene& scene, const UserPathSpec& spec)
+        : scene_(scene), spec_(spec),
+          tolerance_(spec.tolerance.value_or(0.01 * (scene.upper() - scene.lower()).length())) {}
+
+    UserPath bind() {
+        const SurfacePoint light = find_light();
+        for (std::size_t i = 1; i < spec_.points.size(); ++i) find(i);
+        if (found_.back().specular())
+            fail(last(), "found a specular vertex at its end, expected a surface that scatters in all directions");
+        const bool seen = is_seen();
+        UserPath path{spec_.name, spec_.weight, {scene_, light, spec_.patch}, {}, seen};
+        for (std::size_t i = 1; i < found_.size(); ++i)
+            path.vertices.push_back(
+                {found_[i].point.p, found_[i].event, spec_.beta[i - 1], portal(i), spec_.points[i].bounce});
+        return path;
+    }
+
+  private:
+    std::size_t last() const { return spec_.points.size() - 1; }
+    Vec3 given(std::size_t i) const { return Vec3(spec_.points[i].p); }
+    std::optional<Portal> portal(std::size_t i) const {
+        const auto& through = spec_.points[i].through;
+        return through ? std::optional<Portal>({through->corner, through->u, through->v}) : std::nullopt;
+    }
+    double miss(std::size_t i, const Vec3& p) const { return (Imath::V3d(p) - spec_.points[i].p).length(); }
+
+    [[noreturn]] void fail(std::size_t i, const std::string& message) const {
+        throw InputError(spec_.points[i].where, fmt::format("path '{}', point {}: {}", spec_.name, i + 1, message));
+    }
+
+    SurfacePoint find_light();
+    void find(std::size_t i);
+    void aim(std::size_t i);
+    void stand_in(std::size_t i);
+    void follow(std::size_t i);
+    void add(std::size_t i, const Vertex& vertex);
+    void check_scattering(std::size_t i, const Vec3& to_eye) const;
+    bool is_seen() const;
+
+    const Scene& scene_;
+    const UserPathSpec& spec_;
+    double tolerance_;
+    InlineVector<Vertex, kMostUserPoints + 1> found_;
+};
+
+void Binder::find(std::size_t i) {
+    if (spec_.points[i].bounce) return stand_in(i);
+    i == 1 || !found_.back().specular() ? aim(i) : follow(i);
+}
+
+/// A bounce may happen anywhere: for it stands the middle of the opening behind it, from where the next point is aimed
+/// at.
+void Binder::stand_in(std::size_t i) {
+    const auto opening = std::find_if(spec_.points.begin() + static_cast<std::ptrdiff_t>(i), spec_.points.end(),
+                                      [](const UserPathPoint& p) { return p.through.has_value(); });
+    Vertex v;
+    v.point.p = Vec3(opening->through->corner + (opening->through->u + opening->through->v) / 2);
+    v.point.site = Site::point;
+    found_.push_back(v);
+}
+
+SurfacePoint Binder::find_light() {
+    const auto next =
+        std::find_if(spec_.points.begin() + 1, spec_.points.end(), [](const UserPathPoint& p) { return !p.bounce; });
+    const auto nearest = nearest_emitter_point(scene_, spec_.points[0].p, next->p);
+    if (!nearest) fail(0, "found no emitter that has a place in the scene, expected an area light or a point light");
+    if (nearest->distance > tolerance_)
+        fail(0, fmt::format("found the nearest emitter {} away, at {}, expected one within {}", text(nearest->distance),
+                            text(nearest->point.p), text(tolerance_)));
+    found_.push_back(make_vertex(nearest->point));
+    return nearest->point;
+}
+
+/// Goes straight from the point before, which scatters or emits in all directions.
+void Binder::aim(std::size_t i) {
+    const Vertex& from = found_.back();
+    if (miss(i, from.point.p) <= 1e-6 * (scene_.upper() - scene_.lower()).length())
+        fail(i, fmt::format("found the same place as point {}, expected another one", i));
+    const auto opening = portal(i);
+    if (!opening && !(spec_.beta[i - 1] > 0))
+        fail(i, fmt::format("found a cone of no width for the segment from point {}, expected beta above 0", i));
+    const Vec3 w = (given(i) - from.point.p).normalized();
+    const bool anywhere = spec_.points[i - 1].bounce;
+    if (opening && !anywhere && !(opening->density(from.point.p, w) > 0))
+        fail(i, fmt::format("found that the segment from point {} passes beside its opening", i));
+    if (i == 1 && is_black(scene_.emitter(from.point.emitter).radiance(from.point, w)))
+        fail(0, "found an emitter that sends no light towards point 2");
+    const auto hit = next_vertex(scene_, from, w);
+    if (!hit || hit->point.site != Site::surface) fail(i, fmt::format("found no surface on the way from point {}", i));
+    const double off = miss(i, hit->point.p);
+    if (off > tolerance_) {
+        const bool before = Vec3(hit->point.p - from.point.p).length() < Vec3(given(i) - from.point.p).length();
+        if (before)
+            fail(i, fmt::format("found the segment from point {} blocked at {}, {} before this point", i,
+                                text(hit->point.p), text(off)));
+        fail(i, fmt::format("found it in the air: the surface on the way from point {} is {} behind it, at {}; "
+                            "expected one within {}",
+                            i, text(off), text(hit->point.p), text(tolerance_)));
+    }
+    add(i, *hit);
+}
+
+/// Goes from a mirror or glass where it sends the light: of its lobes, by the one that comes nearest to the point.
+void Binder::follow(std::size_t i) {
+    Vertex& from = found_.back();
+    if (portal(i))
+        fail(i,
+             fmt::format("found an opening behind the specular vertex at point {}, where light is not free to aim", i));
+    const Vec3 back = direction(from.point, found_[found_.size() - 2].point);
+    std::optional<Vertex> best;
+    Event event = from.event;
+    for (const Event e : {Event::reflect, Event::transmit}) {
+        const auto lobe = from.bsdf.delta(back, e);
+        if (!lobe) continue;
+        const auto hit = next_vertex(scene_, from, lobe->to);
+        if (!hit || hit->point.site != Site::surface) continue;
+        if (best && miss(i, hit->point.p) >= miss(i, best->point.p)) continue;
+        best = *hit;
+        event = e;
+    }
+    if (!best) fail(i, fmt::format("found that light leaves the scene from the specular vertex at point {}", i));
+    if (const double off = miss(i, best->point.p); off > tolerance_)
+        fail(i, fmt::format("found that the specular vertex at point {} sends light to {}, {} away; expected it within "
+                            "{} (keyhole paths trace finds such points)",
+                            i, text(best->point.p), text(off), text(tolerance_)));
+    from.event = event;
+    add(i, *best);
+}
+
+void Binder::add(std::size_t i, const Vertex& vertex) {
+    if (i > 1 && !spec_.points[i - 1].bounce) check_scattering(i - 1, direction(found_.back().point, vertex.point));
+    found_.push_back(vertex);
+    Vertex& v = found_.back();
+    const BsdfTraits traits = v.bsdf.traits();
+    if (!traits.finite && !traits.delta) fail(i, "found a surface that scatters no light");
+    // Follow() makes it what it is; the last one is told by this alone.
+    v.event = traits.finite ? Event::finite : Event::reflect;
+}
+
+/// Fails if found point i can't send light on along `to_eye`.
+void Binder::check_scattering(std::size_t i, const Vec3& to_eye) const {
+    const Vertex& v = found_[i];
+    if (v.specular()) return;
+    const Vec3 to_light = direction(v.point, found_[i - 1].point);
+    if (is_black(scatter(v.point, v.bsdf, Event::finite, to_light, to_eye).value))
+        fail(i, fmt::format("found a surface that scatters no light from point {} to point {}", i, i + 2));
+}
+
+bool Binder::is_seen() const {
+    const Vertex& v = found_.back();
+    const SurfacePoint eye = scene_.camera().eye(0, 0);
+    const Vec3 w = direction(eye, v.point), to_light = direction(v.point, found_[found_.size() - 2].point);
+    return scene_.camera().image_point(eye, w) && scene_.visible(v.point, eye) &&
+           !is_black(scatter(v.point, v.bsdf, Event::finite, to_light, -w).value);
+}
+
+} // namespace
+
+std::string UserPath::signature() const {
+    std::string s = "L";
+    for (const UserVertex& v : vertices) s += v.bounce ? " *" : is_specular(v.event) ? " S" : " D";
+    return s;
+}
+
+UserPath bind_user_path(const Scene& scene, const UserPathSpec& spec) { return Binder(scene, spec).bind(); }
+
+UserPaths bind_user_paths(const Scene& scene, const UserPathFile& file) {
+    UserPaths paths;
+    for (const UserPathSpec& spec : file.paths) paths.push_back(bind_user_path(scene, spec));
+    return paths;
+}
+
+} // namespace keyhole

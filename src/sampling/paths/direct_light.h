@@ -1,0 +1,36 @@
+// Next-event estimation and its counterpart, with multiple importance sampling (Veach 1997, section 9.2).
+#pragma once
+
+#include "sampling/paths/measure.h"
+#include "sampling/paths/walk.h"
+
+#include <optional>
+
+namespace keyhole {
+
+/// Power heuristic with exponent 2 of a technique against one other (Veach 1997, eq. 9.13).
+inline double mis_power(double pdf, double other) {
+    if (!(pdf > 0)) return 0;
+    const double r = other / pdf;
+    return 1 / (1 + r * r);
+}
+
+struct DirectLight {
+    Vertex x0;
+    Rgb value; ///< radiance scattered towards `back` [W/(m^2 sr)] if x0 is visible, MIS weight included
+};
+
+/// Draws a point on an emitter, chosen by what it may do at `v`, and scatters its light at `v`. None where that carries
+/// nothing. Visibility is left to the caller.
+std::optional<DirectLight> sample_direct_light(const Scene& scene, const Vertex& v, const Vec3& back,
+                                               SampleSource& source);
+
+/// Density with which sample_direct_light() draws the emitter point `x0` for `v`, in the coordinates of x0. The chains'
+/// own choice goes by power alone: emitter_point_pdf().
+double direct_light_pdf(const Scene& scene, const Vertex& v, const SurfacePoint& x0);
+
+/// Radiance that `hit` emits back along `w`, weighted against sample_direct_light() at the finite vertex `v`, whose
+/// BSDF drew `w` with density `pdf` per solid angle.
+Rgb emission_with_mis(const Scene& scene, const Vertex& v, const Vertex& hit, const Vec3& w, double pdf);
+
+} // namespace keyhole

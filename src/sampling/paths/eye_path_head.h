@@ -1,0 +1,38 @@
+// The first part of paths from the eye: what final gather and its importance know of them.
+#pragma once
+
+#include "sampling/paths/random_walk.h"
+
+namespace keyhole {
+
+/// The hooks of trace_eye_path_head().
+template <class Visit> struct EyePathHead : WalkHooks {
+    const Visit& visit;
+    LastTwoVertices vertices{};
+    int finite = 0;
+
+    Vertex& place() { return vertices.place(); }
+    bool arrive(Vertex& v, const WalkRay& ray) const {
+        if (v.point.site != Site::surface) return false;
+        if (v.bsdf.traits().finite) visit(v, -ray.w, ray.throughput, finite);
+        return true;
+    }
+    bool leave(const Vertex& v, const Continuation& /*next*/, const WalkRay& /*ray*/) {
+        finite += v.specular() ? 0 : 1;
+        return finite < 2;
+    }
+};
+
+/// Traces a path from window point `image` as far as d2, its second non-specular vertex, with at most `max_scatterings`
+/// vertices, and tells visit(vertex, to_eye, throughput, finite) of each vertex on a surface that could be d1 or d2:
+/// `finite` is the number of non-specular ones before it, `throughput` the RGB importance that arrives there (window
+/// density 1).
+template <class Visit>
+void trace_eye_path_head(const Scene& scene, const Vec2& image, int max_scatterings, SampleSource& source,
+                         const Visit& visit) {
+    const Vertex eye = sample_eye(scene, source);
+    EyePathHead<Visit> hooks{{}, visit};
+    random_walk(scene, From::eye, eye_ray(scene, eye.point, image), max_scatterings, source, hooks);
+}
+
+} // namespace keyhole

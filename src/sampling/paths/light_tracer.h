@@ -1,0 +1,74 @@
+// Light tracing: power carried from the emitters.
+#pragma once
+
+#include "sampling/paths/random_walk.h"
+
+#include <optional>
+
+namespace keyhole {
+
+/// What light met before it arrived somewhere.
+struct LightPast {
+    struct Place {
+        Vec3 p, n;                   ///< world space; geometric normal on the side where light arrived
+        int index;                   ///< of the vertex from the light's end, as in DiffuseVertices
+        std::optional<bool> covered; ///< whether gather rays come to it, if that was asked
+    };
+    std::optional<Place> last; ///< where it was last scattered by a vertex that isn't specular; none: nowhere
+    bool specular = false;     ///< whether there was a specular one
+    int scatterings = 0;       ///< how many vertices scattered it
+
+    /// Light that comes from `to_light` goes on from `v` by its event.
+    void meet(const Vertex& v, const Vec3& to_light) {
+        ++scatterings;
+        if (v.specular()) {
+            specular = true;
+            return;
+        }
+        last = {v.point.p, facing(v.point.ng, to_light), scatterings, {}};
+        const std::uint8_t side = KnownCoverage::side(v.point.ng, to_light);
+        if ((v.coverage.asked & side) != 0) last->covered = (v.coverage.covered & side) != 0;
+    }
+};
+
+/// The hooks of trace_light_path().
+template <class Sink> struct LightTracing : WalkHooks {
+    Sink& sink;
+    const double emitted; // luminance [W]
+    LastTwoVertices vertices{};
+    LightPast past{};
+
+    Vertex& place() { return vertices.place(); }
+    bool arrive(Vertex& v, const WalkRay& ray) {
+        return v.point.site != Site::infinite && sink.arrival(v, -ray.w, ray.throughput, past);
+    }
+    bool leave(const Vertex& v, const Continuation& /*next*/, const WalkRay& ray) {
+        past.meet(v, -ray.w);
+        return true;
+    }
+    bool survives(Rgb& power, SampleSource& source) const {
+        return play_roulette(photon_survival(power, emitted), power, source);
+    }
+};
+
+/// Traces a light path that begins as `light` with at most `max_scatterings` vertices after the emitter.
+///
+/// Tells `sink`:
+///   sink.arrival(vertex, to_light, power, past): light of RGB `power` [W] arrived at `vertex`, which lies on
+///     a surface, from direction `to_light` (unit); `past`: a LightPast. False ends the path.
+/// The expected sum of power over the arrivals in a region is the flux that arrives there.
+template <class Sink>
+void trace_light_path(const Scene& scene, const EmittedLight& light, int max_scatterings, SampleSource& source,
+                      Sink& sink) {
+    if (is_black(light.power)) return;
+    LightTracing<Sink> tracing{{}, sink, luminance(light.power)};
+    random_walk(scene, From::light, {&light.ray.origin, &light.x0, light.ray.w, light.power}, max_scatterings, source,
+                tracing);
+}
+
+/// The same from an emitter chosen by power.
+template <class Sink> void trace_light_path(const Scene& scene, int max_scatterings, SampleSource& source, Sink& sink) {
+    if (const auto light = emit_light(scene, source)) trace_light_path(scene, *light, max_scatterings, source, sink);
+}
+
+} // namespace keyhole

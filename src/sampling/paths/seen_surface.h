@@ -1,0 +1,19 @@
+// What a pixel tells of the first surface seen that is not specular: the same by every method.
+#pragma once
+
+#include "core/pixel_sample.h"
+#include "sampling/paths/path.h"
+
+namespace keyhole {
+
+/// Notes in `pixel` that the eye sees `v` from `back` (unit, towards the eye), as the first vertex of its walk with a
+/// finite BSDF; `throughput` is the RGB importance that arrives there (window density 1). `share`: where a walk was
+/// split, the probability with which one that is not would have come here; the normals of its parts add up.
+inline void note_seen_surface(PixelSample& pixel, const Vertex& v, const Vec3& back, const Rgb& throughput,
+                              double share = 1) {
+    // The reflectance has a simple form where the BSDF is diffuse; others show a typical value.
+    pixel.albedo += throughput * (v.bsdf.eval(facing(v.bsdf.shading_normal(), back), back) * kPi);
+    pixel.normal += facing(v.point.ng, back) * static_cast<float>(share);
+}
+
+} // namespace keyhole

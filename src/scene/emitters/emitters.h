@@ -1,0 +1,75 @@
+// The emitters there are. World space throughout; lengths in metres.
+#pragma once
+
+#include "scene/emitter.h"
+#include "scene/emitters/sphere_map.h"
+#include "scene/shape.h"
+
+#include <Imath/ImathMatrix.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace keyhole {
+
+/// Diffuse emission from the surface of `shape`, whose `emission` is set; points are uniform by area. Of an invisible
+/// light no ray finds any. `shape` must outlive the emitter; `index` is its place in the scene.
+/// @throws InputError for a shape without area.
+std::unique_ptr<Emitter> make_area_emitter(const Shape& shape, std::uint32_t index);
+
+/// Whether an emitter is an invisible light: one with a surface that no ray can hit. Its light is seen on what scatters
+/// it; the eye looks through the lamp itself, in whatever way its paths are made.
+inline bool is_invisible(const Emitter& emitter) { return emitter.is_delta() && emitter.site() == Site::surface; }
+
+/// Light from one point, the same in all directions.
+/// @param intensity radiant intensity in W/sr; its power is 4 pi times that.
+std::unique_ptr<Emitter> make_point_emitter(const Vec3& position, const Rgb& intensity);
+
+/// Light from one point into a cone, fading towards its edge: between the angles `full` and `edge` from the axis the
+/// intensity falls by smoothstep(cos) from 1 to 0, as pbrt's spot light does.
+struct SpotParameters {
+    Vec3 position{0, 0, 0};
+    Vec3 axis{0, 0, -1};      ///< unit; the middle of the cone
+    Rgb intensity{1.0};       ///< radiant intensity on the axis, W/sr
+    double full_degrees = 25; ///< full intensity up to here; at most `edge_degrees`
+    double edge_degrees = 30; ///< dark from here on; above 0, at most 180
+};
+
+/// Power over intensity on the axis [sr].
+double spot_solid_angle(const SpotParameters& parameters);
+
+/// Directions are drawn in proportion to the intensity.
+/// @throws InputError for angles out of order.
+std::unique_ptr<Emitter> make_spot_emitter(const SpotParameters& parameters);
+
+/// Light from one direction, everywhere alike: the sun, but without its disc.
+/// @param w unit direction in which it travels.
+/// @param irradiance in W/m^2 on a plane across `w`. Its power is that times the cross-section of the scene's sphere.
+std::unique_ptr<Emitter> make_distant_emitter(const Vec3& w, const Rgb& irradiance);
+
+/// The same radiance [W/(m^2 sr)] from every direction; directions are uniform on the sphere.
+std::unique_ptr<Emitter> make_constant_environment(const Rgb& radiance);
+
+/// Several environments as one, since a ray that misses everything meets them all: their radiances add up, and
+/// directions come from a mixture of their densities by power.
+std::unique_ptr<Emitter> make_environment_sum(std::vector<std::unique_ptr<Emitter>> environments);
+
+/// Radiance from each direction.
+struct EnvironmentImage {
+    int width = 0, height = 0;  ///< an octahedral picture is square
+    std::vector<Vec3> radiance; ///< [W/(m^2 sr)] row by row from the top; each pixel is constant
+    SphereLayout layout = SphereLayout::lat_long;
+};
+
+/// Reads the pixels of an image file: floats as radiance, integers as sRGB.
+/// @throws InputError for a file that can't be read, and for radiance that is negative or not finite.
+EnvironmentImage read_environment_image(const std::string& path, SphereLayout layout);
+
+/// The light of `image` times `scale`. Directions are drawn in proportion to the luminance of the pixels, uniform
+/// within one: density and radiance have their steps at the same places.
+/// @param to_world turns the directions of the picture into the world's; a rotation, mirrored or not.
+/// @throws InputError for a picture that is black or of the wrong shape, and for other transforms.
+std::unique_ptr<Emitter> make_image_environment(EnvironmentImage image, const Rgb& scale, const Imath::M33d& to_world);
+
+} // namespace keyhole

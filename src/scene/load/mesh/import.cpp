@@ -1,0 +1,164 @@
+#include "scene/load/load_mesh.h"
+
+#include "core/error.h"
+
+#include <assimp/BaseImporter.h>
+#include <assimp/Importer.hpp>
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+namespace keyhole {
+namespace {
+
+[[noreturn]] void fail(const std::string& path, const std::string& message) { throw InputError({path, 0, 0}, message); }
+
+/// In lower case; with what stands before ".gz".
+std::string extension_of(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
+    return extension == ".gz" && path.stem() != path ? extension_of(path.stem()) + extension : extension;
+}
+
+/// @returns the extension.
+std::string check_file(const std::string& path) {
+    std::error_code error;
+    const auto status = std::filesystem::status(path, error);
+    if (!std::filesystem::exists(status)) fail(path, "found no such file, expected a mesh");
+    if (!std::filesystem::is_regular_file(status)) fail(path, "found something that is not a file, expected a mesh");
+    const std::string extension = extension_of(path);
+    // Other formats that assimp knows stay shut: we don't test them.
+    constexpr std::array kKnown{".obj", ".ply", ".ply.gz", ".gltf", ".glb"};
+    if (std::ranges::find(kKnown, extension) == kKnown.end())
+        fail(path, fmt::format("found the extension '{}', expected .obj, .ply, .ply.gz, .gltf or .glb", extension));
+    if (!std::ifstream(path)) fail(path, "found a file that can't be opened, expected a readable mesh");
+    return extension;
+}
+
+/// assimp's triangulation aborts where a face has no corners. (Indices out of range don't pass its validation.)
+void check_faces(const aiScene& scene, const std::string& path) {
+    for (unsigned i = 0; i < scene.mNumMeshes; ++i)
+        for (unsigned j = 0; j < scene.mMeshes[i]->mNumFaces; ++j)
+            if (scene.mMeshes[i]->mFaces[j].mNumIndices == 0)
+                fail(path, "found a face without corners, expected three at least");
+}
+
+Transform to_transform(const aiMatrix4x4& m) {
+    return {m.a1, m.b1, m.c1, m.d1, m.a2, m.b2, m.c2, m.d2, m.a3, m.b3, m.c3, m.d3, m.a4, m.b4, m.c4, m.d4};
+}
+
+/// One part of the file, before its placement.
+TriangleMesh convert(const aiMesh& source) {
+    TriangleMesh mesh;
+    mesh.positions.reserve(source.mNumVertices);
+    for (unsigned i = 0; i < source.mNumVertices; ++i) {
+        const aiVector3D& p = source.mVertices[i];
+        mesh.positions.emplace_back(p.x, p.y, p.z);
+        if (source.HasNormals())
+            mesh.normals.emplace_back(source.mNormals[i].x, source.mNormals[i].y, source.mNormals[i].z);
+        if (source.HasTextureCoords(0))
+            mesh.uvs.emplace_back(source.mTextureCoords[0][i].x, source.mTextureCoords[0][i].y);
+    }
+    for (unsigned i = 0; i < source.mNumFaces; ++i) {
+        const aiFace& face = source.mFaces[i];
+        if (face.mNumIndices != 3) continue; // points and lines
+        const std::array<std::uint32_t, 3> t{face.mIndices[0], face.mIndices[1], face.mIndices[2]};
+        mesh.triangles.push_back(t);
+    }
+    return mesh;
+}
+
+void append(TriangleMesh& all, TriangleMesh part) {
+    if (!all.positions.empty() && all.normals.empty() != part.normals.empty())
+        smooth_normals(all.normals.empty() ? all : part);
+    const auto first = static_cast<std::uint32_t>(all.positions.size());
+    for (auto& t : part.triangles) all.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    all.positions.insert(all.positions.end(), part.positions.begin(), part.positions.end());
+    all.normals.insert(all.normals.end(), part.normals.begin(), part.normals.end());
+    all.uvs.resize(part.uvs.empty() && all.uvs.empty() ? 0 : first, Vec2(0, 0));
+    all.uvs.insert(all.uvs.end(), part.uvs.begin(), part.uvs.end());
+    if (!all.uvs.empty()) all.uvs.resize(all.positions.size(), Vec2(0, 0));
+}
+
+/// Walks the file's tree of placements.
+class Collector {
+  public:
+    Collector(const aiScene& scene, const std::string& path) : scene_(scene), path_(path) {}
+
+    TriangleMesh collect() {
+        visit(*scene_.mRootNode, Transform(), 0);
+        if (!any_) fail(path_, "found no triangles, expected at least one");
+        return std::move(all_);
+    }
+
+  private:
+    void visit(const aiNode& node, const Transform& parent, int depth) {
+        if (depth > 256) fail(path_, "found parts nested more than 256 deep, expected fewer levels");
+        const Transform to_world = to_transform(node.mTransformation) * parent;
+        for (unsigned i = 0; i < node.mNumMeshes; ++i) place(*scene_.mMeshes[node.mMeshes[i]], to_world);
+        for (unsigned i = 0; i < node.mNumChildren; ++i) visit(*node.mChildren[i], to_world, depth + 1);
+    }
+
+    void place(const aiMesh& source, const Transform& to_world) {
+        if (all_.triangles.size() + source.mNumFaces > kMaxMeshTriangles ||
+            all_.positions.size() + source.mNumVertices > 3 * kMaxMeshTriangles)
+            fail(path_, fmt::format("found more than {} triangles, expected fewer", kMaxMeshTriangles));
+        TriangleMesh part = convert(source);
+        if (!(regularity(to_world) > 1e-12))
+            fail(path_, "found a singular placement of a part, expected a regular one");
+        any_ = any_ || !part.triangles.empty();
+        transform_mesh(part, to_world);
+        mend_mesh(part, path_);
+        if (part.triangles.empty()) return;
+        append(all_, std::move(part));
+    }
+
+    const aiScene& scene_;
+    const std::string& path_;
+    TriangleMesh all_;
+    bool any_ = false; ///< triangles, with an area or without
+};
+
+/// Assimp tries all of its readers on what the right one refuses, and some of them take minutes over junk.
+void keep_readers_of(const std::string& extension, Assimp::Importer& importer) {
+    for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
+        Assimp::BaseImporter* reader = importer.GetImporter(i);
+        std::set<std::string> extensions;
+        reader->GetExtensionList(extensions);
+        if (extensions.contains(extension.substr(1))) continue;
+        importer.UnregisterLoader(reader);
+        delete reader; // who takes a reader away owns it
+    }
+}
+
+} // namespace
+
+TriangleMesh import_mesh(const std::string& path) {
+    const std::string extension = check_file(path);
+    if (extension == ".ply" || extension == ".ply.gz") return read_ply(path);
+    Assimp::Importer importer;
+    keep_readers_of(extension, importer);
+    importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+    const auto checked = [&](const aiScene* scene) {
+        if (scene == nullptr)
+            fail(path, fmt::format("found a broken mesh ({}), expected a valid one", importer.GetErrorString()));
+        return scene;
+    };
+    check_faces(*checked(importer.ReadFile(path, aiProcess_ValidateDataStructure)), path);
+    const aiScene* scene = checked(
+        importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType));
+    if (scene->mRootNode == nullptr) fail(path, "found no triangles, expected at least one");
+    return Collector(*scene, path).collect();
+}
+
+} // namespace keyhole

@@ -1,0 +1,86 @@
+#include "scene/load/load_mesh.h"
+
+#include <cmath>
+#include <utility>
+
+namespace keyhole {
+namespace {
+
+Imath::V3d row(const Transform& t, int i) { return {t[i][0], t[i][1], t[i][2]}; }
+
+double determinant3(const Transform& t) { return row(t, 0).dot(row(t, 1).cross(row(t, 2))); }
+
+void reverse_winding(TriangleMesh& mesh) {
+    for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
+}
+
+/// Whether `t` scales all directions by the same factor.
+bool is_uniform(const Transform& t) {
+    const Imath::V3d x = row(t, 0), y = row(t, 1), z = row(t, 2);
+    const double s = x.length2(), tolerance = 1e-6 * s;
+    return std::abs(y.length2() - s) < tolerance && std::abs(z.length2() - s) < tolerance &&
+           std::abs(x.dot(y)) < tolerance && std::abs(y.dot(z)) < tolerance && std::abs(z.dot(x)) < tolerance;
+}
+
+} // namespace
+
+double regularity(const Transform& t) {
+    const double product = row(t, 0).length() * row(t, 1).length() * row(t, 2).length();
+    return product > 0 ? std::abs(determinant3(t)) / product : 0.0;
+}
+
+void transform_mesh(TriangleMesh& mesh, const Transform& t) {
+    for (Vec3& p : mesh.positions) p = Vec3(Imath::V3d(p) * t);
+    if (!mesh.normals.empty()) {
+        // Normals are covectors; without the sign of the determinant they keep pointing outside.
+        const Transform covector = t.inverse().transposed();
+        for (Vec3& n : mesh.normals) {
+            Imath::V3d moved;
+            covector.multDirMatrix(Imath::V3d(n), moved);
+            n = Vec3(moved.normalized());
+        }
+    }
+    if (determinant3(t) < 0) reverse_winding(mesh);
+}
+
+void transform_geometry(Geometry& geometry, const Transform& t) {
+    if (const auto* sphere = std::get_if<Sphere>(&geometry)) {
+        if (is_uniform(t)) {
+            geometry = Sphere{Vec3(Imath::V3d(sphere->center) * t),
+                              static_cast<float>(sphere->radius * row(t, 0).length()), sphere->inward};
+            return;
+        }
+        const bool inward = sphere->inward;
+        geometry = tessellate(*sphere);
+        if (inward) flip(geometry);
+    }
+    transform_mesh(std::get<TriangleMesh>(geometry), t);
+}
+
+bool has_bounded_positions(const Geometry& geometry) {
+    const auto bounded = [](const Vec3& p) {
+        constexpr float kMost = 1e13f;
+        return std::abs(p.x) <= kMost && std::abs(p.y) <= kMost && std::abs(p.z) <= kMost;
+    };
+    if (const auto* s = std::get_if<Sphere>(&geometry)) return bounded(s->center) && bounded(Vec3(s->radius));
+    for (const Vec3& p : std::get<TriangleMesh>(geometry).positions)
+        if (!bounded(p)) return false;
+    return true;
+}
+
+std::size_t triangle_count(const Geometry& geometry) {
+    const auto* mesh = std::get_if<TriangleMesh>(&geometry);
+    return mesh != nullptr ? mesh->triangles.size() : 0;
+}
+
+void flip(Geometry& geometry) {
+    if (auto* sphere = std::get_if<Sphere>(&geometry)) {
+        sphere->inward = !sphere->inward;
+        return;
+    }
+    auto& mesh = std::get<TriangleMesh>(geometry);
+    reverse_winding(mesh);
+    for (Vec3& n : mesh.normals) n = -n;
+}
+
+} // namespace keyhole

@@ -1,0 +1,73 @@
+#include "scene/load/yaml/camera.h"
+
+#include "scene/load/yaml/reader.h"
+
+#include <fmt/format.h>
+
+namespace keyhole {
+
+void CameraReader::read_film(const YamlNode& section) {
+    constexpr NumberRange kPixels{"a number of pixels", 1, 65536};
+    const MapReader map(section, "a film", {"resolution"});
+    const YamlNode* resolution = map.find("resolution");
+    if (resolution == nullptr) return;
+    if (resolution->kind != YamlNode::Kind::list || resolution->items.size() != 2)
+        fail_expected(*resolution, "[width, height] in pixels");
+    const auto width = read_integer(*resolution->items[0], kPixels),
+               height = read_integer(*resolution->items[1], kPixels);
+    constexpr std::int64_t kMost = std::int64_t{1} << 28;
+    if (width * height > kMost)
+        fail(*resolution, fmt::format("found {} pixels, expected at most {}", width * height, kMost));
+    window_.width = static_cast<int>(width);
+    window_.height = static_cast<int>(height);
+}
+
+void CameraReader::read_camera(const YamlNode& section) {
+    constexpr NumberRange kFov{"a field of view in degrees", 0.001, 179};
+    constexpr NumberRange kLens{"a radius", 0, 1e12};
+    const MapReader map(section, "a camera", {"from", "to", "up", "fov", "lens_radius", "focus_distance"});
+    if (const YamlNode* from = map.find("from")) from_ = read_vec3(*from, kCoordinate);
+    if (const YamlNode* to = map.find("to")) to_ = read_vec3(*(to_node_ = to), kCoordinate);
+    if (const YamlNode* up = map.find("up")) {
+        up_ = read_vec3(*(up_node_ = up), kCoordinate);
+        if (!(up_.length() > 0)) fail(*up, "found the direction [0, 0, 0], expected one with a length");
+    }
+    if (const YamlNode* fov = map.find("fov")) fov_ = read_number(*fov, kFov);
+    if (const YamlNode* lens = map.find("lens_radius")) lens_radius_ = read_number(*lens, kLens);
+    if (const YamlNode* focus = map.find("focus_distance")) focus_distance_ = read_number(*focus, kLength);
+}
+
+void CameraReader::set_base(const CameraParameters& camera, const ImageWindow& window) {
+    base_ = camera;
+    window_ = window;
+    from_.reset();
+    to_.reset();
+    fov_.reset();
+    lens_radius_.reset();
+    focus_distance_.reset();
+}
+
+CameraParameters CameraReader::camera(const YamlNode& scene) const {
+    CameraParameters camera = base_.value_or(CameraParameters{});
+    if (fov_) camera.fov_degrees = static_cast<float>(*fov_);
+    if (lens_radius_) camera.lens_radius = static_cast<float>(*lens_radius_);
+    if (focus_distance_) camera.focus_distance = static_cast<float>(*focus_distance_);
+    if (base_ && !from_ && !to_) return camera;
+    if (!from_ || !to_)
+        fail(scene, fmt::format("found no '{}' of the camera, expected camera: {{from: [x, y, z], to: [x, y, z]}}",
+                                from_ ? "to" : "from"));
+    const Imath::V3d view = *to_ - *from_;
+    if (!(view.length() > 1e-9 * (from_->length() + to_->length()))) // the difference must survive in floats, too
+        fail(*to_node_, "found 'from' and 'to' at one place, expected two");
+    const Imath::V3d forward = view.normalized(), right = forward.cross(up_.normalized());
+    if (!(right.length() > 1e-6))
+        fail(up_node_ != nullptr ? *up_node_ : *to_node_, "found 'up' along the view, expected another direction");
+    camera.origin = Vec3(*from_);
+    camera.forward = Vec3(forward);
+    camera.right = Vec3(right.normalized());
+    camera.up = Vec3(right.normalized().cross(forward));
+    if (!focus_distance_) camera.focus_distance = static_cast<float>(view.length());
+    return camera;
+}
+
+} // namespace keyhole

@@ -1,0 +1,148 @@
+#include "scene/load/yaml/settings_text.h"
+
+#include "core/error.h"
+#include "scene/load/input.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace keyhole {
+namespace {
+
+template <class T> std::optional<T> parse_all(std::string_view text) {
+    T x{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
+    if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+    return x;
+}
+
+/// A whole number: 1000, 1e3 or 1k. None for anything else, and past 2^53, where doubles skip whole numbers.
+std::optional<std::int64_t> parse_whole(std::string_view text) {
+    if (const auto whole = parse_all<std::int64_t>(text)) return whole;
+    double factor = 1;
+    if (!text.empty()) {
+        if (text.back() == 'k') factor = 1e3;
+        if (text.back() == 'M') factor = 1e6;
+        if (text.back() == 'G') factor = 1e9;
+        if (factor > 1) text.remove_suffix(1);
+        // KiB, MiB, GiB
+        if (text.size() > 3 && text.substr(text.size() - 2) == "iB") {
+            const auto unit = std::string_view("KMG").find(text[text.size() - 3]);
+            if (unit == std::string_view::npos) return std::nullopt;
+            factor = std::ldexp(1.0, 10 * (static_cast<int>(unit) + 1));
+            text.remove_suffix(3);
+        }
+    }
+    const auto x = parse_all<double>(text);
+    if (!x) return std::nullopt;
+    // Rounded, because 1.1 M is not whole in doubles.
+    const double scaled = *x * factor, rounded = std::round(scaled);
+    if (!(std::abs(rounded) <= 0x1p53) || std::abs(scaled - rounded) > 1e-6) return std::nullopt;
+    return static_cast<std::int64_t>(rounded);
+}
+
+/// Visits the table of settings and parses the value of the one whose key matches.
+struct Setter {
+    const std::string& key;
+    const std::string& value;
+    bool found = false;
+    std::optional<std::string> error;
+    std::vector<std::string_view> keys;
+
+    bool matches(const char* candidate) {
+        keys.emplace_back(candidate);
+        if (key != candidate) return false;
+        found = true;
+        return true;
+    }
+    void refuse(const std::string& expected) {
+        error = fmt::format("found '{}' for '{}', {}", value.substr(0, 40), key, expected);
+    }
+
+    void operator()(const char* name, std::int64_t& member, std::int64_t minimum, std::int64_t maximum, const char*) {
+        if (!matches(name)) return;
+        const auto x = parse_whole(value);
+        if (!x || *x < minimum || *x > maximum)
+            return refuse(fmt::format("expected a whole number from {} to {}", minimum, maximum));
+        member = *x;
+    }
+    void operator()(const char* name, double& member, double minimum, double maximum, const char*) {
+        if (!matches(name)) return;
+        const auto x = parse_all<double>(value);
+        if (!x || !(*x >= minimum && *x <= maximum))
+            return refuse(fmt::format("expected a number from {} to {}", minimum, maximum));
+        member = *x;
+    }
+    void operator()(const char* name, AutoNumber& member, double minimum, double maximum, const char*) {
+        if (!matches(name)) return;
+        const auto x = value == "auto" ? std::nullopt : parse_all<double>(value);
+        if (value != "auto" && (!x || !(*x >= minimum && *x <= maximum)))
+            return refuse(fmt::format("expected a number from {} to {}, or auto", minimum, maximum));
+        member.value = x;
+    }
+    template <Choice E> void operator()(const char* name, E& member, const char*) {
+        if (!matches(name)) return;
+        const auto words = words_of(member);
+        if (const auto choice = choice_of<E>(value))
+            member = *choice;
+        else
+            refuse(expected_one_of(value, {words.begin(), words.end()}));
+    }
+    void operator()(const char* name, const Method*& member, const char*) {
+        if (!matches(name)) return;
+        std::vector<std::string_view> names;
+        for (const Method* method : all_methods()) {
+            names.push_back(name_of(*method));
+            if (names.back() == value) return void(member = method);
+        }
+        refuse(expected_one_of(value, names));
+    }
+    void operator()(const char* name, bool& member, const char*) {
+        if (!matches(name)) return;
+        const bool on = value == "true" || value == "on";
+        if (!on && value != "false" && value != "off") return refuse("expected true or false");
+        member = on;
+    }
+};
+
+/// What a setting is called that once had another name; empty: this is no such name.
+std::string new_name(const std::string& key) {
+    if (key == "reach") return "gather_coverage";
+    if (!key.starts_with("p_")) return {};
+    for (const ProposalParameter* p : proposal_parameters())
+        if (key.substr(2) + ".weight" == p->key) return p->key;
+    return {};
+}
+
+} // namespace
+
+std::optional<SettingError> set_setting(Settings& settings, const std::string& key, const std::string& value,
+                                        std::string* warning) {
+    if (const std::string now = new_name(key); !now.empty()) {
+        if (warning != nullptr) *warning = fmt::format("the setting '{}' is called '{}' now", key, now);
+        return set_setting(settings, now, value == "auto" ? "true" : value); // reach was `auto` or `off`
+    }
+    Setter setter{key, value, false, std::nullopt, {}};
+    visit_settings(settings, setter);
+    if (!setter.found)
+        return SettingError{true, fmt::format("found the unknown setting '{}', {}", key.substr(0, 40),
+                                              expected_one_of(key, setter.keys))};
+    if (setter.error) return SettingError{false, *setter.error};
+    return std::nullopt;
+}
+
+void apply_override(Settings& settings, const std::string& key_equals_value, std::vector<std::string>* warnings) {
+    const auto equals = key_equals_value.find('=');
+    if (equals == std::string::npos || equals == 0)
+        throw InputError(fmt::format("found '{}', expected key=value", key_equals_value));
+    std::string warning;
+    const auto error =
+        set_setting(settings, key_equals_value.substr(0, equals), key_equals_value.substr(equals + 1), &warning);
+    if (error) throw InputError(error->message);
+    if (!warning.empty() && warnings != nullptr) warnings->push_back(warning);
+}
+
+} // namespace keyhole

@@ -1,0 +1,138 @@
+#include "scene/load/yaml/shapes.h"
+
+#include "scene/geometry.h"
+#include "scene/load/input.h"
+#include "scene/load/yaml/reader.h"
+
+#include <fmt/format.h>
+
+namespace keyhole {
+namespace {
+
+constexpr int kMaxGroupDepth = 64; // bounds the recursion below
+
+} // namespace
+
+void ShapeReader::read_groups(const YamlNode& section) {
+    for (const YamlNode::Entry& entry : read_names(section, "lists of shapes"))
+        mistakes_.attempt_definition([&] { add_group(entry); });
+}
+
+void ShapeReader::add_group(const YamlNode::Entry& entry) {
+    const auto& [key, value] = entry;
+    read_list(*value, "shapes");
+    const auto [known, fresh] = groups_.try_emplace(key->text, Group{key, value});
+    if (!fresh)
+        fail(*key, fmt::format("found the group '{}' again, expected another name (first at {})", key->text,
+                               known->second.key->position().to_string()));
+}
+
+void ShapeReader::read_shapes(const YamlNode& section) {
+    for (const auto& item : read_list(section, "shapes")) mistakes_.attempt([&] { read_shape(*item, {}); });
+}
+
+void ShapeReader::append(std::vector<Shape> shapes) {
+    for (Shape& shape : shapes) {
+        triangles_ += triangle_count(shape.geometry);
+        shapes_.push_back(std::move(shape));
+    }
+}
+
+void ShapeReader::check_unused_groups() {
+    const std::size_t shapes = shapes_.size(), instances = instances_;
+    for (auto& [name, group] : groups_)
+        if (!group.used) mistakes_.attempt([&, &unused = group] { read_named_group(unused, *unused.key, {}); });
+    shapes_.resize(shapes);
+    instances_ = instances;
+}
+
+void ShapeReader::read_list_of_shapes(const YamlNode& list, const Placement& placement) {
+    if (placement.depth > kMaxGroupDepth)
+        fail(list, fmt::format("found groups nested more than {} deep, expected fewer levels", kMaxGroupDepth));
+    for (const auto& item : read_list(list, "shapes")) read_shape(*item, placement);
+}
+
+void ShapeReader::read_shape(const YamlNode& node, const Placement& placement) {
+    std::vector<std::string_view> types = geometry_types();
+    types.insert(types.end(), {"group", "instance"});
+    const std::string type = read_type(node, "a shape", types);
+    if (type == "group") return read_group(node, placement);
+    if (type == "instance") return read_instance(node, placement);
+
+    Shape shape;
+    shape.geometry = read_geometry(type, node, meshes_);
+    const MapReader map(node, "a shape");
+    const Placement own = inherit(map, placement);
+    transform_geometry(shape.geometry, own.to_world);
+    if (map.boolean("flip", false)) flip(shape.geometry);
+    const double area = surface_area(shape);
+    if (!has_bounded_positions(shape.geometry))
+        fail(node, "found a shape too large or too far, expected it within 1e13");
+    if (type == "mesh" && !has_area(shape.geometry))
+        return warnings_.add_flat_mesh(node.position(), fmt::format("mesh '{}'", map.at("file").text));
+    if (!(area > 0)) fail(node, "found a shape without area, expected one that can be seen");
+
+    const YamlNode* emission = map.find("emission");
+    if (emission != nullptr) shape.emission = read_emission(*emission, area);
+    shape.material = own.material;
+    if (!shape.material) {
+        if (emission == nullptr) fail(node, fmt::format("found a {} without 'material', expected that key", type));
+        shape.material = make_diffuse(Rgb(0.0)); // a lamp that reflects nothing
+    }
+    constexpr NumberRange kOpacity{"an opacity", 0, 1};
+    if (const YamlNode* alpha = map.find("alpha")) shape.alpha = read_float_texture(*alpha, kOpacity);
+    if (const YamlNode* inside = map.find("inside")) shape.inside = media_.resolve(*inside);
+    if (const YamlNode* outside = map.find("outside")) shape.outside = media_.resolve(*outside);
+    triangles_ += triangle_count(shape.geometry);
+    shapes_.push_back(std::move(shape));
+    check_limits(node);
+}
+
+void ShapeReader::read_group(const YamlNode& node, const Placement& placement) {
+    const MapReader map(node, "a group", {"type", "shapes", "transform", "material"});
+    read_list_of_shapes(map.at("shapes"), inherit(map, placement));
+}
+
+void ShapeReader::read_instance(const YamlNode& node, const Placement& placement) {
+    const MapReader map(node, "an instance", {"type", "group", "transform", "material"});
+    const YamlNode& reference = map.at("group");
+    const std::string name = read_string(reference, "the name of a group");
+    const auto found = groups_.find(name);
+    if (found == groups_.end())
+        throw UnknownName(reference.position(), fmt::format("group '{}'", name), unknown_name("group", name, groups_));
+    ++instances_;
+    read_named_group(found->second, reference, inherit(map, placement));
+}
+
+void ShapeReader::read_named_group(Group& group, const YamlNode& user, const Placement& placement) {
+    if (group.open) fail(user, fmt::format("found the group '{}' within itself, expected no cycle", group.key->text));
+    group.used = group.open = true;
+    const struct Closer {
+        Group& group;
+        ~Closer() { group.open = false; } // after a mistake, too: the group may be placed again
+    } closer{group};
+    read_list_of_shapes(*group.shapes, placement);
+}
+
+ShapeReader::Placement ShapeReader::inherit(const MapReader& map, const Placement& placement) const {
+    Placement own = placement;
+    ++own.depth;
+    if (const YamlNode* transform = map.find("transform")) {
+        own.to_world = read_transform(*transform) * placement.to_world;
+        if (!(regularity(own.to_world) > 1e-12))
+            fail(*transform,
+                 "found a transform that is singular with those around it, expected one that can be inverted");
+    }
+    if (const YamlNode* material = map.find("material")) own.material = find_material(*material, materials_);
+    return own;
+}
+
+void ShapeReader::check_limits(const YamlNode& node) const {
+    const auto stop = [&](std::size_t most, const char* what) {
+        throw FatalInputError(node.position(), fmt::format("found more than {} {}, expected fewer", most, what));
+    };
+    if (shapes_.size() > kMaxShapes) stop(kMaxShapes, "shapes");
+    if (triangles_ > kMaxTriangles) stop(kMaxTriangles, "triangles");
+}
+
+} // namespace keyhole

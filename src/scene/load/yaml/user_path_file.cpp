@@ -1,0 +1,203 @@
+#include "scene/load/yaml/user_path_file.h"
+
+#include "scene/load/input.h"
+#include "scene/load/yaml/reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace keyhole {
+namespace {
+
+constexpr NumberRange kBeta{"an angle in degrees", 0, 90, true};
+constexpr NumberRange kAnyBeta{"an angle in degrees", 0, 90};
+constexpr NumberRange kWeight{"a weight", 1e-6, 1e6};
+constexpr std::int64_t kMostBounces = 24;
+constexpr NumberRange kBounces{"a number of bounces", 1, kMostBounces};
+
+/// What a file says for all paths that say nothing themselves.
+struct Defaults {
+    double beta = kDefaultBeta;
+    std::optional<double> patch, tolerance;
+};
+
+double radians(double degrees) { return degrees * kPi / 180; }
+
+std::optional<double> read_length(const MapReader& map, std::string_view key, std::optional<double> otherwise) {
+    const YamlNode* node = map.find(key);
+    return node != nullptr ? read_number(*node, kLength) : otherwise;
+}
+
+std::vector<double> read_beta(const YamlNode* node, std::size_t segments, double otherwise) {
+    if (node == nullptr) return std::vector<double>(segments, otherwise);
+    if (node->kind != YamlNode::Kind::list) return std::vector<double>(segments, radians(read_number(*node, kBeta)));
+    if (node->items.size() != segments)
+        fail_expected(*node, fmt::format("one angle in degrees, or a list of {}: one for each segment", segments));
+    std::vector<double> beta;
+    for (const auto& item : node->items) beta.push_back(radians(read_number(*item, kAnyBeta)));
+    return beta;
+}
+
+Opening read_opening(const YamlNode& node) {
+    const MapReader map(node, "an opening", {"corner", "u", "v"});
+    const auto edge = [&](std::string_view key) { return read_vec3(map.at(key), kCoordinate); };
+    Opening opening{edge("corner"), edge("u"), edge("v")};
+    if (!(opening.u.cross(opening.v).length() > 1e-9 * opening.u.length() * opening.v.length()))
+        fail_expected(node, "edges u and v that are neither zero nor parallel");
+    return opening;
+}
+
+/// Numbers of bounces: from the first to the last.
+struct Bounces {
+    std::int64_t least, most;
+};
+
+Bounces read_bounces(const YamlNode& node) {
+    if (node.kind != YamlNode::Kind::list) {
+        const std::int64_t n = read_integer(node, kBounces);
+        return {n, n};
+    }
+    const auto range = read_numbers(node, 2, kBounces);
+    if (range[0] > range[1] || range[0] != std::floor(range[0]) || range[1] != std::floor(range[1]))
+        fail_expected(node, "the least and the largest number of bounces");
+    return {static_cast<std::int64_t>(range[0]), static_cast<std::int64_t>(range[1])};
+}
+
+/// The points of a path as they stand in the file, and what lies between them.
+struct PointList {
+    std::vector<UserPathPoint> points;
+    std::optional<Bounces> bounces; ///< behind the first point
+};
+
+PointList read_points(const YamlNode& node) {
+    PointList list;
+    std::optional<Opening> through;
+    for (const auto& item : read_list(node, "points")) {
+        if (item->kind != YamlNode::Kind::map) {
+            if (list.bounces && list.points.size() == 1 && !through)
+                fail_expected(*item,
+                              "an opening behind bounces: there is no other telling where light goes from anywhere");
+            list.points.push_back({read_vec3(*item, kCoordinate), item->position(), through});
+            through.reset();
+            continue;
+        }
+        const MapReader map(*item, "what lies between two points", {"through", "bounces"});
+        if (const YamlNode* bounces = map.find("bounces")) {
+            if (list.points.size() != 1 || list.bounces || through)
+                fail_expected(*item, "bounces behind the first point");
+            list.bounces = read_bounces(*bounces);
+        }
+        if (const YamlNode* opening = map.find("through")) {
+            if (list.points.empty() || through) fail_expected(*item, "an opening between two points");
+            through = read_opening(*opening);
+        }
+    }
+    if (through || (list.bounces && list.points.size() < 2)) fail_expected(node, "a point behind the last opening");
+    return list;
+}
+
+/// `path` with so many bounces behind its first point.
+UserPathSpec with_bounces(UserPathSpec path, std::int64_t count) {
+    const auto n = static_cast<std::size_t>(count);
+    path.points.insert(path.points.begin() + 1, n, UserPathPoint{.where = path.points[0].where, .bounce = true});
+    path.beta.insert(path.beta.begin(), n, kDefaultBeta);
+    return path;
+}
+
+/// One path, or one for each number of bounces.
+std::vector<UserPathSpec> read_paths(const YamlNode& node, std::size_t number, const Defaults& defaults) {
+    const MapReader map(node, "a user path", {"name", "weight", "points", "beta", "patch", "tolerance"});
+    UserPathSpec path;
+    path.where = node.position();
+    path.name = fmt::format("path {}", number);
+    if (const YamlNode* name = map.find("name")) path.name = read_string(*name, "the name of a path");
+    path.weight = map.number("weight", kWeight, 1);
+    const YamlNode& points = map.at("points");
+    PointList list = read_points(points);
+    path.points = std::move(list.points);
+    const std::size_t bounces = list.bounces ? static_cast<std::size_t>(list.bounces->most) : 0;
+    if (path.points.size() < 2 || path.points.size() > kMostUserPoints - bounces)
+        fail_expected(points, fmt::format("2 to {} points, from the light on", kMostUserPoints - bounces));
+    path.beta = read_beta(map.find("beta"), path.points.size() - 1, defaults.beta);
+    path.patch = read_length(map, "patch", defaults.patch);
+    path.tolerance = read_length(map, "tolerance", defaults.tolerance);
+    if (!list.bounces) return {path};
+    // As the light grows weaker from one to the next.
+    constexpr double kNext = 0.85;
+    const Bounces range = *list.bounces;
+    const double total = (1 - std::pow(kNext, range.most - range.least + 1)) / (1 - kNext);
+    std::vector<UserPathSpec> paths;
+    for (std::int64_t n = range.least; n <= range.most; ++n) {
+        paths.push_back(with_bounces(path, n));
+        paths.back().weight *= std::pow(kNext, n - range.least) / total;
+        if (range.most > range.least) paths.back().name += fmt::format(", {} bounces", n);
+    }
+    return paths;
+}
+
+/// A word in YAML's single quotes.
+std::string quoted(const std::string& word) {
+    std::string s = "'";
+    for (const char c : word) s += c == '\'' ? std::string("''") : std::string(1, c);
+    return s + "'";
+}
+
+} // namespace
+
+UserPathFile load_user_paths(const std::string& path) {
+    const YamlPtr root = parse_yaml(read_text_file(path), path);
+    const MapReader map(*root, "user paths", {"paths", "beta", "patch", "tolerance"});
+    Defaults defaults;
+    if (const YamlNode* beta = map.find("beta")) defaults.beta = radians(read_number(*beta, kBeta));
+    defaults.patch = read_length(map, "patch", std::nullopt);
+    defaults.tolerance = read_length(map, "tolerance", std::nullopt);
+    UserPathFile file;
+    std::set<std::string> names;
+    const YamlNode& paths = map.at("paths");
+    for (const auto& item : read_list(paths, "user paths")) {
+        for (UserPathSpec& path : read_paths(*item, file.paths.size() + 1, defaults)) {
+            if (!names.insert(path.name).second)
+                fail(*item, fmt::format("found the name '{}' again, expected each path to have its own", path.name));
+            file.paths.push_back(std::move(path));
+        }
+    }
+    if (file.paths.empty()) fail_expected(paths, "at least one user path");
+    return file;
+}
+
+std::string user_paths_text(const UserPathFile& file, const std::string& comment) {
+    std::string text;
+    for (std::size_t at = 0; at < comment.size();) {
+        const std::size_t end = std::min(comment.find('\n', at), comment.size());
+        text += "# " + comment.substr(at, end - at) + "\n";
+        at = end + 1;
+    }
+    text += "paths:\n";
+    const auto degrees = [](double radians) { return radians * 180 / kPi; };
+    for (const UserPathSpec& path : file.paths) {
+        text += fmt::format("  - name: {}\n    weight: {:.4g}\n    beta: [", quoted(path.name), path.weight);
+        const auto is_bounce = [](const UserPathPoint& p) { return p.bounce; };
+        const auto bounces = std::count_if(path.points.begin(), path.points.end(), is_bounce);
+        for (std::size_t i = static_cast<std::size_t>(bounces); i < path.beta.size(); ++i)
+            text += fmt::format("{}{:.3g}", i > static_cast<std::size_t>(bounces) ? ", " : "", degrees(path.beta[i]));
+        text += "]\n";
+        if (path.patch) text += fmt::format("    patch: {:.4g}\n", *path.patch);
+        if (path.tolerance) text += fmt::format("    tolerance: {:.4g}\n", *path.tolerance);
+        text += "    points:\n";
+        const auto list = [](const Imath::V3d& p) { return fmt::format("[{:.7g}, {:.7g}, {:.7g}]", p.x, p.y, p.z); };
+        for (const UserPathPoint& p : path.points) {
+            if (p.bounce) continue;
+            if (const auto& o = p.through)
+                text += fmt::format("      - through: {{corner: {}, u: {}, v: {}}}\n", list(o->corner), list(o->u),
+                                    list(o->v));
+            text += fmt::format("      - {}\n", list(p.p));
+            if (&p == path.points.data() && bounces > 0) text += fmt::format("      - bounces: {}\n", bounces);
+        }
+    }
+    return text;
+}
+
+} // namespace keyhole

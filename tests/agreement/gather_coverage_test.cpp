@@ -1,0 +1,38 @@
+// Light that gather rays hardly find, stored where it is seen: the picture is that of bidirectional path tracing.
+#include "methods/method.h"
+#include "support/agreement.h"
+#include "support/test_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <iostream>
+
+namespace keyhole {
+namespace {
+
+TEST(Reach_AgreesWithBidirectionalTracing, BlockByBlock) {
+    const auto scene = test::two_rooms(0.3f);
+    Settings paths;
+    paths.method = &methods::bdpt;
+    paths.spp = 128;
+    paths.seed = 1000;
+    const test::Blocks reference = test::render_blocks(*scene, paths, 4);
+    Settings photons;
+    photons.plan = Plan::all; // whether light outside gather coverage is worth it or not
+    photons.spp = 4;
+    photons.brightness_samples = 100'000;
+    photons.importons = 200'000;
+    photons.mutations = 120'000;
+    photons.light_paths = 120'000;
+    photons.photons = 60'000;
+    for (const char* method : {"mps", "ipm"}) {
+        photons.method = &method_named(method);
+        const test::Disagreement d = test::compare(test::render_blocks(*scene, photons, 4), reference, 0.03);
+        std::cout << method << ": ratio " << d.ratio << ", errors up to " << d.largest_error << "\n";
+        EXPECT_EQ(d.rejected, 0) << d.report << "mean brightness ratio " << d.ratio;
+        EXPECT_NEAR(d.ratio, 1, 0.08) << method;
+    }
+}
+
+} // namespace
+} // namespace keyhole

@@ -1,0 +1,88 @@
+// Records that aim at hot spots: the same irradiance, less of a gamble.
+#include "core/statistics.h"
+#include "gather/compute_record.h"
+#include "support/chance.h"
+#include "support/test_scenes.h"
+
+#include <gtest/gtest.h>
+
+namespace keyhole {
+namespace {
+
+/// A room of 4 m; close to one wall a small lamp shines on a white card.
+std::unique_ptr<Scene> room_with_a_bright_card() {
+    const auto gray = make_diffuse(Rgb(0.5)), black = make_diffuse(Rgb(0.0));
+    test::SceneMaker m;
+    m.room({0, 0, 0}, {4, 4, 4}, gray)
+        .rectangle({3.5f, 3.5f, 0.2f}, {0.1f, 0, 0}, {0, 0.1f, 0}, make_diffuse(Rgb(0.8)))
+        // Faces the card at a distance of 15 cm.
+        .rectangle({3.53f, 3.53f, 0.35f}, {0, 0.04f, 0}, {0.04f, 0, 0}, black, Rgb(100.0))
+        .camera({2, 2, 3.9f}, {2, 1, 0}, 90)
+        .window(64, 64);
+    return m.build();
+}
+
+struct Records {
+    RunningStats irradiance;
+    double slope = 0; ///< mean of the derivative of the irradiance along x
+};
+
+constexpr int kRecords = 1600;
+
+class SpotRecords : public testing::Test {
+  protected:
+    SpotRecords() : from_(*visible_point(rays_, {0.5f, 0.8f}, rng_)) {
+        EXPECT_GT(from_.vertex.point.ng.y, 0.9f) << "that is not the floor";
+    }
+
+    Records make(const HotSpots& spots, const VisiblePoint& at) const {
+        const CacheOptions options;
+        const RecordMaker maker(rays_, spots, options);
+        Records r;
+        for (std::uint64_t i = 0; i < kRecords; ++i) {
+            const HemisphereEstimate light = maker.light(at, 400, i);
+            r.irradiance.add(light.irradiance.x);
+            r.slope += static_cast<double>(light.translation[0].x) / kRecords;
+        }
+        return r;
+    }
+
+    std::unique_ptr<Scene> scene_ = room_with_a_bright_card();
+    GatherRays rays_{*scene_, {}, {.max_radius = 0.1f, .caustic_radius = 0.1f}, 24};
+    Rng rng_{1, StreamPurpose::test, 0};
+    VisiblePoint from_;
+    HotSpots spots_{rays_, 1 << 16, 1, {}};
+};
+
+TEST_F(SpotRecords, FindWhatIsBrightAndSmall) {
+    EXPECT_GE(spots_.size(), 1u);
+    EXPECT_GE(spots_.spot_at({3.55f, 3.55f, 0.2f}), 0);
+    EXPECT_EQ(spots_.spot_at({0.5f, 0.5f, 0}), -1);
+    EXPECT_EQ(spots_.spot_at(Vec3(std::numeric_limits<float>::infinity())), -1);
+}
+
+TEST_F(SpotRecords, HaveTheSameMeanAndLessVariance) {
+    const Records aimed = make(spots_, from_), blind = make({}, from_);
+    const double error = std::hypot(aimed.irradiance.standard_error(), blind.irradiance.standard_error());
+    EXPECT_TRUE(test::same_mean(aimed.irradiance, blind.irradiance));
+    EXPECT_LT(error, 0.05 * blind.irradiance.mean()) << "too noisy to mean anything";
+    EXPECT_LT(aimed.irradiance.variance(), blind.irradiance.variance() / 10);
+}
+
+TEST_F(SpotRecords, HaveTheSlopeThatTheirNeighboursShow) {
+    VisiblePoint left = from_, right = from_;
+    left.vertex.point.p.x -= 0.4f;
+    right.vertex.point.p.x += 0.4f;
+    const Records a = make(spots_, left), b = make(spots_, right), middle = make(spots_, from_);
+    const double difference = (b.irradiance.mean() - a.irradiance.mean()) / 0.8;
+    EXPECT_NEAR(middle.slope, difference, 0.25 * std::abs(difference));
+}
+
+TEST(HotSpots, AreNoneWhereLightIsEven) {
+    const auto scene = test::furnace(0.5);
+    const GatherRays rays(*scene, {}, {.max_radius = 0.1f, .caustic_radius = 0.1f}, 24);
+    EXPECT_EQ(HotSpots(rays, 1 << 16, 1, {}).size(), 0u);
+}
+
+} // namespace
+} // namespace keyhole

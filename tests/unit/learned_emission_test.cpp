@@ -1,0 +1,189 @@
+// Light paths that begin where their light will be asked for: densities that are those of the samples, power that
+// arrives in full, and far more of the paths where they count.
+#include "core/statistics.h"
+#include "sampling/guidance/learned_emission.h"
+#include "scene/emitters/emitters.h"
+#include "support/chi_squared.h"
+#include "support/test_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace keyhole {
+namespace {
+
+constexpr int kDepth = 6;
+
+std::vector<PlaneHistogram::Point> clustered_points(int n) {
+    std::vector<PlaneHistogram::Point> points;
+    Rng rng(5, StreamPurpose::test, 1);
+    for (int i = 0; i < n; ++i) {
+        const double x = rng.next(), y = rng.next();
+        points.push_back(i % 5 == 0 ? PlaneHistogram::Point{{x, 3 * y}, 1}
+                                    : PlaneHistogram::Point{{0.2 + 0.1 * x, y}, 2});
+    }
+    return points;
+}
+
+TEST(PlaneHistogram, HasTheDensityOfItsSamples) {
+    auto points = clustered_points(500);
+    const PlaneHistogram histogram(points);
+    ASSERT_FALSE(histogram.empty());
+    constexpr int kCells = 12, kSamples = 100'000, kQuadrature = 20;
+    test::Histogram h;
+    h.observed.assign(kCells * kCells, 0);
+    h.expected.assign(kCells * kCells, 0);
+    Rng rng(6, StreamPurpose::test, 0);
+    for (int i = 0; i < kSamples; ++i) {
+        const double u = rng.next();
+        const auto place = histogram.sample(u, rng.next());
+        const int x = std::min(static_cast<int>(place.x[0] * kCells), kCells - 1);
+        const int y = std::min(static_cast<int>(place.x[1] / 3 * kCells), kCells - 1);
+        h.observed[static_cast<std::size_t>(y * kCells + x)] += 1;
+        EXPECT_GT(histogram.pdf(place), 0);
+    }
+    const double area = 3.0 / (kCells * kCells * kQuadrature * kQuadrature);
+    for (int y = 0; y < kCells * kQuadrature; ++y)
+        for (int x = 0; x < kCells * kQuadrature; ++x)
+            h.expected[static_cast<std::size_t>(y / kQuadrature * kCells + x / kQuadrature)] +=
+                kSamples * area *
+                histogram.pdf({{(x + 0.5) / (kCells * kQuadrature), 3 * (y + 0.5) / (kCells * kQuadrature)}});
+    double all = 0;
+    for (std::size_t i = 0; i < h.expected.size(); ++i) all += h.expected[i];
+    EXPECT_NEAR(all / kSamples, 1, 0.02);
+    // Edges of rectangles cut cells of the quadrature: its errors are small beside 5 % of a cell.
+    for (std::size_t i = 0; i < h.expected.size(); ++i)
+        EXPECT_NEAR(h.observed[i], h.expected[i], 5 * std::sqrt(h.expected[i] + 1) + 0.06 * h.expected[i]) << i;
+}
+
+TEST(PlaneHistogram, IsEmptyWithoutAnArea) {
+    std::vector<PlaneHistogram::Point> line{{{0, 1}, 1}, {{1, 1}, 1}, {{2, 1}, 1}};
+    EXPECT_TRUE(PlaneHistogram(line).empty());
+    EXPECT_TRUE(PlaneHistogram().empty());
+}
+
+/// A room of 3 x 2.5 x 3 m whose only opening is a window of 0.8 x 0.8 m in the wall at z = 0, and a yard before it.
+std::unique_ptr<Scene> room_with_a_window() {
+    const auto wall = make_diffuse(Rgb(0.6));
+    test::SceneMaker m;
+    m.rectangle({0, 0, 0}, {0, 0, 3}, {3, 0, 0}, wall);
+    m.rectangle({0, 2.5, 0}, {3, 0, 0}, {0, 0, 3}, wall);
+    m.rectangle({3, 0, 3}, {-3, 0, 0}, {0, 2.5, 0}, wall);
+    m.rectangle({0, 0, 3}, {0, 0, -3}, {0, 2.5, 0}, wall);
+    m.rectangle({3, 0, 0}, {0, 0, 3}, {0, 2.5, 0}, wall);
+    m.rectangle({0, 0, 0}, {3, 0, 0}, {0, 1, 0}, wall);
+    m.rectangle({0, 1.8f, 0}, {3, 0, 0}, {0, 0.7f, 0}, wall);
+    m.rectangle({0, 1, 0}, {1, 0, 0}, {0, 0.8f, 0}, wall);
+    m.rectangle({1.8f, 1, 0}, {1.2f, 0, 0}, {0, 0.8f, 0}, wall);
+    m.rectangle({-4, -0.2f, -8}, {0, 0, 7.9f}, {10, 0, 0}, wall);
+    m.emitter(make_constant_environment(Rgb(1, 2, 3)));
+    m.emitter(make_distant_emitter(Vec3(0.2f, -0.6f, 0.7f).normalized(), Rgb(8)));
+    m.camera({1.5f, 1.3f, 2.9f}, {1.5f, 1.2f, 0}, 60).window(32, 24);
+    return m.build();
+}
+
+/// Power that arrives at some walls, by the path; `scale`: of all power.
+struct Arrivals {
+    RunningStats floor, ceiling, inside;
+    std::int64_t paths_inside = 0;
+};
+template <class Emit> Arrivals trace(const Scene& scene, int paths, std::uint64_t stream, const Emit& emit) {
+    struct Sink {
+        double floor = 0, ceiling = 0, inside = 0;
+        bool arrival(const Vertex& v, const Vec3& to_light, const Rgb& power, const LightPast&) {
+            const double y = luminance(power);
+            if (v.point.p.z > 0.001f || v.point.ng.z > 0.5f) {
+                const bool within = v.point.p.y > 2.499f ? to_light.y < 0 : v.point.p.x > 0 && v.point.p.x < 3;
+                if (within) inside += y;
+            }
+            if (v.point.p.y > 2.499f && to_light.y < 0) ceiling += y;
+            if (std::abs(v.point.p.y) < 0.001f && to_light.y > 0) floor += y;
+            return true;
+        }
+    };
+    Arrivals sum;
+    for (int i = 0; i < paths; ++i) {
+        Rng rng(stream, StreamPurpose::test, static_cast<std::uint64_t>(i));
+        Sink sink;
+        if (const auto light = emit(rng)) trace_light_path(scene, *light, kDepth, rng, sink);
+        sum.floor.add(sink.floor);
+        sum.ceiling.add(sink.ceiling);
+        sum.inside.add(sink.inside);
+        sum.paths_inside += sink.ceiling + sink.floor > 0 ? 1 : 0;
+    }
+    return sum;
+}
+
+double z_score(const RunningStats& a, const RunningStats& b) {
+    return (a.mean() - b.mean()) / std::hypot(a.standard_error(), b.standard_error());
+}
+
+class LearnedEmissionInARoom : public testing::Test {
+  protected:
+    static constexpr int kPlainPaths = 2'000'000, kLearnedPaths = 200'000;
+    const std::unique_ptr<Scene> scene = room_with_a_window();
+    const LearnedEmission learned{*scene, {.paths = 16'384, .max_scatterings = kDepth}, {}};
+};
+
+TEST_F(LearnedEmissionInARoom, BringsAllPowerAndFindsTheWindow) {
+    const Arrivals plain = trace(*scene, kPlainPaths, 11, [&](Rng& rng) { return emit_light(*scene, rng); });
+    const Arrivals aimed = trace(*scene, kLearnedPaths, 12, [&](Rng& rng) { return learned.sample(rng); });
+    EXPECT_LT(std::abs(z_score(plain.floor, aimed.floor)), 4) << plain.floor.mean() << " " << aimed.floor.mean();
+    EXPECT_LT(std::abs(z_score(plain.ceiling, aimed.ceiling)), 4)
+        << plain.ceiling.mean() << " " << aimed.ceiling.mean();
+    EXPECT_LT(std::abs(z_score(plain.inside, aimed.inside)), 4) << plain.inside.mean() << " " << aimed.inside.mean();
+    const double share = static_cast<double>(aimed.paths_inside) / kLearnedPaths;
+    EXPECT_GT(share, 10 * static_cast<double>(plain.paths_inside) / kPlainPaths);
+    // A density that is wrong by a fifth would not pass.
+    const Arrivals again = trace(*scene, kLearnedPaths, 13, [&](Rng& rng) {
+        auto light = learned.sample(rng);
+        if (light) light->power *= 1.2;
+        return light;
+    });
+    EXPECT_GT(std::max(std::abs(z_score(plain.ceiling, again.ceiling)), std::abs(z_score(plain.floor, again.floor))),
+              4);
+}
+
+TEST(LearnedEmission, ChoosesTheLampsThatShineWhereTheEyeIs) {
+    const auto wall = make_diffuse(Rgb(0.5));
+    test::SceneMaker m;
+    m.room({-1, -1, -2}, {1, 1, 2}, wall);
+    for (int i = 0; i < 30; ++i) { // each in a closed room of its own, but for the first
+        const auto x = static_cast<float>(10 * i);
+        if (i > 0) m.room({x - 1, -1, -2}, {x + 1, 1, 2}, wall);
+        m.rectangle({x - 0.2f, 0.99f, -0.2f}, {0.4f, 0, 0}, {0, 0, 0.4f}, make_diffuse(Rgb(0.0)), Rgb(5));
+    }
+    m.camera({0, 0, 1.9f}, {0, 0, 0}, 60).window(32, 24);
+    const auto scene = m.build();
+    const LearnedEmission learned(*scene, {.paths = 2048, .max_scatterings = kDepth}, {});
+    EXPECT_LT(learned.effective_emitters(), 5);
+    Rng rng(7, StreamPurpose::test, 0);
+    int first = 0;
+    RunningStats power;
+    for (int i = 0; i < 20'000; ++i) {
+        const auto light = learned.sample(rng);
+        ASSERT_TRUE(light);
+        first += std::abs(light->x0.p.x) < 1 ? 1 : 0;
+        power.add(luminance(light->power));
+    }
+    EXPECT_GT(first, 9'000);                   // one in thirty by power
+    const double of_all = 30 * kPi * 5 * 0.16; // [W]
+    EXPECT_NEAR(power.mean(), of_all, 4 * power.standard_error());
+}
+
+TEST(LearnedEmission, IsForLightFromInfinity) {
+    EXPECT_FALSE(LearnedEmission::can_learn(*test::diffuse_box()));
+    EXPECT_TRUE(LearnedEmission::can_learn(*room_with_a_window()));
+}
+
+TEST(LearnedEmission, KnowsNothingWhereNoLightWasSeenAndBringsItStill) {
+    const auto scene = room_with_a_window();
+    const LearnedEmission nothing(*scene, {.paths = 0, .max_scatterings = kDepth}, {});
+    const Arrivals plain = trace(*scene, 400'000, 21, [&](Rng& rng) { return emit_light(*scene, rng); });
+    const Arrivals same = trace(*scene, 400'000, 22, [&](Rng& rng) { return nothing.sample(rng); });
+    EXPECT_LT(std::abs(z_score(plain.inside, same.inside)), 4);
+}
+
+} // namespace
+} // namespace keyhole
