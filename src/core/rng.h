@@ -57,6 +57,7 @@ enum class StreamPurpose : std::uint64_t {
     image_weight,
     proposal_tuning,
     learned_emission,
+    learned_direct_light,
 };
 
 /// PCG32 (O'Neill 2014). One for each chain and each pixel, never for each thread, so that a picture does not

@@ -33,9 +33,10 @@ enum class ImportanceUse {
 /// What the file of a method says of it.
 struct Method {
     std::string_view name, help;
-    bool keeps_photons = false;      ///< in maps, which can be saved and loaded
-    bool samples_pixels = false;     ///< one by one, and needs nothing before that
-    bool follows_user_paths = false; ///< that a scene has
+    bool keeps_photons = false;         ///< in maps, which can be saved and loaded
+    bool samples_pixels = false;        ///< one by one, and needs nothing before that
+    bool follows_user_paths = false;    ///< that a scene has
+    bool asks_for_direct_light = false; ///< by next-event estimation, which may be learned
     ImportanceUse importance = ImportanceUse::none;
 
     /// What `auto` tries it with; docs/charts.md.

@@ -145,6 +145,7 @@ RenderResult render_mlt(const RenderTask& task) {
 constinit const Method methods::mlt{.name = "mlt",
                                     .help = "Metropolis light transport: the chains of mps, drawn directly",
                                     .follows_user_paths = true,
+                                    .asks_for_direct_light = true,
                                     .trial = {.share = 0.09, .doubt = 1.5},
                                     .render = render_mlt};
 

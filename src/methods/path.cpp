@@ -43,6 +43,7 @@ RenderResult render_path(const RenderTask& task) {
 constinit const Method methods::path{.name = "path",
                                      .help = "path tracing, the reference",
                                      .samples_pixels = true,
+                                     .asks_for_direct_light = true,
                                      .trial = {.share = 0.05, .by_work = true},
                                      .render = render_path};
 

@@ -206,6 +206,7 @@ constinit const Method methods::automatic{.name = "auto",
                                           .help = "the one that leaves the least error, by trials",
                                           .keeps_photons = true,
                                           .follows_user_paths = true,
+                                          .asks_for_direct_light = true,
                                           .importance = ImportanceUse::guide,
                                           .render = render_photons};
 

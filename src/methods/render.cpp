@@ -4,6 +4,7 @@
 #include "film/filter.h"
 #include "methods/choice/first_look.h"
 #include "methods/choice/method_trials.h"
+#include "methods/learned_direct_light_scope.h"
 #include "methods/method.h"
 
 #include <algorithm>
@@ -49,11 +50,13 @@ RenderResult render(Scene& scene, const Settings& settings, const RunContext& co
     if (share.communicator != nullptr) deciding.stop = nullptr;
     try {
         const UserPaths paths = bind_user_paths(scene, user_paths);
+        const LearnedDirectLightScope direct_light(scene, settings, deciding);
         std::string choice;
         const Settings chosen =
             may_choose(settings) ? choose({scene, settings, none, deciding, paths, findings}, choice) : settings;
         result = render_by_method({scene, chosen, paths, context, share, findings});
         result.settings = settings;
+        direct_light.report(result.stats);
         if (!choice.empty()) result.stats.remarks.insert(result.stats.remarks.begin(), choice);
     } catch (const Interrupted&) { // before there was a picture
         result.settings = settings;

@@ -1,8 +1,10 @@
 // The scene: geometry behind Embree, materials, emitters and the camera. Immutable once built, but for the camera's
-// window: trials set that of a smaller picture, before and after what renders it.
+// window, which trials make smaller, and for how points on emitters are drawn, which renders learn: both are set before
+// and after anybody traces.
 #pragma once
 
 #include "scene/camera.h"
+#include "scene/emitters/direct_light_sampler.h"
 #include "scene/emitter.h"
 #include "scene/light_tree.h"
 #include "scene/media.h"
@@ -64,6 +66,10 @@ class Scene {
     const EmitterDistribution& emitter_distribution() const { return emitter_distribution_; }
     /// By what they may do at a point. Nothing to be asked where the distribution is empty.
     const LightTree& light_tree() const { return light_tree_; }
+    /// What draws points on emitters for next-event estimation, where that has been learned; null: the light tree does.
+    const DirectLightSampler* direct_light() const { return direct_light_.get(); }
+    /// Not while anybody renders.
+    void set_direct_light(std::shared_ptr<const DirectLightSampler> sampler) { direct_light_ = std::move(sampler); }
     const std::vector<Shape>& shapes() const { return shapes_; }
     /// Union of what the materials may do.
     const BsdfTraits& traits() const { return traits_; }
@@ -87,6 +93,7 @@ class Scene {
     std::vector<std::unique_ptr<Emitter>> emitters_;
     EmitterDistribution emitter_distribution_;
     LightTree light_tree_;
+    std::shared_ptr<const DirectLightSampler> direct_light_;
     std::vector<std::uint32_t> emitter_of_shape_;
     std::uint32_t environment_ = SurfacePoint::kNone; // index of the emitter that misses meet
     Camera camera_;

@@ -6,6 +6,7 @@
 #include "methods/choice/first_look.h"
 #include "methods/choice/mean_render.h"
 #include "methods/choice/method_trials.h"
+#include "methods/learned_direct_light_scope.h"
 #include "methods/method.h"
 #include "session/passes.h"
 #include "session/stage_clock.h"
@@ -65,6 +66,7 @@ class RenderInTime {
 
     RenderResult run() {
         try {
+            direct_light_.emplace(scene_, settings_, context_);
             choose();
             if (is_close()) spend_in_parts();
             while (mean_.empty() || (left() > kLeast * start_ && !used_up_)) {
@@ -252,6 +254,7 @@ class RenderInTime {
         result.stats.remarks.insert(result.stats.remarks.begin(), remarks_.begin(), remarks_.end());
         result.settings.seed = settings_.seed;
         result.stats.stages.insert(result.stats.stages.begin(), trials_.stages.begin(), trials_.stages.end());
+        if (direct_light_) direct_light_->report(result.stats);
         return result;
     }
 
@@ -270,6 +273,7 @@ class RenderInTime {
     const WorkPartition& share_;
     const double start_; // of time, in the beginning [s]
     double pixels_ = 0;
+    std::optional<LearnedDirectLightScope> direct_light_;
     Findings findings_;
     const Method* method_ = nullptr;
     std::optional<TrialCost> cost_;  // of the method; none for those that sample pixels

@@ -77,6 +77,7 @@ constinit const Method methods::pss{
     .name = "pss",
     .help = "photons of chains in primary sample space, over light sub-paths that seek importance",
     .keeps_photons = true,
+    .asks_for_direct_light = true,
     .importance = ImportanceUse::guide,
     .render = render_photons,
     .make_sampler = [](const SamplerContext& c) -> std::unique_ptr<PhotonSampler> {

@@ -29,6 +29,12 @@ class PlaneHistogram {
     Place sample(double u0, double u1) const;
     /// Density per area; 0 outside the bounding box.
     double pdf(const Place& place) const;
+    /// The bounding box.
+    struct Box {
+        double lower[2], upper[2];
+        double area() const { return (upper[0] - lower[0]) * (upper[1] - lower[1]); }
+    };
+    const Box& box() const { return box_; }
     std::size_t bytes() const { return nodes_.capacity() * sizeof(Node); }
 
   private:
@@ -37,10 +43,6 @@ class PlaneHistogram {
         double left_share = 0;
         std::uint32_t right = 0; ///< the left child follows its parent; 0: a leaf
         std::uint8_t axis = 0;
-    };
-    struct Box {
-        double lower[2], upper[2];
-        double area() const { return (upper[0] - lower[0]) * (upper[1] - lower[1]); }
     };
     void build(std::span<Point> points, const Box& box, int depth);
 

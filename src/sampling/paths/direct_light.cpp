@@ -2,13 +2,24 @@
 
 namespace keyhole {
 
+EmitterPoint sample_by_light_tree(const Scene& scene, const SurfacePoint& at, SampleSource& source) {
+    const LightTree::Choice choice = scene.light_tree().sample(at, source.next());
+    EmitterPoint light = scene.emitter(choice.emitter).sample_point(source);
+    light.point.emitter = choice.emitter;
+    light.pdf *= choice.probability;
+    return light;
+}
+
+double light_tree_pdf(const Scene& scene, const SurfacePoint& at, const SurfacePoint& x0) {
+    return scene.light_tree().probability(at, x0.emitter) * scene.emitter(x0.emitter).point_pdf(x0);
+}
+
 std::optional<DirectLight> sample_direct_light(const Scene& scene, const Vertex& v, const Vec3& back,
                                                SampleSource& source) {
     if (scene.emitter_distribution().empty()) return std::nullopt;
-    const LightTree::Choice choice = scene.light_tree().sample(v.point, source.next());
-    auto [light, point_pdf] = scene.emitter(choice.emitter).sample_point(source);
-    light.emitter = choice.emitter;
-    const double light_pdf = choice.probability * point_pdf;
+    const DirectLightSampler* learned = scene.direct_light();
+    const auto [light, light_pdf] =
+        learned != nullptr ? learned->sample(v.point, source) : sample_by_light_tree(scene, v.point, source);
     if (!(light_pdf > 0)) return std::nullopt;
     const Vec3 to_light = direction(v.point, light);
     const ScatterValue s = scatter(v.point, v.bsdf, Event::finite, to_light, back);
@@ -23,7 +34,8 @@ std::optional<DirectLight> sample_direct_light(const Scene& scene, const Vertex&
 
 double direct_light_pdf(const Scene& scene, const Vertex& v, const SurfacePoint& x0) {
     if (!x0.is_emitter() || scene.emitter_distribution().empty()) return 0;
-    return scene.light_tree().probability(v.point, x0.emitter) * scene.emitter(x0.emitter).point_pdf(x0);
+    const DirectLightSampler* learned = scene.direct_light();
+    return learned != nullptr ? learned->pdf(v.point, x0) : light_tree_pdf(scene, v.point, x0);
 }
 
 Rgb emission_with_mis(const Scene& scene, const Vertex& v, const Vertex& hit, const Vec3& w, double pdf) {

@@ -20,8 +20,13 @@ struct DirectLight {
     Rgb value; ///< radiance scattered towards `back` [W/(m^2 sr)] if x0 is visible, MIS weight included
 };
 
-/// Draws a point on an emitter, chosen by what it may do at `v`, and scatters its light at `v`. None where that carries
-/// nothing. Visibility is left to the caller.
+/// How points on emitters are drawn where nothing was learned: the emitter by the light tree, the point by the emitter.
+EmitterPoint sample_by_light_tree(const Scene& scene, const SurfacePoint& at, SampleSource& source);
+/// Density with which that makes the emitter's point `x0`.
+double light_tree_pdf(const Scene& scene, const SurfacePoint& at, const SurfacePoint& x0);
+
+/// Draws a point on an emitter, chosen by what it may do at `v`, or as the scene has learned, and scatters its light at
+/// `v`. None where that carries nothing. Visibility is left to the caller.
 std::optional<DirectLight> sample_direct_light(const Scene& scene, const Vertex& v, const Vec3& back,
                                                SampleSource& source);
 

@@ -1,0 +1,66 @@
+#include "methods/learned_direct_light_scope.h"
+
+#include "methods/method.h"
+#include "sampling/guidance/look_for_direct_light.h"
+#include "session/stage_clock.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace keyhole {
+namespace {
+
+constexpr Stage kLearning{"direct light, learned"};
+
+/// Of the time, and of the samples of pixels where there is no limit to the time.
+constexpr double kTimeShare = 0.04, kSampleShare = 1.0 / 16;
+/// Paths at most, and fewer than which are not worth their while.
+constexpr std::int64_t kMostPaths = std::int64_t{1} << 18, kLeastPaths = 1024;
+/// What is learned may take this share of the memory for photons.
+constexpr std::int64_t kMemoryShare = 10;
+
+DirectLightLearning learning(const Settings& settings, const ImageWindow& window, const RunContext& context) {
+    DirectLightLearning l{.paths = kMostPaths,
+                          .max_scatterings = static_cast<int>(settings.max_depth),
+                          .seed = static_cast<std::uint64_t>(settings.seed),
+                          .most_bytes = static_cast<std::size_t>(settings.photon_memory / kMemoryShare)};
+    const double left =
+        context.stop != nullptr ? context.stop->seconds_left() : std::numeric_limits<double>::infinity();
+    if (std::isfinite(left)) {
+        l.seconds = kTimeShare * left;
+    } else {
+        const double samples = window.size() * static_cast<double>(settings.spp) *
+                               static_cast<double>(std::max<std::int64_t>(1, settings.passes));
+        l.paths = static_cast<std::int64_t>(std::min(static_cast<double>(kMostPaths), kSampleShare * samples));
+        if (l.paths < kLeastPaths) l.paths = 0;
+    }
+    return l;
+}
+
+} // namespace
+
+LearnedDirectLightScope::LearnedDirectLightScope(Scene& scene, const Settings& settings, const RunContext& context)
+    : scene_(scene) {
+    scene.set_direct_light(nullptr);
+    if (!settings.method->asks_for_direct_light || !has_choice_of_direct_light(scene)) return;
+    const StageClock clock(own_, kLearning);
+    const auto learned = learn_direct_light(scene, learning(settings, scene.camera().window(), context), context);
+    if (!learned) return;
+    own_.values["direct_light_second_moment"] = learned->second_moment_ratio();
+    own_.values["direct_light_bytes"] = static_cast<double>(learned->bytes());
+    own_.remarks.push_back(fmt::format("direct light: learned in {} cells, {:.2g} times fewer shadow rays for the same "
+                                       "second moment",
+                                       learned->cells(), 1 / learned->second_moment_ratio()));
+    scene.set_direct_light(learned);
+}
+
+void LearnedDirectLightScope::report(RenderStats& stats) const {
+    stats.stages.insert(stats.stages.begin(), own_.stages.begin(), own_.stages.end());
+    stats.values.insert(own_.values.begin(), own_.values.end());
+    stats.remarks.insert(stats.remarks.end(), own_.remarks.begin(), own_.remarks.end());
+}
+
+} // namespace keyhole

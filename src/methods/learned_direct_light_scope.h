@@ -1,0 +1,30 @@
+// What a render learns of direct light before it begins.
+#pragma once
+
+#include "core/progress.h"
+#include "core/render_stats.h"
+#include "core/settings.h"
+#include "scene/scene.h"
+
+namespace keyhole {
+
+/// While it lives, the scene draws points on emitters as has been learned, if there is a choice to be learned, the
+/// method that the settings name asks for direct light, and learning promises to pay.
+class LearnedDirectLightScope {
+  public:
+    /// With a limit to the time a small share of it goes into learning, else of the samples of pixels.
+    /// @throws Interrupted
+    LearnedDirectLightScope(Scene& scene, const Settings& settings, const RunContext& context);
+    ~LearnedDirectLightScope() { scene_.set_direct_light(nullptr); }
+    LearnedDirectLightScope(const LearnedDirectLightScope&) = delete;
+    LearnedDirectLightScope& operator=(const LearnedDirectLightScope&) = delete;
+
+    /// Adds what learning took, and what it found.
+    void report(RenderStats& stats) const;
+
+  private:
+    Scene& scene_;
+    RenderStats own_;
+};
+
+} // namespace keyhole

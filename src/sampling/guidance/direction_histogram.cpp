@@ -1,0 +1,159 @@
+#include "sampling/guidance/direction_histogram.h"
+
+#include "scene/emitters/sphere_map.h"
+
+#include <Imath/ImathMatrix.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace keyhole {
+namespace {
+
+/// Fewer rays than this on either half tell nothing of where they meet.
+constexpr std::size_t kLeastRays = 16;
+/// Density of directions that a histogram doesn't know, for the comparison of two: per solid angle.
+constexpr double kUnknown = 1e-3;
+/// Rays to a plane may be as flat as this [cosine]: others are not counted on it.
+constexpr double kFlattest = 0.05;
+/// Between the mean direction and the normal of a window.
+constexpr float kLeastCosine = 0.25f;
+/// Rays seem to meet before the window, the more the farther apart they begin: how much farther it may be.
+constexpr float kFarther[] = {1.15f, 1.3f, 1.5f, 1.8f};
+/// Of all samples, those that are spread evenly over the histogram's box and so much of its width on each side of it.
+constexpr double kEvenly = 0.15, kAround = 0.2;
+/// Of the octahedral map, per solid angle.
+constexpr double kDensityOfOctahedron = kInvPi / 4;
+
+/// The point that has the least sum of squared distances to the rays.
+std::optional<Vec3> meeting_point(std::span<const DirectionHistogram::Ray> rays) {
+    Imath::M33d a(0.0);
+    Imath::V3d b(0.0);
+    for (const auto& ray : rays) {
+        const Imath::V3d w(ray.w), p(ray.p);
+        const Imath::V3d across = p - w * w.dot(p);
+        for (int i = 0; i < 3; ++i) {
+            for (int k = 0; k < 3; ++k) a[i][k] += (i == k ? 1.0 : 0.0) - w[i] * w[k];
+            b[i] += across[i];
+        }
+    }
+    const double n = static_cast<double>(rays.size());
+    if (!(a.determinant() > 1e-9 * n * n * n)) return std::nullopt; // parallel
+    const Imath::V3d x = b * a.inverse();                           // a is symmetric
+    if (!std::isfinite(x.length2())) return std::nullopt;
+    return Vec3(x);
+}
+
+/// Where a ray meets the plane; none behind it, and none for a flat one.
+std::optional<Imath::V3d> on_plane(const Vec3& center, const Frame& frame, const Vec3& p, const Vec3& w) {
+    const double cosine = w.dot(frame.n), height = (center - p).dot(frame.n);
+    if (!(cosine > kFlattest) || !(height > 0)) return std::nullopt;
+    const Vec3 local = frame.to_local(p + w * static_cast<float>(height / cosine) - center);
+    return Imath::V3d(local.x, local.y, height / cosine);
+}
+
+/// Of planes that windows may lie in: across the mean direction, and upright or level as the scene's axes are.
+std::vector<Vec3> likely_normals(std::span<const DirectionHistogram::Ray> rays) {
+    Vec3 mean(0, 0, 0);
+    for (const auto& ray : rays) mean += ray.w;
+    if (!(mean.length() > 0)) return {};
+    mean.normalize();
+    std::vector<Vec3> normals{mean};
+    for (int k = 0; k < 3; ++k) {
+        Vec3 axis(0, 0, 0);
+        axis[k] = mean[k] < 0 ? -1.0f : 1.0f;
+        if (axis.dot(mean) > kLeastCosine) normals.push_back(axis);
+    }
+    return normals;
+}
+
+} // namespace
+
+DirectionHistogram::DirectionHistogram(std::span<const Ray> rays, const std::optional<Plane>& plane) : plane_(plane) {
+    if (plane_) frame_ = Frame(plane_->n);
+    std::vector<PlaneHistogram::Point> points;
+    points.reserve(rays.size());
+    for (const Ray& ray : rays) {
+        if (!plane_) {
+            const Vec2d place = sphere_place(SphereLayout::octahedral, ray.w);
+            points.push_back({{place.x, place.y}, ray.weight});
+        } else if (const auto at = on_plane(plane_->center, frame_, ray.p, ray.w)) {
+            points.push_back({{at->x, at->y}, ray.weight});
+        }
+    }
+    histogram_ = PlaneHistogram(points);
+    surround();
+}
+
+void DirectionHistogram::surround() {
+    around_ = histogram_.box();
+    for (int k = 0; k < 2; ++k) {
+        const double more = kAround * (around_.upper[k] - around_.lower[k]);
+        around_.lower[k] -= more;
+        around_.upper[k] += more;
+        if (plane_) continue;
+        around_.lower[k] = std::max(around_.lower[k], 0.0);
+        around_.upper[k] = std::min(around_.upper[k], 1.0);
+    }
+}
+
+PlaneHistogram::Place DirectionHistogram::sample_place(double u0, double u1) const {
+    if (u0 >= kEvenly) return histogram_.sample((u0 - kEvenly) / (1 - kEvenly), u1);
+    const auto along = [&](int k, double u) { return around_.lower[k] + u * (around_.upper[k] - around_.lower[k]); };
+    return {{along(0, u0 / kEvenly), along(1, u1)}};
+}
+
+double DirectionHistogram::place_pdf(const PlaneHistogram::Place& place) const {
+    bool within = true;
+    for (int k = 0; k < 2; ++k) within &= place.x[k] >= around_.lower[k] && place.x[k] <= around_.upper[k];
+    return within ? kEvenly / around_.area() + (1 - kEvenly) * histogram_.pdf(place) : 0;
+}
+
+double DirectionHistogram::likelihood(std::span<const Ray> rays) const {
+    double sum = 0;
+    for (const Ray& ray : rays) sum += ray.weight * std::log(kUnknown + (empty() ? 0 : pdf(ray.p, ray.w)));
+    return sum;
+}
+
+std::optional<DirectionHistogram::Plane> DirectionHistogram::meeting_plane(std::span<const Ray> rays) {
+    std::vector<Ray> some, others;
+    for (std::size_t i = 0; i < rays.size(); ++i) (i % 2 == 0 ? some : others).push_back(rays[i]);
+    if (others.size() < kLeastRays) return std::nullopt;
+    const auto meeting = meeting_point(some);
+    if (!meeting) return std::nullopt;
+    std::optional<Plane> best;
+    double best_likelihood = DirectionHistogram(some, best).likelihood(others);
+    const auto consider = [&](const Plane& plane) {
+        const double likelihood = DirectionHistogram(some, plane).likelihood(others);
+        if (!(likelihood > best_likelihood)) return;
+        best_likelihood = likelihood;
+        best = plane;
+    };
+    for (const Vec3& n : likely_normals(some)) consider({*meeting, n});
+    if (!best) return best;
+    Imath::V3d from(0.0);
+    for (const Ray& ray : rays) from += Imath::V3d(ray.p) / static_cast<double>(rays.size());
+    const Plane near = *best;
+    for (const float factor : kFarther) consider({Vec3(from) + (near.center - Vec3(from)) * factor, near.n});
+    return best;
+}
+
+Vec3 DirectionHistogram::sample(const Vec3& p, double u0, double u1) const {
+    const PlaneHistogram::Place place = sample_place(u0, u1);
+    if (!plane_) return sphere_direction(SphereLayout::octahedral, {place.x[0], place.x[1]});
+    const Vec3 local(static_cast<float>(place.x[0]), static_cast<float>(place.x[1]), 0);
+    return (plane_->center + frame_.to_world(local) - p).normalized();
+}
+
+double DirectionHistogram::pdf(const Vec3& p, const Vec3& w) const {
+    if (!plane_) {
+        const Vec2d place = sphere_place(SphereLayout::octahedral, w);
+        return kDensityOfOctahedron * place_pdf({{place.x, place.y}});
+    }
+    const auto at = on_plane(plane_->center, frame_, p, w);
+    if (!at) return 0;
+    return place_pdf({{at->x, at->y}}) * at->z * at->z / w.dot(frame_.n);
+}
+
+} // namespace keyhole

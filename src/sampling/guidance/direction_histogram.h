@@ -1,0 +1,57 @@
+// A density of directions at neighbouring places, learned from directions that light came from.
+#pragma once
+
+#include "core/vec.h"
+#include "sampling/guidance/plane_histogram.h"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace keyhole {
+
+/// Directions that lead through a window differ from place to place, but they meet in it. Where the rays come together,
+/// the density is one over a plane there, and serves all places; else it is one over the octahedral map of directions.
+/// A part of all samples is spread evenly over these and their surroundings: rays that were learned from end a little
+/// before a window's edge does. Immutable and thread-safe.
+class DirectionHistogram {
+  public:
+    struct Ray {
+        Vec3 p;        ///< world space [m]
+        Vec3 w;        ///< unit
+        double weight; ///< not negative
+    };
+
+    struct Plane {
+        Vec3 center; ///< world space [m]
+        Vec3 n;      ///< unit, on the side that rays leave to
+    };
+    /// Where rays meet; none: nowhere that would tell more of directions than the octahedral map.
+    static std::optional<Plane> meeting_plane(std::span<const Ray> rays);
+
+    DirectionHistogram() = default;
+    /// Over `plane`, or over the octahedral map without one. Empty for too few rays, or none with a weight.
+    DirectionHistogram(std::span<const Ray> rays, const std::optional<Plane>& plane);
+
+    bool empty() const { return histogram_.empty(); }
+    const std::optional<Plane>& plane() const { return plane_; }
+    /// Unit direction at `p` by two numbers in [0,1). Not to be called when empty.
+    Vec3 sample(const Vec3& p, double u0, double u1) const;
+    /// Density per solid angle with which sample() makes `w` at `p`.
+    double pdf(const Vec3& p, const Vec3& w) const;
+    std::size_t bytes() const { return histogram_.bytes(); }
+
+  private:
+    void surround();
+    PlaneHistogram::Place sample_place(double u0, double u1) const;
+    double place_pdf(const PlaneHistogram::Place& place) const;
+    /// Logarithm of the density of rays, by weight.
+    double likelihood(std::span<const Ray> rays) const;
+
+    std::optional<Plane> plane_;
+    Frame frame_{Vec3(0, 0, 1)}; // of the plane
+    PlaneHistogram histogram_;
+    PlaneHistogram::Box around_{}; // a little more than the histogram's
+};
+
+} // namespace keyhole

@@ -1,0 +1,157 @@
+#include "sampling/guidance/learned_direct_light.h"
+
+#include "core/parallel.h"
+#include "sampling/paths/direct_light.h"
+
+#include <algorithm>
+#include <array>
+
+namespace keyhole {
+namespace {
+
+/// Samples of a cell, at least: half of them make its histogram while the other half tells how good that is.
+constexpr std::size_t kLeastFound = 128;
+/// Shares of the light tree that a cell chooses among.
+constexpr std::array<double, 6> kPlainShares{0.1, 0.2, 0.35, 0.5, 0.75, 1};
+
+SurfacePoint point_of(std::uint32_t emitter, SurfacePoint point) {
+    point.emitter = emitter;
+    return point;
+}
+
+} // namespace
+
+const LearnedDirectLight::Share* LearnedDirectLight::Cell::share_of(std::uint32_t emitter) const {
+    const auto at = std::ranges::lower_bound(shares, emitter, {}, &Share::emitter);
+    return at != shares.end() && at->emitter == emitter ? &*at : nullptr;
+}
+
+double LearnedDirectLight::Cell::pdf(std::uint32_t emitter, const Vec3& p, const Vec3& w, double point_pdf) const {
+    const Share* share = share_of(emitter);
+    if (share == nullptr) return 0;
+    return share->probability * (share->directions.empty() ? point_pdf : share->directions.pdf(p, w));
+}
+
+/// An emitter's share is the root of the second moment that its samples have when they are drawn as they will be.
+std::vector<LearnedDirectLight::Share> LearnedDirectLight::make_shares(std::span<const FoundLight* const> found,
+                                                                       const Cell* like) {
+    std::vector<const FoundLight*> sorted(found.begin(), found.end());
+    std::ranges::stable_sort(sorted, {}, &FoundLight::emitter);
+    std::vector<Share> shares;
+    double sum = 0;
+    for (std::size_t begin = 0, end = 0; begin < sorted.size(); begin = end) {
+        Share share{.emitter = sorted[begin]->emitter};
+        std::vector<DirectionHistogram::Ray> rays;
+        for (; end < sorted.size() && sorted[end]->emitter == share.emitter; ++end) {
+            const FoundLight& f = *sorted[end];
+            if (f.infinite) rays.push_back({f.at.p, f.towards, f.value / f.density});
+        }
+        if (!rays.empty()) {
+            const Share* model = like != nullptr ? like->share_of(share.emitter) : nullptr;
+            share.directions = DirectionHistogram(rays, model != nullptr ? model->directions.plane()
+                                                                         : DirectionHistogram::meeting_plane(rays));
+        }
+        for (std::size_t i = begin; i < end; ++i) {
+            const FoundLight& f = *sorted[i];
+            double pdf = f.point_pdf;
+            if (!share.directions.empty()) pdf = (pdf + share.directions.pdf(f.at.p, f.towards)) / 2;
+            share.probability += f.value * f.value / (f.density * pdf);
+        }
+        sum += share.probability = std::sqrt(share.probability);
+        shares.push_back(std::move(share));
+    }
+    double up_to = 0;
+    for (Share& s : shares) s.up_to = up_to += s.probability /= sum;
+    return shares;
+}
+
+LearnedDirectLight::Cell LearnedDirectLight::make_cell(std::span<const FoundLight* const> found) {
+    Cell cell;
+    cell.count = found.size();
+    if (found.size() < kLeastFound) return cell;
+    std::vector<const FoundLight*> some, others;
+    for (std::size_t i = 0; i < found.size(); ++i) (i % 2 == 0 ? some : others).push_back(found[i]);
+    std::array<double, kPlainShares.size()> moments{};
+    Cell whole;
+    whole.shares = make_shares(found);
+    for (const auto& [learned, held_out] : {std::pair{&some, &others}, std::pair{&others, &some}}) {
+        cell.shares = make_shares(*learned, &whole);
+        for (const FoundLight* f : *held_out) {
+            const double by_tree = f->choice * f->point_pdf, by_shares = cell.pdf(*f);
+            for (std::size_t k = 0; k < moments.size(); ++k)
+                moments[k] +=
+                    f->value * f->value / f->density / (kPlainShares[k] * by_tree + (1 - kPlainShares[k]) * by_shares);
+        }
+    }
+    const auto best = static_cast<std::size_t>(std::ranges::min_element(moments) - moments.begin());
+    cell.plain = kPlainShares[best];
+    cell.ratio = moments[best] / moments.back();
+    cell.shares = cell.plain < 1 ? std::move(whole.shares) : std::vector<Share>{};
+    return cell;
+}
+
+LearnedDirectLight::LearnedDirectLight(const Scene& scene, std::span<const FoundLight> found) : scene_(&scene) {
+    std::vector<SurfaceCells::Place> places;
+    places.reserve(found.size());
+    for (const FoundLight& f : found) places.push_back(f.at);
+    tree_ = SurfaceCells(std::move(places), kLeastFound);
+    std::vector<std::vector<const FoundLight*>> by_cell(tree_.size());
+    for (const FoundLight& f : found) by_cell[tree_.cell_of(f.at)].push_back(&f);
+    cells_.resize(tree_.size());
+    parallel_for(static_cast<std::int64_t>(cells_.size()), [&](std::int64_t i) {
+        cells_[static_cast<std::size_t>(i)] = make_cell(by_cell[static_cast<std::size_t>(i)]);
+    });
+    double sum = 0;
+    for (const Cell& cell : cells_) sum += cell.ratio * static_cast<double>(cell.count);
+    if (!found.empty()) ratio_ = sum / static_cast<double>(found.size());
+}
+
+EmitterPoint LearnedDirectLight::sample(const SurfacePoint& at, SampleSource& source) const {
+    const Cell& cell = cell_of(at);
+    const double u = source.next();
+    EmitterPoint drawn;
+    if (u < cell.plain) {
+        const std::uint32_t emitter = scene_->light_tree().sample(at, u / cell.plain).emitter;
+        drawn.point = point_of(emitter, scene_->emitter(emitter).sample_point(source).point);
+    } else {
+        const double v = (u - cell.plain) / (1 - cell.plain);
+        const auto above = std::ranges::upper_bound(cell.shares, v, {}, &Share::up_to);
+        const Share& share = above != cell.shares.end() ? *above : cell.shares.back();
+        if (share.directions.empty()) {
+            drawn.point = point_of(share.emitter, scene_->emitter(share.emitter).sample_point(source).point);
+        } else {
+            const auto [u0, u1] = source.take<2>();
+            drawn.point = point_of(share.emitter, infinite_point(share.directions.sample(at.p, u0, u1)));
+        }
+    }
+    drawn.pdf = pdf(cell, at, drawn.point);
+    return drawn;
+}
+
+double LearnedDirectLight::pdf(const Cell& cell, const SurfacePoint& at, const SurfacePoint& x0) const {
+    const Emitter& emitter = scene_->emitter(x0.emitter);
+    const double point_pdf = emitter.point_pdf(x0);
+    double sum = cell.plain * scene_->light_tree().probability(at, x0.emitter) * point_pdf;
+    if (cell.plain < 1) sum += (1 - cell.plain) * cell.pdf(x0.emitter, at.p, direction(at, x0), point_pdf);
+    return sum;
+}
+
+double LearnedDirectLight::pdf(const SurfacePoint& at, const SurfacePoint& x0) const {
+    return pdf(cell_of(at), at, x0);
+}
+
+double LearnedDirectLight::pdf(const FoundLight& f) const {
+    const Cell& cell = cells_[tree_.cell_of(f.at)];
+    return cell.plain * f.choice * f.point_pdf + (1 - cell.plain) * cell.pdf(f);
+}
+
+std::size_t LearnedDirectLight::bytes() const {
+    std::size_t sum = tree_.bytes() + cells_.capacity() * sizeof(Cell);
+    for (const Cell& cell : cells_) {
+        sum += cell.shares.capacity() * sizeof(Share);
+        for (const Share& share : cell.shares) sum += share.directions.bytes();
+    }
+    return sum;
+}
+
+} // namespace keyhole

@@ -1,0 +1,78 @@
+// Next-event estimation that follows what shadow rays have found: which emitters shine at a place, and from where in
+// the sky.
+#pragma once
+
+#include "sampling/guidance/direction_histogram.h"
+#include "sampling/guidance/surface_cells.h"
+#include "scene/scene.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace keyhole {
+
+/// Light that a shadow ray found: a sample of an emitter's point that is seen from a place.
+struct FoundLight {
+    SurfaceCells::Place at;
+    std::uint32_t emitter;
+    bool infinite;    ///< from an environment
+    Vec3 towards;     ///< unit: where it came from
+    double value;     ///< luminance that it would bring per unit of the coordinates of the emitter's point [W/m^2 / ..]
+    double choice;    ///< probability of the emitter by the light tree
+    double point_pdf; ///< of the point by the emitter
+    double density{0}; ///< of all samples that were drawn in search of light, added up: balance heuristic
+};
+
+/// Surfaces in cells by place and normal, in each of which emitters are chosen by the root of the second moment of what
+/// they were found to bring, visibility included (Vevoda, Kondapaneni and Krivanek 2018, "Bayesian Online Regression
+/// for Adaptive Direct Illumination Sampling", cells and moments; theirs are regularised where these fall back on the
+/// light tree), and directions to an environment by a histogram. Of all samples a share goes by
+/// the light tree as if nothing were known: in each cell that which would have left the least second moment of light
+/// that the histogram was not made from. Immutable and thread-safe.
+class LearnedDirectLight final : public DirectLightSampler {
+  public:
+    /// @param found what shadow rays found, in any order; there may be nothing
+    LearnedDirectLight(const Scene& scene, std::span<const FoundLight> found);
+
+    EmitterPoint sample(const SurfacePoint& at, SampleSource& source) const override;
+    double pdf(const SurfacePoint& at, const SurfacePoint& x0) const override;
+    /// The same for a sample that was found.
+    double pdf(const FoundLight& found) const;
+
+    /// Expected second moment of samples over that of the light tree's, the mean over what was found.
+    double second_moment_ratio() const { return ratio_; }
+    std::uint32_t cells() const { return tree_.size(); }
+    std::size_t bytes() const;
+
+  private:
+    struct Share {
+        std::uint32_t emitter;
+        double probability = 0;
+        double up_to = 0;                ///< sum of the probabilities so far
+        DirectionHistogram directions{}; ///< to an environment; empty: by the emitter
+    };
+    struct Cell {
+        double plain = 1;          ///< share of samples by the light tree
+        std::vector<Share> shares; ///< of the others; by emitter
+        double ratio = 1;          ///< of second moments
+        std::size_t count = 0;     ///< of samples that it was made from
+
+        const Share* share_of(std::uint32_t emitter) const;
+        /// Of a sample by the shares, at `p` in direction `w`; `point_pdf` as in FoundLight.
+        double pdf(std::uint32_t emitter, const Vec3& p, const Vec3& w, double point_pdf) const;
+        double pdf(const FoundLight& f) const { return pdf(f.emitter, f.at.p, f.towards, f.point_pdf); }
+    };
+    /// `like`: planes of the histograms are those that these have.
+    static std::vector<Share> make_shares(std::span<const FoundLight* const> found, const Cell* like = nullptr);
+    static Cell make_cell(std::span<const FoundLight* const> found);
+    const Cell& cell_of(const SurfacePoint& at) const { return cells_[tree_.cell_of({at.p, at.ng})]; }
+    double pdf(const Cell& cell, const SurfacePoint& at, const SurfacePoint& x0) const;
+
+    const Scene* scene_;
+    SurfaceCells tree_;
+    std::vector<Cell> cells_;
+    double ratio_ = 1;
+};
+
+} // namespace keyhole

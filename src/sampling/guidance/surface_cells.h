@@ -1,0 +1,48 @@
+// Parts of a scene's surfaces that lie and look alike.
+#pragma once
+
+#include "core/vec.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace keyhole {
+
+/// A k-d tree over places and normals, split at medians until cells hold few points. Immutable and thread-safe.
+class SurfaceCells {
+  public:
+    struct Place {
+        Vec3 p; ///< world space [m]
+        Vec3 n; ///< unit normal
+    };
+
+    SurfaceCells() = default;
+    /// @param least points that each cell holds, unless there are fewer in all
+    SurfaceCells(std::vector<Place> points, std::size_t least);
+
+    std::uint32_t size() const { return cells_; }
+    /// That of any place, between 0 and size() - 1.
+    std::uint32_t cell_of(const Place& place) const;
+    std::size_t bytes() const { return nodes_.capacity() * sizeof(Node); }
+
+  private:
+    static constexpr int kDimensions = 6;
+    struct Node {
+        float split = 0;
+        std::uint32_t right = 0; ///< the left child follows its parent; of a leaf its cell
+        std::int8_t axis = -1;   ///< of a leaf -1
+    };
+    float coordinate(const Place& place, int axis) const {
+        return axis < 3 ? place.p[axis] : normal_scale_ * place.n[axis - 3];
+    }
+    void build(std::span<Place> points, std::size_t least);
+    bool split(std::span<Place> points, std::size_t least, Node& node, std::size_t& left) const;
+
+    float normal_scale_ = 0; // [m]: by how much normals count beside places
+    std::vector<Node> nodes_{Node{}};
+    std::uint32_t cells_ = 1;
+};
+
+} // namespace keyhole

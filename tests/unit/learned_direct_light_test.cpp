@@ -1,0 +1,275 @@
+// Next-event estimation that has learned: densities that are those of the samples, light that arrives in full, and far
+// less noise where light comes through a window or from few of many lamps.
+#include "core/statistics.h"
+#include "sampling/guidance/look_for_direct_light.h"
+#include "sampling/paths/direct_light.h"
+#include "scene/bsdfs/diffuse.h"
+#include "scene/emitters/emitters.h"
+#include "scene/emitters/sphere_map.h"
+#include "support/chi_squared.h"
+#include "support/test_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace keyhole {
+namespace {
+
+/// A room of 3 x 2.5 x 3 m whose only opening is a window of 0.8 x 0.8 m in the wall at z = 0.
+test::SceneMaker room_with_a_window() {
+    const auto wall = make_diffuse(Rgb(0.6));
+    test::SceneMaker m;
+    m.rectangle({0, 0, 0}, {0, 0, 3}, {3, 0, 0}, wall);
+    m.rectangle({0, 2.5, 0}, {3, 0, 0}, {0, 0, 3}, wall);
+    m.rectangle({3, 0, 3}, {-3, 0, 0}, {0, 2.5, 0}, wall);
+    m.rectangle({0, 0, 3}, {0, 0, -3}, {0, 2.5, 0}, wall);
+    m.rectangle({3, 0, 0}, {0, 0, 3}, {0, 2.5, 0}, wall);
+    m.rectangle({0, 0, 0}, {3, 0, 0}, {0, 1, 0}, wall);
+    m.rectangle({0, 1.8f, 0}, {3, 0, 0}, {0, 0.7f, 0}, wall);
+    m.rectangle({0, 1, 0}, {1, 0, 0}, {0, 0.8f, 0}, wall);
+    m.rectangle({1.8f, 1, 0}, {1.2f, 0, 0}, {0, 0.8f, 0}, wall);
+    m.camera({1.5f, 1.3f, 2.9f}, {1.5f, 1.0f, 0}, 80).window(32, 24);
+    return m;
+}
+
+/// Thirty lamps, each in a closed room of its own; the eye sees the first. The second has a sliver of a door to it.
+test::SceneMaker many_rooms() {
+    const auto wall = make_diffuse(Rgb(0.5));
+    test::SceneMaker m;
+    for (int i = 0; i < 30; ++i) {
+        const auto x = static_cast<float>(10 * i);
+        if (i > 1) m.room({x - 1, -1, -2}, {x + 1, 1, 2}, wall);
+        m.rectangle({x - 0.2f, 0.99f, -0.2f}, {0.4f, 0, 0}, {0, 0, 0.4f}, make_diffuse(Rgb(0.0)), Rgb(5));
+    }
+    m.rectangle({-1, -1, -2}, {0, 0, 4}, {12, 0, 0}, wall);
+    m.rectangle({-1, 1, -2}, {12, 0, 0}, {0, 0, 4}, wall);
+    m.rectangle({-1, -1, -2}, {12, 0, 0}, {0, 2, 0}, wall);
+    m.rectangle({-1, -1, 2}, {0, 2, 0}, {12, 0, 0}, wall);
+    m.rectangle({-1, -1, -2}, {0, 2, 0}, {0, 0, 4}, wall);
+    m.rectangle({11, -1, -2}, {0, 0, 4}, {0, 2, 0}, wall);
+    m.rectangle({1, -1, -1.99f}, {0, 2, 0}, {0, 0, 3.99f}, wall);
+    m.camera({0, 0, 1.9f}, {0, -0.5f, 0}, 60).window(32, 24);
+    return m;
+}
+
+Vertex white_vertex(const Vec3& p, const Vec3& n) {
+    Vertex v;
+    v.point.p = p;
+    v.point.ng = v.point.ns = n;
+    v.point.offset = 1e-5f;
+    v.bsdf = Bsdf(Frame(n), DiffuseBsdf{Rgb(1.0)});
+    return v;
+}
+
+struct Places {
+    Vec3 lower, upper, n;
+};
+
+/// What next-event estimation by a sampler brings to places of a rectangle, visibility included.
+RunningStats arriving(const Scene& scene, const DirectLightSampler* sampler, const Places& places, int samples,
+                      double planted = 1) {
+    RunningStats stats;
+    for (int i = 0; i < samples; ++i) {
+        Rng rng(sampler != nullptr ? 31 : 32, StreamPurpose::test, static_cast<std::uint64_t>(i));
+        Vec3 p;
+        for (int k = 0; k < 3; ++k)
+            p[k] = places.lower[k] + static_cast<float>(rng.next()) * (places.upper[k] - places.lower[k]);
+        const Vertex v = white_vertex(p, places.n);
+        auto [x0, pdf] = sampler != nullptr ? sampler->sample(v.point, rng) : sample_by_light_tree(scene, v.point, rng);
+        const Vec3 w = direction(v.point, x0);
+        double value = 0;
+        if (pdf > 0 && w.dot(places.n) > 0 && scene.visible(v.point, x0, w))
+            value = luminance(scene.emitter(x0.emitter).radiance(x0, -w)) * geometry_term(v.point, x0, w) / pdf;
+        stats.add(value * planted);
+    }
+    return stats;
+}
+
+double z_score(const RunningStats& a, const RunningStats& b) {
+    return (a.mean() - b.mean()) / std::hypot(a.standard_error(), b.standard_error());
+}
+
+constexpr Places kFloor{{0.2f, 0, 0.2f}, {2.8f, 0, 2.8f}, {0, 1, 0}};
+
+/// Rays from places of a floor of 2 x 2 m to a window of 1 x 0.5 m whose middle is 2 m above its edge.
+std::vector<DirectionHistogram::Ray> rays_through_a_window(int n, std::uint64_t stream) {
+    std::vector<DirectionHistogram::Ray> rays;
+    Rng rng(8, StreamPurpose::test, stream);
+    const auto number = [&](double low, double high) { return static_cast<float>(low + (high - low) * rng.next()); };
+    for (int i = 0; i < n; ++i) {
+        const Vec3 p(number(-1, 1), 0, number(0, 2)), at(number(-0.5, 0.5), number(1.75, 2.25), -0.5f);
+        rays.push_back({p, (at - p).normalized(), number(0.5, 1.5)});
+    }
+    return rays;
+}
+
+TEST(DirectionHistogram, FindsTheWindowThatRaysMeetIn) {
+    const auto rays = rays_through_a_window(400, 0);
+    const auto plane = DirectionHistogram::meeting_plane(rays);
+    ASSERT_TRUE(plane);
+    EXPECT_NEAR(plane->center.z, -0.5, 0.4);
+    EXPECT_NEAR(plane->center.y, 2, 0.5);
+    const DirectionHistogram histogram(rays, plane);
+    ASSERT_FALSE(histogram.empty());
+    Rng rng(9, StreamPurpose::test, 0);
+    const Vec3 p(0.8f, 0, 0.3f);
+    int through = 0;
+    double area = 0; // solid angle that samples fill, as 1 / pdf has it
+    constexpr int n = 20'000;
+    for (int i = 0; i < n; ++i) {
+        const double u0 = rng.next();
+        const Vec3 w = histogram.sample(p, u0, rng.next());
+        const double pdf = histogram.pdf(p, w);
+        ASSERT_GT(pdf, 0);
+        const Vec3 at = p + w * ((-0.5f - p.z) / w.z);
+        through += w.z < 0 && std::abs(at.x) < 0.5f && std::abs(at.y - 2) < 0.25f ? 1 : 0;
+        area += 1 / pdf / n;
+    }
+    EXPECT_GT(through, 0.4 * n);
+    EXPECT_LT(area, 1);
+    // Its density adds up to 1 over the sphere.
+    double sum = 0;
+    constexpr int side = 1500;
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x)
+            sum += histogram.pdf(p, sphere_direction(SphereLayout::octahedral, {(x + 0.5) / side, (y + 0.5) / side}));
+    EXPECT_NEAR(sum * 4 * kPi / (side * side), 1, 0.01);
+}
+
+TEST(DirectionHistogram, KeepsDirectionsWhereRaysDoNotMeet) {
+    std::vector<DirectionHistogram::Ray> rays; // of directions in a narrow cone, from everywhere
+    Rng rng(10, StreamPurpose::test, 0);
+    const auto number = [&](double low, double high) { return static_cast<float>(low + (high - low) * rng.next()); };
+    for (int i = 0; i < 400; ++i)
+        rays.push_back(
+            {{number(-9, 9), 0, number(-9, 9)}, Vec3(number(-0.1, 0.1), 1, 1 + number(-0.1, 0.1)).normalized(), 1});
+    EXPECT_FALSE(DirectionHistogram::meeting_plane(rays));
+    const DirectionHistogram histogram(rays, {});
+    double sum = 0;
+    for (int i = 0; i < 5000; ++i) {
+        const double u0 = rng.next();
+        const Vec3 w = histogram.sample({100, 0, 0}, u0, rng.next());
+        sum += 1 / histogram.pdf({100, 0, 0}, w) / 5000;
+    }
+    EXPECT_LT(sum, 0.5) << "as narrow anywhere else";
+}
+
+class LearnedDirectLight_Window : public testing::Test {
+  protected:
+    static std::unique_ptr<Scene> make() {
+        auto m = room_with_a_window();
+        m.emitter(make_constant_environment(Rgb(1, 2, 3)));
+        m.emitter(make_distant_emitter(Vec3(0.2f, -0.6f, 0.7f).normalized(), Rgb(3)));
+        return m.build();
+    }
+    const std::unique_ptr<Scene> scene = make();
+    const std::shared_ptr<const LearnedDirectLight> learned = learn_direct_light(*scene, {.paths = 16'384}, {});
+};
+
+TEST_F(LearnedDirectLight_Window, HasTheDensityOfItsSamples) {
+    ASSERT_TRUE(learned);
+    constexpr int kSide = 8, kSamples = 60'000, kQuadrature = 40;
+    for (const Vec3& p : {Vec3(1.5f, 0, 1.5f), Vec3(0.4f, 0, 2.5f)}) {
+        const Vertex v = white_vertex(p, {0, 1, 0});
+        test::Histogram h;
+        h.observed.assign(kSide * kSide + 1, 0); // the last: the sun
+        h.expected.assign(kSide * kSide + 1, 0);
+        const auto bin = [](const Vec2d& place) {
+            const auto at = [](double x) { return std::min(static_cast<int>(x * kSide), kSide - 1); };
+            return static_cast<std::size_t>(at(place.y) * kSide + at(place.x));
+        };
+        Rng rng(6, StreamPurpose::test, 0);
+        std::uint32_t sky = 0;
+        SurfacePoint sun;
+        for (int i = 0; i < kSamples; ++i) {
+            const EmitterPoint x0 = learned->sample(v.point, rng);
+            ASSERT_NEAR(x0.pdf, learned->pdf(v.point, x0.point), 1e-9 * x0.pdf);
+            if (scene->emitter(x0.point.emitter).is_delta()) {
+                h.observed.back() += 1;
+                sun = x0.point;
+            } else {
+                sky = x0.point.emitter;
+                h.observed[bin(sphere_place(SphereLayout::octahedral, x0.point.p))] += 1;
+            }
+        }
+        h.expected.back() = kSamples * learned->pdf(v.point, sun);
+        constexpr int n = kSide * kQuadrature;
+        for (int y = 0; y < n; ++y)
+            for (int x = 0; x < n; ++x) {
+                const Vec2d place((x + 0.5) / n, (y + 0.5) / n);
+                SurfacePoint x0 = infinite_point(sphere_direction(SphereLayout::octahedral, place));
+                x0.emitter = sky;
+                h.expected[bin(place)] += kSamples * learned->pdf(v.point, x0) * 4 * kPi / (n * n);
+            }
+        double all = 0;
+        for (std::size_t i = 0; i < h.expected.size(); ++i) {
+            all += h.expected[i];
+            EXPECT_NEAR(h.observed[i], h.expected[i], 5 * std::sqrt(h.expected[i] + 1) + 0.08 * h.expected[i]) << i;
+        }
+        EXPECT_NEAR(all / kSamples, 1, 0.02);
+    }
+}
+
+TEST_F(LearnedDirectLight_Window, BringsAllLightWithATenthOfTheVariance) {
+    ASSERT_TRUE(learned);
+    EXPECT_LT(learned->second_moment_ratio(), 0.2);
+    const RunningStats plain = arriving(*scene, nullptr, kFloor, 600'000);
+    const RunningStats aimed = arriving(*scene, learned.get(), kFloor, 100'000);
+    EXPECT_LT(std::abs(z_score(plain, aimed)), 4) << plain.mean() << " " << aimed.mean();
+    // At one place: what differs from place to place is no noise.
+    constexpr Places kPlace{{0.8f, 0, 2.2f}, {0.8f, 0, 2.2f}, {0, 1, 0}};
+    EXPECT_LT(arriving(*scene, learned.get(), kPlace, 50'000).variance(),
+              0.1 * arriving(*scene, nullptr, kPlace, 200'000).variance());
+    EXPECT_GT(std::abs(z_score(plain, arriving(*scene, learned.get(), kFloor, 100'000, 1.2))), 4)
+        << "a density that is wrong by a fifth has to show";
+}
+
+TEST(LearnedDirectLight_ManyLamps, FindsTheOneThatShinesAndLosesNone) {
+    const auto scene = many_rooms().build();
+    const auto learned = learn_direct_light(*scene, {.paths = 16'384}, {});
+    ASSERT_TRUE(learned);
+    const Places floor{{-0.9f, -1, -1.9f}, {0.9f, -1, 1.9f}, {0, 1, 0}};
+    const RunningStats plain = arriving(*scene, nullptr, floor, 200'000);
+    const RunningStats aimed = arriving(*scene, learned.get(), floor, 200'000);
+    EXPECT_LT(std::abs(z_score(plain, aimed)), 4) << plain.mean() << " " << aimed.mean();
+    EXPECT_LT(aimed.variance(), 0.5 * plain.variance());
+    // Beyond the sliver hardly a path of the eye's came.
+    const Places hidden{{9, -1, -1.9f}, {11, -1, 1.9f}, {0, 1, 0}};
+    const RunningStats all = arriving(*scene, nullptr, hidden, 200'000);
+    const RunningStats found = arriving(*scene, learned.get(), hidden, 200'000);
+    EXPECT_GT(all.mean(), 0.1);
+    EXPECT_LT(std::abs(z_score(all, found)), 4) << all.mean() << " " << found.mean();
+}
+
+TEST(LearnedDirectLight, LearnsNothingWhereThereIsNoChoiceOrNoGain) {
+    const auto box = test::diffuse_box();
+    EXPECT_FALSE(has_choice_of_direct_light(*box));
+    EXPECT_FALSE(learn_direct_light(*box, {.paths = 16'384}, {}));
+    test::SceneMaker open; // all of the sky is seen
+    open.rectangle({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}, make_diffuse(Rgb(0.5)));
+    open.emitter(make_constant_environment(Rgb(1.0))).camera({0, 2, 4}, {0, 0, 0}, 60).window(32, 24);
+    const auto plane = open.build();
+    EXPECT_TRUE(has_choice_of_direct_light(*plane));
+    const auto learned = learn_direct_light(*plane, {.paths = 16'384}, {});
+    if (learned) {
+        // Half of the sphere lies under the plane: no more than that is to be gained.
+        EXPECT_GT(learned->second_moment_ratio(), 0.45);
+    }
+}
+
+TEST(LearnedDirectLight, FallsBackOnTheLightTreeWhereNothingWasFound) {
+    auto m = room_with_a_window();
+    m.emitter(make_constant_environment(Rgb(1.0)));
+    const auto scene = m.build();
+    const LearnedDirectLight nothing(*scene, {});
+    const Vertex v = white_vertex({1.5f, 0, 1.5f}, {0, 1, 0});
+    Rng rng(7, StreamPurpose::test, 0);
+    for (int i = 0; i < 100; ++i) {
+        const EmitterPoint x0 = nothing.sample(v.point, rng);
+        EXPECT_DOUBLE_EQ(x0.pdf, light_tree_pdf(*scene, v.point, x0.point));
+    }
+}
+
+} // namespace
+} // namespace keyhole
