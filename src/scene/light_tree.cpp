@@ -40,23 +40,40 @@ void merge(EmitterBounds& a, const EmitterBounds& b) {
     a.intensity += b.intensity;
 }
 
+double sine(double cosine) { return std::sqrt(std::max(0.0, 1 - cosine * cosine)); }
+
+/// An angle in [0, pi] by its cosine and sine: differences cost no inverse functions.
+struct Angle {
+    double cosine, sine;
+};
+Angle angle_of(double cosine) { return {cosine, sine(cosine)}; }
+/// max(0, a - b)
+Angle reduced(const Angle& a, const Angle& b) {
+    if (a.cosine >= b.cosine) return {1, 0};
+    return {a.cosine * b.cosine + a.sine * b.sine, a.sine * b.cosine - a.cosine * b.sine};
+}
+
+} // namespace
+
 /// Bound on the irradiance that emitters within bounds bring to a point, as far as direction and distance go; never
 /// closer than half the size of the bounds.
-double importance(const SurfacePoint& point, const EmitterBounds& b) {
+double LightTree::importance(const SurfacePoint& point, const Node& node) {
+    const EmitterBounds& b = node.bounds;
     const Vec3 center = (b.lower + b.upper) / 2, to_light = center - point.p;
     const double radius2 = Imath::V3d(b.upper - b.lower).length2() / 4, distance2 = Imath::V3d(to_light).length2();
     const double near2 = std::max({distance2, radius2, 1e-30});
     if (distance2 <= radius2) return b.intensity / near2; // within: nothing is known of directions
-    const Vec3 w = to_light.normalized();
-    const double half_width = std::asin(std::min(1.0, std::sqrt(radius2 / distance2)));
-    const double off_axis = std::max(0.0, safe_acos(-b.axis.dot(w)) - b.spread - half_width);
-    if (off_axis > b.reach) return 0;
+    const Vec3 w = to_light / static_cast<float>(std::sqrt(distance2));
+    const double wide2 = radius2 / distance2;
+    const Angle half_width{std::sqrt(1 - wide2), std::sqrt(wide2)};
+    const double cosine = std::clamp(-static_cast<double>(b.axis.dot(w)), -1.0, 1.0);
+    const Angle off_axis = reduced(reduced(angle_of(cosine), {node.cos_spread, node.sin_spread}), half_width);
+    if (off_axis.cosine < node.cos_reach) return 0;
     // Scattering may go through the surface, so that both of its sides count.
-    const double slant = point.site == Site::surface ? std::max(0.0, safe_acos(point.abs_cos(w)) - half_width) : 0.0;
-    return b.intensity * std::cos(std::min(off_axis, kPi / 2)) * std::cos(slant) / near2;
+    const double slant =
+        point.site == Site::surface ? reduced(angle_of(std::min(1.0, point.abs_cos(w))), half_width).cosine : 1.0;
+    return b.intensity * std::max(0.0, off_axis.cosine) * std::max(0.0, slant) / near2;
 }
-
-} // namespace
 
 LightTree::LightTree(const std::vector<std::unique_ptr<Emitter>>& emitters, const EmitterDistribution& by_power,
                      const BoundingSphere& scene)
@@ -77,6 +94,11 @@ LightTree::LightTree(const std::vector<std::unique_ptr<Emitter>>& emitters, cons
     nodes_.reserve(2 * leaves.size());
     leaf_of_.assign(emitters.size(), SurfacePoint::kNone);
     if (!leaves.empty()) build(leaves, 0, leaves.size(), 0);
+    for (Node& node : nodes_) {
+        node.cos_spread = std::cos(node.bounds.spread);
+        node.sin_spread = std::sin(node.bounds.spread);
+        node.cos_reach = std::cos(std::min(node.bounds.reach, kPi)) - 1e-9; // rounding loses no light
+    }
 }
 
 /// Splits at the median of the widest extent. Few scenes have emitters enough for more care to show.
@@ -113,7 +135,7 @@ std::uint32_t LightTree::build(std::vector<Node>& leaves, std::size_t begin, std
 }
 
 double LightTree::left_share(const SurfacePoint& point, const Node& node) const {
-    const double l = importance(point, nodes_[node.left].bounds), r = importance(point, nodes_[node.right].bounds);
+    const double l = importance(point, nodes_[node.left]), r = importance(point, nodes_[node.right]);
     if (l + r > 0) return l / (l + r);
     const double a = nodes_[node.left].bounds.intensity, b = nodes_[node.right].bounds.intensity;
     return a + b > 0 ? a / (a + b) : 0.5;
@@ -137,7 +159,7 @@ double LightTree::probability(const SurfacePoint& point, std::uint32_t emitter) 
 }
 
 std::uint32_t LightTree::sample_by_effect(const SurfacePoint& point, double u) const {
-    const double near = nodes_.empty() ? 0.0 : importance(point, nodes_[0].bounds), total = near + far_irradiance_;
+    const double near = nodes_.empty() ? 0.0 : importance(point, nodes_[0]), total = near + far_irradiance_;
     if (!(total > 0)) return by_power_->sample(u);
     u *= total;
     if (u >= near && !far_.empty()) {
@@ -158,7 +180,7 @@ std::uint32_t LightTree::sample_by_effect(const SurfacePoint& point, double u) c
 }
 
 double LightTree::effect_probability(const SurfacePoint& point, std::uint32_t emitter) const {
-    const double near = nodes_.empty() ? 0.0 : importance(point, nodes_[0].bounds), total = near + far_irradiance_;
+    const double near = nodes_.empty() ? 0.0 : importance(point, nodes_[0]), total = near + far_irradiance_;
     if (!(total > 0)) return by_power_->probability(emitter);
     std::uint32_t i = leaf_of_[emitter];
     if (i == SurfacePoint::kNone) {

@@ -32,13 +32,15 @@ class LightTree {
         EmitterBounds bounds;              ///< of all emitters below
         std::uint32_t left = 0, right = 0; ///< children; 0, 0 for a leaf
         std::uint32_t parent = 0;
-        std::uint32_t emitter = 0; ///< of a leaf
+        std::uint32_t emitter = 0;                              ///< of a leaf
+        double cos_spread = -1, sin_spread = 0, cos_reach = -1; ///< of the bounds' angles
     };
     struct Far {
         std::uint32_t emitter;
         double irradiance; ///< [W/m^2]
     };
 
+    static double importance(const SurfacePoint& point, const Node& node);
     std::uint32_t build(std::vector<Node>& leaves, std::size_t begin, std::size_t end, std::uint32_t parent);
     std::uint32_t sample_by_effect(const SurfacePoint& point, double u) const;
     double effect_probability(const SurfacePoint& point, std::uint32_t emitter) const;

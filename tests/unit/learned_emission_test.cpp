@@ -28,7 +28,7 @@ std::vector<PlaneHistogram::Point> clustered_points(int n) {
 
 TEST(PlaneHistogram, HasTheDensityOfItsSamples) {
     auto points = clustered_points(500);
-    const PlaneHistogram histogram(points);
+    const PlaneHistogram histogram(points, {{0, 0}, {1, 3}});
     ASSERT_FALSE(histogram.empty());
     constexpr int kCells = 12, kSamples = 100'000, kQuadrature = 20;
     test::Histogram h;

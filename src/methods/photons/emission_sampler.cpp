@@ -56,7 +56,7 @@ class EmissionSampler final : public PhotonSampler {
     }
 
     /// Light paths for each path that learns where they are to begin, and the bounds of these.
-    static constexpr std::int64_t kPathsOfLearning = 32, kLeastPaths = 2048, kMostPaths = 1 << 16;
+    static constexpr std::int64_t kPathsOfLearning = 16, kLeastPaths = 2048, kMostPaths = 1 << 16;
     static constexpr std::size_t kMemoryOfLearning = 10;
 
     SamplerContext c_;

@@ -21,8 +21,6 @@ constexpr double kFlattest = 0.05;
 constexpr float kLeastCosine = 0.25f;
 /// Rays seem to meet before the window, the more the farther apart they begin: how much farther it may be.
 constexpr float kFarther[] = {1.15f, 1.3f, 1.5f, 1.8f};
-/// Of all samples, those that are spread evenly over the histogram's box and so much of its width on each side of it.
-constexpr double kEvenly = 0.15, kAround = 0.2;
 /// Of the octahedral map, per solid angle.
 constexpr double kDensityOfOctahedron = kInvPi / 4;
 
@@ -82,32 +80,7 @@ DirectionHistogram::DirectionHistogram(std::span<const Ray> rays, const std::opt
             points.push_back({{at->x, at->y}, ray.weight});
         }
     }
-    histogram_ = PlaneHistogram(points);
-    surround();
-}
-
-void DirectionHistogram::surround() {
-    around_ = histogram_.box();
-    for (int k = 0; k < 2; ++k) {
-        const double more = kAround * (around_.upper[k] - around_.lower[k]);
-        around_.lower[k] -= more;
-        around_.upper[k] += more;
-        if (plane_) continue;
-        around_.lower[k] = std::max(around_.lower[k], 0.0);
-        around_.upper[k] = std::min(around_.upper[k], 1.0);
-    }
-}
-
-PlaneHistogram::Place DirectionHistogram::sample_place(double u0, double u1) const {
-    if (u0 >= kEvenly) return histogram_.sample((u0 - kEvenly) / (1 - kEvenly), u1);
-    const auto along = [&](int k, double u) { return around_.lower[k] + u * (around_.upper[k] - around_.lower[k]); };
-    return {{along(0, u0 / kEvenly), along(1, u1)}};
-}
-
-double DirectionHistogram::place_pdf(const PlaneHistogram::Place& place) const {
-    bool within = true;
-    for (int k = 0; k < 2; ++k) within &= place.x[k] >= around_.lower[k] && place.x[k] <= around_.upper[k];
-    return within ? kEvenly / around_.area() + (1 - kEvenly) * histogram_.pdf(place) : 0;
+    histogram_ = plane_ ? PlaneHistogram(points) : PlaneHistogram(points, {{0, 0}, {1, 1}});
 }
 
 double DirectionHistogram::likelihood(std::span<const Ray> rays) const {
@@ -140,7 +113,7 @@ std::optional<DirectionHistogram::Plane> DirectionHistogram::meeting_plane(std::
 }
 
 Vec3 DirectionHistogram::sample(const Vec3& p, double u0, double u1) const {
-    const PlaneHistogram::Place place = sample_place(u0, u1);
+    const PlaneHistogram::Place place = histogram_.sample(u0, u1);
     if (!plane_) return sphere_direction(SphereLayout::octahedral, {place.x[0], place.x[1]});
     const Vec3 local(static_cast<float>(place.x[0]), static_cast<float>(place.x[1]), 0);
     return (plane_->center + frame_.to_world(local) - p).normalized();
@@ -149,11 +122,11 @@ Vec3 DirectionHistogram::sample(const Vec3& p, double u0, double u1) const {
 double DirectionHistogram::pdf(const Vec3& p, const Vec3& w) const {
     if (!plane_) {
         const Vec2d place = sphere_place(SphereLayout::octahedral, w);
-        return kDensityOfOctahedron * place_pdf({{place.x, place.y}});
+        return kDensityOfOctahedron * histogram_.pdf({{place.x, place.y}});
     }
     const auto at = on_plane(plane_->center, frame_, p, w);
     if (!at) return 0;
-    return place_pdf({{at->x, at->y}}) * at->z * at->z / w.dot(frame_.n);
+    return histogram_.pdf({{at->x, at->y}}) * at->z * at->z / w.dot(frame_.n);
 }
 
 } // namespace keyhole

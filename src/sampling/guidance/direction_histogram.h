@@ -12,8 +12,7 @@ namespace keyhole {
 
 /// Directions that lead through a window differ from place to place, but they meet in it. Where the rays come together,
 /// the density is one over a plane there, and serves all places; else it is one over the octahedral map of directions.
-/// A part of all samples is spread evenly over these and their surroundings: rays that were learned from end a little
-/// before a window's edge does. Immutable and thread-safe.
+/// Immutable and thread-safe.
 class DirectionHistogram {
   public:
     struct Ray {
@@ -42,16 +41,12 @@ class DirectionHistogram {
     std::size_t bytes() const { return histogram_.bytes(); }
 
   private:
-    void surround();
-    PlaneHistogram::Place sample_place(double u0, double u1) const;
-    double place_pdf(const PlaneHistogram::Place& place) const;
     /// Logarithm of the density of rays, by weight.
     double likelihood(std::span<const Ray> rays) const;
 
     std::optional<Plane> plane_;
     Frame frame_{Vec3(0, 0, 1)}; // of the plane
     PlaneHistogram histogram_;
-    PlaneHistogram::Box around_{}; // a little more than the histogram's
 };
 
 } // namespace keyhole

@@ -21,6 +21,8 @@ namespace {
 
 /// Of the choices of directions and of places, what goes on as if nothing had been learned.
 constexpr double kPlain = 0.2;
+/// So many lamps are seldom all worth the same.
+constexpr std::size_t kManyEmitters = 12;
 /// The same of emitters: one whose light is hard to find from the eye is seldom seen, and may matter all the same.
 constexpr double kPlainEmitters = 0.5;
 /// A path counts as so many times the mean at most: what was hard to find must not draw all light to where it was.
@@ -98,7 +100,8 @@ SurfacePoint point_on(std::uint32_t emitter, SurfacePoint point) {
 } // namespace
 
 bool LearnedEmission::can_learn(const Scene& scene) {
-    return std::ranges::any_of(scene.emitters(), [](const auto& e) { return e->site() == Site::infinite; });
+    return scene.emitters().size() >= kManyEmitters ||
+           std::ranges::any_of(scene.emitters(), [](const auto& e) { return e->site() == Site::infinite; });
 }
 
 LearnedEmission::LearnedEmission(const Scene& scene, const EmissionLearning& learning, const RunContext& context)

@@ -33,8 +33,8 @@ class LearnedEmission {
     /// @throws Interrupted
     LearnedEmission(const Scene& scene, const EmissionLearning& learning, const RunContext& context);
 
-    /// Whether it pays: where light comes from infinity. Among lamps alone paths from the eye were seen to find too
-    /// little of the light that is hardest to find, and its photons too strong.
+    /// Whether it pays: where light comes from infinity, or from many lamps. Among few of these, paths from the eye
+    /// find too little of the light that is hardest to find for what is to be gained.
     static bool can_learn(const Scene& scene);
 
     /// The first edge of a light path, its density that of all choices together; none where nothing emits.

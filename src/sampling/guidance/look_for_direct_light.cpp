@@ -144,7 +144,6 @@ std::shared_ptr<const LearnedDirectLight> learn_direct_light(const Scene& scene,
     const std::size_t most = std::min(kMostFound, learning.most_bytes / kBytesOfFound);
     Memory memory;
     std::shared_ptr<const LearnedDirectLight> learned;
-    double last_round = 0;
     for (std::int64_t done = 0, paths = std::min(kFirstPaths, learning.paths); paths > 0;) {
         const double before = spent.seconds();
         memory.add(look(scene, learned.get(), learning, {done, done + paths}, context), learned);
@@ -152,9 +151,11 @@ std::shared_ptr<const LearnedDirectLight> learn_direct_light(const Scene& scene,
         if (memory.found.size() > kEnoughFound && learned->second_moment_ratio() > kNoGain) break;
         if (memory.found.size() > most) break;
         done += paths;
-        last_round = spent.seconds() - before;
-        paths = std::min(2 * paths, learning.paths - done);
-        if (spent.seconds() + 2 * last_round > learning.seconds) break;
+        const std::int64_t least = paths / 2;
+        const double now = spent.seconds(), for_paths = (learning.seconds - now) / std::max(now - before, 1e-6);
+        paths = std::min(static_cast<std::int64_t>(std::min(2.0, for_paths) * static_cast<double>(paths)),
+                         learning.paths - done);
+        if (paths < std::min(least, learning.paths - done)) break;
     }
     context.end();
     return learned && learned->second_moment_ratio() <= kNoGain ? learned : nullptr;

@@ -11,6 +11,8 @@ constexpr std::size_t kPointsOfLeaf = 8;
 constexpr int kMostDepth = 12;
 /// Of a node's share, what is divided by area.
 constexpr double kEven = 0.1;
+/// Of all samples, those that are spread evenly over the bounding box and so much of its width on each side of it.
+constexpr double kEvenly = 0.15, kAround = 0.2;
 
 double weight_of(std::span<const PlaneHistogram::Point> points) {
     return std::accumulate(points.begin(), points.end(), 0.0,
@@ -19,7 +21,7 @@ double weight_of(std::span<const PlaneHistogram::Point> points) {
 
 } // namespace
 
-PlaneHistogram::PlaneHistogram(std::span<Point> points) {
+PlaneHistogram::PlaneHistogram(std::span<Point> points, const Box& limits) {
     const double infinity = std::numeric_limits<double>::infinity();
     box_ = {{infinity, infinity}, {-infinity, -infinity}};
     for (const Point& p : points)
@@ -28,6 +30,11 @@ PlaneHistogram::PlaneHistogram(std::span<Point> points) {
             box_.upper[k] = std::max(box_.upper[k], p.x[k]);
         }
     if (points.size() < 2 || !(box_.area() > 0) || !(weight_of(points) > 0)) return;
+    for (int k = 0; k < 2; ++k) {
+        const double more = kAround * (box_.upper[k] - box_.lower[k]);
+        around_.lower[k] = std::max(box_.lower[k] - more, limits.lower[k]);
+        around_.upper[k] = std::min(box_.upper[k] + more, limits.upper[k]);
+    }
     build(points, box_, 0);
 }
 
@@ -53,6 +60,18 @@ void PlaneHistogram::build(std::span<Point> points, const Box& box, int depth) {
 }
 
 PlaneHistogram::Place PlaneHistogram::sample(double u0, double u1) const {
+    if (u0 >= kEvenly) return sample_tree((u0 - kEvenly) / (1 - kEvenly), u1);
+    const auto along = [&](int k, double u) { return around_.lower[k] + u * (around_.upper[k] - around_.lower[k]); };
+    return {{along(0, u0 / kEvenly), along(1, u1)}};
+}
+
+double PlaneHistogram::pdf(const Place& place) const {
+    for (int k = 0; k < 2; ++k)
+        if (!(place.x[k] >= around_.lower[k] && place.x[k] <= around_.upper[k])) return 0;
+    return kEvenly / around_.area() + (1 - kEvenly) * tree_pdf(place);
+}
+
+PlaneHistogram::Place PlaneHistogram::sample_tree(double u0, double u1) const {
     Box box = box_;
     std::uint32_t i = 0;
     while (nodes_[i].right != 0) {
@@ -65,7 +84,7 @@ PlaneHistogram::Place PlaneHistogram::sample(double u0, double u1) const {
     return {{box.lower[0] + u0 * (box.upper[0] - box.lower[0]), box.lower[1] + u1 * (box.upper[1] - box.lower[1])}};
 }
 
-double PlaneHistogram::pdf(const Place& place) const {
+double PlaneHistogram::tree_pdf(const Place& place) const {
     for (int k = 0; k < 2; ++k)
         if (place.x[k] < box_.lower[k] || place.x[k] > box_.upper[k]) return 0;
     Box box = box_;
