@@ -32,6 +32,8 @@ constexpr std::size_t kCandidates = 8;
 /// Of an octahedral map of directions: paths for a cell, and cells along a side.
 constexpr double kPathsOfBeam = 48;
 constexpr int kLeastSide = 4, kMostSide = 16;
+/// Light is traced back to the plane of a beam along its own direction if that is as near to the beam's [cosine].
+constexpr float kSameBeam = 0.5f;
 /// With fewer paths the places of a beam are not learned.
 constexpr std::size_t kLeastPaths = 12;
 /// Directions that tell how much of an emitter's light lies in a cell, for each of them.
@@ -45,6 +47,23 @@ int cell_of(int side, const Vec3& towards) {
 
 Vec3 middle_of(int side, int cell) {
     return sphere_direction(SphereLayout::octahedral, {(cell % side + 0.5) / side, (cell / side + 0.5) / side});
+}
+
+/// What was found in the smallest square of cells, by halves of the map, that holds enough to learn from. Light of a
+/// beam that found too little by itself would else come as if nothing were known of where it is wanted: seldom, and
+/// with the power of the whole scene's cross-section.
+std::vector<SeenLight> around(const std::vector<std::vector<SeenLight>>& by_cell, int side, int cell) {
+    std::vector<SeenLight> found;
+    for (int width = 2; found.size() < kLeastPaths && width < 2 * side; width *= 2) {
+        found.clear();
+        const int x0 = cell % side / width * width, y0 = cell / side / width * width;
+        for (int y = y0; y < std::min(side, y0 + width); ++y)
+            for (int x = x0; x < std::min(side, x0 + width); ++x) {
+                const auto& here = by_cell[static_cast<std::size_t>(y * side + x)];
+                found.insert(found.end(), here.begin(), here.end());
+            }
+    }
+    return found;
 }
 
 /// Share of an emitter's light that comes from each cell.
@@ -156,7 +175,10 @@ void LearnedEmission::learn_sky(std::uint32_t i, std::span<const SeenLight> foun
         const double of_all = std::max(light[b], 1.0 / (kDirectionsOfCell * static_cast<double>(cells)));
         beam.weight = kPlain + (1 - kPlain) * own / sum / of_all;
         beam.w = -(sky.side == 1 ? found.front().towards : middle_of(sky.side, static_cast<int>(b)));
-        learn_beam(beam, by_cell[b]);
+        if (by_cell[b].size() >= kLeastPaths || sky.side == 1)
+            learn_beam(beam, by_cell[b]);
+        else
+            learn_beam(beam, around(by_cell, sky.side, static_cast<int>(b)));
     }
 }
 
@@ -169,8 +191,10 @@ void LearnedEmission::learn_beam(Beam& beam, std::span<const SeenLight> found) c
     const Frame frame(beam.w);
     std::vector<PlaneHistogram::Point> points;
     for (const SeenLight& f : found) {
-        const Vec3 w = -f.towards, on_plane = f.p - beam.center;
-        const Vec3 local = frame.to_local(on_plane - w * (on_plane.dot(beam.w) / w.dot(beam.w)));
+        const Vec3 on_plane = f.p - beam.center;
+        const float cosine = -f.towards.dot(beam.w);
+        const Vec3 w = cosine > kSameBeam ? -f.towards / cosine : beam.w; // across the plane 1
+        const Vec3 local = frame.to_local(on_plane - w * on_plane.dot(beam.w));
         points.push_back({{local.x, local.y}, f.weight});
     }
     beam.places = PlaneHistogram(points);
