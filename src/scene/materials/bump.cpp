@@ -14,6 +14,7 @@ class BumpedMaterial final : public Material {
     Bsdf bsdf(const SurfacePoint& point) const override { return material_->bsdf(bumped(point)); }
     BsdfTraits traits() const override { return material_->traits(); }
     const char* kind() const override { return material_->kind(); }
+    SurfaceDefaults surface() const override { return material_->surface(); }
 
   private:
     double slope(SurfacePoint point, const Vec2& direction) const {

@@ -6,7 +6,8 @@
     FILE(conductor)                                                                                                    \
     FILE(dielectric)                                                                                                   \
     FILE(diffuse)                                                                                                      \
-    FILE(mix)
+    FILE(mix)                                                                                                          \
+    FILE(principled)
 
 namespace keyhole {
 
