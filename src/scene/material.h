@@ -108,4 +108,8 @@ MaterialPtr with_surface(MaterialPtr material, SurfaceDefaults surface);
 /// in metres.
 MaterialPtr with_bump(MaterialPtr material, FloatTexture displacement);
 
+/// `material` with shading normals from a texture: (x + 1, y + 1, z + 1) / 2 along increasing u, across it towards
+/// increasing v, and along the surface's own normal.
+MaterialPtr with_normals(MaterialPtr material, ColorTexture normals);
+
 } // namespace keyhole

@@ -1,4 +1,5 @@
 #include "scene/material.h"
+#include "scene/materials/turned.h"
 
 namespace keyhole {
 namespace {
@@ -34,13 +35,7 @@ class BumpedMaterial final : public Material {
         if (n.z < 0) n = -n; // mirrored texture coordinates
         n.normalize();
         if (!(n.z > 0)) return point; // no parametrisation
-        const Frame frame = point.shading_frame();
-        const Vec3 ns = frame.to_world(Vec3(n)).normalized();
-        if (!(ns.dot(point.ng) > 0)) return point;
-        SurfacePoint out = point;
-        out.ns = ns;
-        out.tangent = (frame.s - ns * ns.dot(frame.s)).normalized();
-        return out;
+        return turned(point, point.shading_frame().to_world(Vec3(n)).normalized());
     }
 
     MaterialPtr material_;

@@ -74,17 +74,19 @@ MaterialPtr make_interface() {
 }
 
 MaterialKinds dielectric_kinds() {
-    return {
-        {"glass", "glass", {"ior", "reflect_tint", "transmit_tint", "bump"}, read_glass},
-        {"dielectric", "a dielectric", {"ior", "roughness", "reflect_tint", "transmit_tint", "bump"}, read_dielectric},
-        {{"thin_dielectric", "thindielectric"},
-         "a pane",
-         {"ior", "bump"},
-         [](Properties& p) {
-             return make_thin_dielectric(p.refractive_index({"ior", "eta"}));
-         }},
-        {"interface", "an interface", {}, [](Properties&) { return make_interface(); }},
-        {{"", "none"}, "", {}, [](Properties&) { return make_interface(); }}};
+    return {{"glass", "glass", {"ior", "reflect_tint", "transmit_tint", "bump", "normal_map"}, read_glass},
+            {"dielectric",
+             "a dielectric",
+             {"ior", "roughness", "reflect_tint", "transmit_tint", "bump", "normal_map"},
+             read_dielectric},
+            {{"thin_dielectric", "thindielectric"},
+             "a pane",
+             {"ior", "bump", "normal_map"},
+             [](Properties& p) {
+                 return make_thin_dielectric(p.refractive_index({"ior", "eta"}));
+             }},
+            {"interface", "an interface", {}, [](Properties&) { return make_interface(); }},
+            {{"", "none"}, "", {}, [](Properties&) { return make_interface(); }}};
 }
 
 } // namespace keyhole

@@ -86,6 +86,8 @@ MaterialPtr make_mix(MaterialPtr a, MaterialPtr b, FloatTexture amount) {
     return std::make_shared<MixMaterial>(std::move(a), std::move(b), std::move(amount));
 }
 
-MaterialKinds mix_kinds() { return {{"mix", "a mix of materials", {"a", "b", "amount", "bump"}, read_mix}}; }
+MaterialKinds mix_kinds() {
+    return {{"mix", "a mix of materials", {"a", "b", "amount", "bump", "normal_map"}, read_mix}};
+}
 
 } // namespace keyhole

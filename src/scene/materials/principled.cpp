@@ -155,9 +155,9 @@ MaterialKinds principled_kinds() {
     return {{{"principled", "disney"},
              "a principled material",
              {"base_color", "metallic", "roughness", "anisotropy", "specular", "specular_tint", "transmission", "ior",
-              "clearcoat", "clearcoat_roughness", "sheen", "sheen_tint", "emission", "alpha", "bump"},
+              "clearcoat", "clearcoat_roughness", "sheen", "sheen_tint", "emission", "alpha", "bump", "normal_map"},
              read_principled},
-            {{"plastic", ""}, "plastic", {"base_color", "roughness", "ior", "bump"}, read_plastic}};
+            {{"plastic", ""}, "plastic", {"base_color", "roughness", "ior", "bump", "normal_map"}, read_plastic}};
 }
 
 } // namespace keyhole
