@@ -29,7 +29,7 @@ void Outputs::check() const {
 
 void Outputs::write(const Picture& picture, const std::string& stats_json) const {
     write_exr(exr, picture);
-    if (!png.empty()) write_png(png, picture.layers.at("beauty"));
+    if (!png.empty()) write_png(png, picture.layers.at("beauty"), exposure);
     if (!stats.empty()) write_file_atomically(stats, stats_json);
 }
 

@@ -3,6 +3,7 @@
 
 #include "film/picture.h"
 
+#include <optional>
 #include <string>
 
 namespace keyhole {
@@ -10,6 +11,7 @@ namespace keyhole {
 /// Where results go; empty: nowhere.
 struct Outputs {
     std::string exr, png, stats;
+    std::optional<double> exposure{}; ///< of the PNG, in stops; none: tone-mapped
 
     /// Finds out before the render whether all of them can be written.
     /// @throws InputError for names that are no EXR's, that coincide, or that can't be written.

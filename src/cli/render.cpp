@@ -187,6 +187,7 @@ int run(RenderOptions options) {
                          "processes know beforehand");
     loaded.settings.save_map = options.save_map;
     loaded.settings.load_map = options.load_map;
+    options.outputs.exposure = loaded.settings.exposure.value;
     if (!options.user_paths.empty()) loaded.user_paths = load_user_paths(options.user_paths);
     if (!options.resolution.empty()) set_resolution(loaded.description.window, options.resolution);
     RenderResult result = render_scene(loaded, options, stop);

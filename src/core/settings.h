@@ -51,6 +51,7 @@ struct Settings {
     FilterShape filter = FilterShape::gaussian;
     double filter_radius = 0;
     double filter_sigma = 0;
+    AutoNumber exposure;
     std::int64_t brightness_samples = 400'000;
     double brightness_error = 0.02;
     std::int64_t importons = 600'000;
@@ -96,6 +97,8 @@ template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
     visit("filter", s.filter, "reconstruction filter");
     visit("filter_radius", s.filter_radius, 0.0, 16.0, "its reach in pixels; 0: 0.5 of a box, 1 of the others");
     visit("filter_sigma", s.filter_sigma, 0.0, 16.0, "of a Gaussian, in pixels; 0: its radius");
+    visit("exposure", s.exposure, -100.0, 100.0,
+          "of the tone-mapped picture, in stops: 2^exposure is white; auto: by its own brightness");
     visit("brightness_samples", s.brightness_samples, I{1000}, I{1} << 40, "path samples of stage one, at least");
     visit("brightness_error", s.brightness_error, 0.0, 1.0,
           "relative error of B_eye for which up to 8 times as many are taken; 0: no more");

@@ -64,4 +64,17 @@ std::vector<std::uint8_t> tonemap(const Image& image, const Image& exposed_for) 
     return bytes;
 }
 
+std::vector<std::uint8_t> expose_by(const Image& image, double stops) {
+    const auto pixels = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+    const double factor = std::exp2(stops);
+    std::vector<std::uint8_t> bytes;
+    bytes.reserve(3 * pixels);
+    for (std::size_t i = 0; i < pixels; ++i) {
+        const Rgb c = colour(image, i) * factor;
+        for (int k = 0; k < 3; ++k)
+            bytes.push_back(static_cast<std::uint8_t>(std::lround(255 * srgb_encode(static_cast<float>(c[k])))));
+    }
+    return bytes;
+}
+
 } // namespace keyhole

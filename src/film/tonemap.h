@@ -19,6 +19,8 @@ float srgb_encode(float linear);
 /// @param exposed_for the image whose luminance sets scale and white point: `image` itself, or one that it is to be
 /// compared with.
 std::vector<std::uint8_t> tonemap(const Image& image, const Image& exposed_for);
+/// Without a curve: radiance times 2^stops in sRGB, clipped to [0,1]. Nothing in the picture moves it.
+std::vector<std::uint8_t> expose_by(const Image& image, double stops);
 inline std::vector<std::uint8_t> tonemap(const Image& image) { return tonemap(image, image); }
 
 } // namespace keyhole

@@ -22,6 +22,7 @@ void add_camera(const Camera& camera, Hash& hash) {
     const CameraParameters& c = camera.parameters();
     for (const Vec3& v : {c.origin, c.right, c.up, c.forward}) hash.add(v);
     for (const float f : {c.fov_degrees, c.lens_radius, c.focus_distance}) hash.add(f);
+    for (const double d : {c.shift.x, c.shift.y}) hash.add(d);
 }
 
 /// What light does here.

@@ -2,7 +2,19 @@
 
 #include "scene/warp.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace keyhole {
+
+CameraParameters cropped(CameraParameters camera, const ImageWindow& film, const CropWindow& crop) {
+    const int shorter = std::min(film.width, film.height), rest = std::min(crop.x1 - crop.x0, crop.y1 - crop.y0);
+    const double half = std::tan(static_cast<double>(camera.fov_degrees) * kPi / 360);
+    camera.fov_degrees = static_cast<float>(std::atan(half * rest / shorter) * 360 / kPi);
+    const Imath::V2d moved((crop.x0 + crop.x1 - film.width) / 2.0, (film.height - crop.y0 - crop.y1) / 2.0);
+    camera.shift = (camera.shift * shorter + moved) / rest;
+    return camera;
+}
 
 Camera::Camera(const CameraParameters& parameters, const ImageWindow& window)
     : parameters_(parameters), window_(window) {
@@ -10,6 +22,7 @@ Camera::Camera(const CameraParameters& parameters, const ImageWindow& window)
     const double pixel = 2 * half / std::min(window.width, window.height); // side of a pixel at distance 1
     half_x_ = pixel * (window.width / 2.0 + window.margin);
     half_y_ = pixel * (window.height / 2.0 + window.margin);
+    middle_ = parameters.shift * (2 * half);
 }
 
 SurfacePoint Camera::eye(double u0, double u1) const {
@@ -30,8 +43,8 @@ double Camera::eye_pdf() const {
 }
 
 Vec3 Camera::ray_direction(const SurfacePoint& eye, const Vec2& image) const {
-    const auto x = static_cast<float>((2.0 * image.x - 1) * half_x_);
-    const auto y = static_cast<float>((1 - 2.0 * image.y) * half_y_);
+    const auto x = static_cast<float>((2.0 * image.x - 1) * half_x_ + middle_.x);
+    const auto y = static_cast<float>((1 - 2.0 * image.y) * half_y_ + middle_.y);
     const Vec3 through = parameters_.forward + parameters_.right * x + parameters_.up * y;
     if (!has_lens()) return through.normalized();
     return (through * parameters_.focus_distance - (eye.p - parameters_.origin)).normalized();
@@ -42,7 +55,8 @@ std::optional<Vec2> Camera::image_point(const SurfacePoint& eye, const Vec3& w) 
     if (c <= 0) return std::nullopt;
     Vec3 through = w / c; // on the plane at distance 1
     if (has_lens()) through += (eye.p - parameters_.origin) / parameters_.focus_distance;
-    const double x = through.dot(parameters_.right) / half_x_, y = through.dot(parameters_.up) / half_y_;
+    const double x = (through.dot(parameters_.right) - middle_.x) / half_x_,
+                 y = (through.dot(parameters_.up) - middle_.y) / half_y_;
     if (!(std::abs(x) < 1 && std::abs(y) < 1)) return std::nullopt;
     return Vec2(static_cast<float>((x + 1) / 2), static_cast<float>((1 - y) / 2));
 }

@@ -4,6 +4,8 @@
 #include "core/vec.h"
 #include "scene/surface_point.h"
 
+#include <Imath/ImathVec.h>
+
 #include <optional>
 
 namespace keyhole {
@@ -37,7 +39,17 @@ struct CameraParameters {
     float fov_degrees = 40;                              ///< full angle along the shorter side of the film
     float lens_radius = 0;                               ///< 0: pinhole
     float focus_distance = 1;                            ///< distance of the plane in focus, along `forward`
+    /// Where the middle of the picture is off `forward`, to the right and up, over the film's shorter side.
+    Imath::V2d shift{0, 0};
 };
+
+/// Pixels of a film: columns [x0, x1) and rows [y0, y1), from the top.
+struct CropWindow {
+    int x0, y0, x1, y1;
+};
+
+/// What a camera on `film` sees through `crop`, which becomes the film.
+CameraParameters cropped(CameraParameters camera, const ImageWindow& film, const CropWindow& crop);
 
 /// Pinhole or thin-lens camera. The image measure is uniform on the window: the importance of every point of the
 /// window is 1, so that the mean over the window is the measurement.
@@ -68,6 +80,7 @@ class Camera {
     CameraParameters parameters_;
     ImageWindow window_;
     double half_x_ = 1, half_y_ = 1; // half extent of the window on the plane at distance 1
+    Imath::V2d middle_{0, 0};        // of the window, there
 };
 
 } // namespace keyhole

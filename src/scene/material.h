@@ -8,6 +8,12 @@
 
 namespace keyhole {
 
+/// Of shapes that say nothing of their own.
+struct SurfaceDefaults {
+    FloatTexture alpha{}; ///< opacity; null: opaque
+    Rgb emission{0.0};    ///< radiance from both sides [W/(m^2 sr)]
+};
+
 /// Immutable and thread-safe. Lives as long as its scene.
 class Material {
   public:
@@ -21,6 +27,8 @@ class Material {
     virtual BsdfTraits traits() const = 0;
     /// Word that names the kind, as in scene files.
     virtual const char* kind() const = 0;
+    /// What scene files may say in a material although it belongs to the shapes that have it.
+    virtual SurfaceDefaults surface() const { return {}; }
 
   protected:
     explicit Material(bool reads_parametrisation = true) : reads_parametrisation_(reads_parametrisation) {}
@@ -51,6 +59,9 @@ MaterialPtr make_conductor(ColorTexture reflectance, FloatTexture alpha_x, Float
 /// Smooth dielectric.
 MaterialPtr make_glass(double eta, const Rgb& reflect_tint = Rgb(1.0), const Rgb& transmit_tint = Rgb(1.0));
 MaterialPtr make_dielectric(double eta, FloatTexture alpha_x, FloatTexture alpha_y);
+/// With factors on what is reflected and on what goes through.
+MaterialPtr make_dielectric(double eta, FloatTexture alpha_x, FloatTexture alpha_y, ColorTexture reflect_tint,
+                            ColorTexture transmit_tint);
 /// A pane without thickness, with the reflections between its two faces.
 MaterialPtr make_thin_dielectric(double eta);
 /// No surface at all: light goes straight on.
@@ -72,11 +83,33 @@ MaterialPtr make_coated_conductor(const Coat& coat, const Rgb& eta, const Rgb& k
 MaterialPtr make_coated_conductor(const Coat& coat, ColorTexture reflectance, FloatTexture alpha_x,
                                   FloatTexture alpha_y);
 
+/// What PrincipledBsdf is made from, with glass in the place of what is no metal by a share.
+struct PrincipledTextures {
+    ColorTexture base_color;
+    FloatTexture metallic;
+    FloatTexture alpha_x, alpha_y;
+    FloatTexture specular; ///< reflectance along the normal where it is no metal
+    FloatTexture specular_tint;
+    FloatTexture transmission; ///< share of glass of index `eta`, tinted by the root of the base colour each way
+    FloatTexture clearcoat;    ///< in quarters of a full coat
+    FloatTexture clearcoat_alpha;
+    FloatTexture sheen, sheen_tint;
+    double eta = 1.5;
+};
+MaterialPtr make_principled(const PrincipledTextures& textures);
+
 /// At each place either `a` or `b`, chosen by a hash of the place; `amount` is the share of b.
 MaterialPtr make_mix(MaterialPtr a, MaterialPtr b, FloatTexture amount);
+
+/// `material` for shapes that have these defaults.
+MaterialPtr with_surface(MaterialPtr material, SurfaceDefaults surface);
 
 /// `material` on a surface that is displaced along its shading normal, for shading only (Blinn 1978). `displacement` is
 /// in metres.
 MaterialPtr with_bump(MaterialPtr material, FloatTexture displacement);
+
+/// `material` with shading normals from a texture: (x + 1, y + 1, z + 1) / 2 along increasing u, across it towards
+/// increasing v, and along the surface's own normal.
+MaterialPtr with_normals(MaterialPtr material, ColorTexture normals);
 
 } // namespace keyhole

@@ -30,8 +30,9 @@ struct Sphere {
 
 /// What a surface emits, for shapes that are area lights.
 struct SurfaceEmission {
-    Rgb radiance{0.0};      ///< W/(m^2 sr), the same in all directions and everywhere
+    Rgb radiance{0.0};      ///< W/(m^2 sr), the same in all directions
     bool two_sided = false; ///< otherwise on the outside only
+    ColorTexture picture{}; ///< factor on the radiance, not negative; null: 1
 };
 
 /// Geometry with its material and, for area lights, its emission.
@@ -48,7 +49,8 @@ inline bool bounds_media(const Shape& shape) { return shape.inside != shape.outs
 
 /// Whether what happens at the points of `shape` depends on its parametrisation.
 inline bool reads_parametrisation(const Shape& shape) {
-    return shape.alpha != nullptr || (shape.material != nullptr && shape.material->reads_parametrisation());
+    return shape.alpha != nullptr || (shape.emission != nullptr && shape.emission->picture != nullptr) ||
+           (shape.material != nullptr && shape.material->reads_parametrisation());
 }
 
 /// Whether `shape` shines and is not there otherwise: an area light of opacity 0 everywhere. No ray meets it and it has

@@ -23,9 +23,15 @@ template <class T> class Texture {
 using ColorTexture = std::shared_ptr<const Texture<Rgb>>;
 using FloatTexture = std::shared_ptr<const Texture<double>>;
 
-/// Takes texture coordinates (u, v) to (su u + du, sv v + dv).
+/// Scales texture coordinates, then turns them about the origin, then shifts them.
 struct UvMapping {
     double su = 1, sv = 1, du = 0, dv = 0;
+    double cosine = 1, sine = 0; ///< of the turn, anticlockwise where u is right and v is up
+
+    Imath::V2d operator()(const Vec2& uv) const {
+        const double u = su * uv.x, v = sv * uv.y;
+        return {cosine * u - sine * v + du, sine * u + cosine * v + dv};
+    }
 };
 
 ColorTexture constant_texture(const Rgb& value);

@@ -75,6 +75,42 @@ TEST(PbrtDisplacement, TurnsShadingNormals) {
     EXPECT_TRUE(s.warnings.empty());
 }
 
+/// A picture of one colour in a folder of its own.
+struct Dot {
+    explicit Dot(const std::vector<float>& rgb) {
+        std::string text = "PF\n1 1\n-1.0\n";
+        text.append(reinterpret_cast<const char*>(rgb.data()), 3 * sizeof(float));
+        path = folder.write("dot.pfm", text);
+    }
+    ScratchDirectory folder;
+    std::string path;
+};
+
+TEST(PbrtNormalMap, TurnsShadingNormals) {
+    const Dot dot({0.8f, 0.5f, 0.9f});
+    const PbrtScene s("Material \"diffuse\" \"string normalmap\" \"" + dot.path + "\" " + kPbrtTriangle);
+    SurfacePoint p = at(0.5f);
+    p.tangent = {0, 1, 0};
+    const Vec3 n = s.shape().material->bsdf(p).shading_normal();
+    EXPECT_NEAR(n.y / n.z, 0.6 / 0.8, 1e-5);
+    EXPECT_NEAR(n.x, 0, 1e-6);
+    EXPECT_FALSE(s.mesh().uvs.empty());
+    EXPECT_TRUE(s.warnings.empty());
+    EXPECT_THROW(PbrtScene("Material \"diffuse\" \"string normalmap\" \"no.png\" " + kPbrtTriangle), InputError);
+}
+
+TEST(PbrtAreaLights, ShineAsTheirPictures) {
+    const Dot dot({0.5f, 1, 2});
+    const std::string light = "AreaLightSource \"diffuse\" \"string filename\" \"" + dot.path + "\" \"float scale\" 3 ";
+    const PbrtScene s(light + kPbrtTriangle);
+    ASSERT_NE(s.shape().emission->picture, nullptr);
+    const Rgb c = s.shape().emission->radiance * s.shape().emission->picture->value(at(0.5f));
+    EXPECT_NEAR(c.x, 1.5, 1e-6);
+    EXPECT_NEAR(c.z, 6, 1e-6);
+    EXPECT_FALSE(s.mesh().uvs.empty());
+    EXPECT_THROW(PbrtScene(light + "\"float power\" 5 " + kPbrtTriangle), InputError);
+}
+
 TEST(PbrtShapes, MeshesHaveHolesWhereAlphaSays) {
     const Row row({0, 1});
     const PbrtScene s("Texture \"a\" \"float\" \"imagemap\" \"string filename\" \"" + row.path +
@@ -124,16 +160,12 @@ TEST(PbrtWarnings, NameTheDirectiveAndWhatIsDone) {
     const auto warnings = [](const std::string& world, const std::string& options = "") {
         return PbrtScene(world + kPbrtTriangle, options).warnings;
     };
-    EXPECT_THAT(warnings("", "Film \"rgb\" \"float cropwindow\" [ 0 0.5 0 1 ]"),
-                ElementsAre(HasSubstr("the crop is ignored")));
     EXPECT_THAT(warnings("", "Film \"rgb\" \"string sensor\" \"canon_eos_100d\""),
                 ElementsAre(HasSubstr("as the eye sees it")));
     EXPECT_THAT(warnings("", "Film \"gbuffer\""), ElementsAre(HasSubstr("Film \"gbuffer\": an RGB picture is made")));
     EXPECT_THAT(warnings("", "Integrator \"ambientocclusion\""), ElementsAre(HasSubstr("shows light transport")));
     EXPECT_THAT(warnings("LightSource \"infinite\" \"point3 portal\" [ 0 0 0 1 0 0 1 1 0 0 1 0 ] "),
                 ElementsAre(HasSubstr("the portal is ignored")));
-    EXPECT_THAT(warnings("Material \"diffuse\" \"string normalmap\" \"n.png\" "),
-                ElementsAre(HasSubstr("'normalmap' is ignored")));
     EXPECT_THAT(warnings("Material \"diffuse\" \"float sparkle\" 1 "), ElementsAre(HasSubstr("sparkle")));
     for (const char* kind : {"plastic", "substrate", "uber"})
         EXPECT_THAT(warnings(std::string("Material \"") + kind + "\" "),

@@ -89,8 +89,41 @@ TEST(PbrtCamera, ScreenWindowNarrowsTheView) {
             .scene.description.camera.fov_degrees;
     };
     EXPECT_NEAR(fov("-0.666667 0.666667 -0.5 0.5"), std::atan(0.5) * 360 / kPi, 1e-3);
-    EXPECT_THROW(fov("-1 1 -1 1"), InputError);          // oblong pixels on 8 x 6
-    EXPECT_THROW(fov("0 1.33333 -0.5 0.5"), InputError); // not centred
+    EXPECT_THROW(fov("-1 1 -1 1"), InputError);       // oblong pixels on 8 x 6
+    EXPECT_THROW(fov("1 -1 0.75 -0.75"), InputError); // empty
+}
+
+Vec2 seen_at(const PbrtScene& s, const Vec3& direction) {
+    const Camera camera(s.scene.description.camera, s.scene.description.window);
+    const auto at = camera.image_point(camera.eye(0, 0), direction.normalized());
+    return at ? s.scene.description.window.to_pixel(*at) : Vec2(-1, -1);
+}
+
+TEST(PbrtCamera, ScreenWindowShiftsTheView) {
+    const PbrtScene s(kTriangle,
+                      "Camera \"perspective\" \"float fov\" 90 \"float screenwindow\" [0 1.333333 -0.5 0.5]");
+    // 8 x 6 pixels; the axis is in the middle of the left edge.
+    const Vec2 p = seen_at(s, {0.333333f, 0.25f, 1});
+    EXPECT_NEAR(p.x, 2, 1e-3);
+    EXPECT_NEAR(p.y, 1.5, 1e-3);
+}
+
+TEST(PbrtCamera, CropsTheFilm) {
+    for (const char* film : {"\"float cropwindow\" [ 0.25 0.875 0.5 1 ]", "\"integer pixelbounds\" [ 2 7 3 6 ]"}) {
+        const std::string camera = "Camera \"perspective\" \"float fov\" 70 \"float screenwindow\" [-1 1.2 -0.8 0.85]";
+        const std::string size = "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 6 ";
+        const PbrtScene all(kTriangle, size + camera), part(kTriangle, size + film + " " + camera);
+        EXPECT_EQ(part.scene.description.window.width, 5);
+        EXPECT_EQ(part.scene.description.window.height, 3);
+        for (const Vec3& w : {Vec3(0.1f, 0.01f, 1), Vec3(0.3f, -0.2f, 1)}) {
+            const Vec2 whole = seen_at(all, w), cut = seen_at(part, w);
+            EXPECT_NEAR(whole.x - 2, cut.x, 1e-4);
+            EXPECT_NEAR(whole.y - 3, cut.y, 1e-4);
+        }
+    }
+    for (const char* film : {"\"float cropwindow\" [ 0 0 0 1 ]", "\"float cropwindow\" [ 0 2 0 1 ]",
+                             "\"float cropwindow\" [ 0 1 ]", "\"integer pixelbounds\" [ -1 3 0 1 ]"})
+        EXPECT_THROW(PbrtScene(kTriangle, std::string("Film \"rgb\" ") + film), InputError) << film;
 }
 
 TEST(PbrtOptions, BecomeSettings) {

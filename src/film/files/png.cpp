@@ -9,8 +9,8 @@
 
 namespace keyhole {
 
-void write_png(const std::string& path, const Image& image) {
-    write_png(path, Canvas{image.width, image.height, tonemap(image)});
+void write_png(const std::string& path, const Image& image, std::optional<double> stops) {
+    write_png(path, Canvas{image.width, image.height, stops ? expose_by(image, *stops) : tonemap(image)});
 }
 
 void write_png(const std::string& path, const Canvas& canvas) {

@@ -4,13 +4,15 @@
 #include "film/drawing.h"
 #include "film/picture.h"
 
+#include <optional>
 #include <string>
 
 namespace keyhole {
 
-/// Writes an image, tone-mapped, as 8-bit sRGB. Atomic: see write_file_atomically().
+/// Writes an image as 8-bit sRGB, exposed by that many stops or, without them, tone-mapped. Atomic: see
+/// write_file_atomically().
 /// @throws InputError with the path and the reason.
-void write_png(const std::string& path, const Image& image);
+void write_png(const std::string& path, const Image& image, std::optional<double> stops = std::nullopt);
 
 /// Writes a picture as it is.
 void write_png(const std::string& path, const Canvas& canvas);

@@ -62,11 +62,12 @@ Rgb RoughDielectricBsdf::eval(const Vec3& to_light, const Vec3& to_eye) const {
     const auto f = facet_between(to_eye, to_light, eta);
     if (!f) return Rgb(0.0);
     const Ggx ggx{alpha_x, alpha_y};
-    if (f->reflects) return Rgb(reflectance(*f) * ggx.reflection(f->from, f->to, f->h));
+    if (f->reflects) return Rgb(reflect_tint) * (reflectance(*f) * ggx.reflection(f->from, f->to, f->h));
     // Equation 21 of Walter et al., n_eye^2 in its numerator: the Jacobian has n_light^2 there instead.
     const double radiance_scale = 1 / (f->relative * f->relative);
-    return Rgb((1 - reflectance(*f)) * ggx.density(f->h) * ggx.masking(f->from, f->to) * refraction_jacobian(*f) *
-               radiance_scale * f->from.dot(f->h) / std::abs(f->from.z * f->to.z));
+    return Rgb(transmit_tint) *
+           ((1 - reflectance(*f)) * ggx.density(f->h) * ggx.masking(f->from, f->to) * refraction_jacobian(*f) *
+            radiance_scale * f->from.dot(f->h) / std::abs(f->from.z * f->to.z));
 }
 
 double RoughDielectricBsdf::pdf(const Vec3& from, const Vec3& to) const {

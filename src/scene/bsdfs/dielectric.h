@@ -26,6 +26,8 @@ struct GlassBsdf {
 /// `eta` is the refractive index below the normal over that above, and not close to 1.
 struct RoughDielectricBsdf {
     float eta, alpha_x, alpha_y;
+    StoredRgb reflect_tint{Rgb(1.0)};
+    StoredRgb transmit_tint{Rgb(1.0)};
 
     static constexpr BsdfTraits traits() { return {.finite = true}; }
 

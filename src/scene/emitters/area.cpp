@@ -5,6 +5,8 @@
 #include "scene/load/properties.h"
 #include "scene/warp.h"
 
+#include <cmath>
+
 namespace keyhole {
 namespace {
 
@@ -53,28 +55,18 @@ class AreaEmitter final : public Emitter {
             triangles_ = EmitterDistribution(areas);
         }
         bounds_ = std::visit([](const auto& geometry) { return bounds_of(geometry); }, shape.geometry);
-        bounds_.intensity = luminance(shape.emission->radiance) * area_;
+        luminance_ = mean_luminance();
+        bounds_.intensity = luminance_ * area_;
         if (shape.emission->two_sided) bounds_.spread = kPi;
     }
 
     Site site() const override { return Site::surface; }
     bool is_delta() const override { return invisible_; }
-    double power() const override {
-        return luminance(shape_.emission->radiance) * area_ * kPi * (shape_.emission->two_sided ? 2 : 1);
-    }
+    double power() const override { return luminance_ * area_ * kPi * (shape_.emission->two_sided ? 2 : 1); }
 
     EmitterPoint sample_point(SampleSource& source) const override {
         const auto [u0, u1, u2] = source.take<3>();
-        SurfacePoint s;
-        if (const auto* sphere = std::get_if<Sphere>(&shape_.geometry)) {
-            s = sphere_point(*sphere, uniform_sphere(u1, u2), parametrised_);
-        } else {
-            const Vec2 b = uniform_triangle(u1, u2);
-            s = triangle_point(std::get<TriangleMesh>(shape_.geometry), triangles_.sample(u0), b.x, b.y, parametrised_);
-        }
-        s.shape = index_;
-        s.material = shape_.material.get();
-        return {s, 1 / area_};
+        return {place(u0, u1, u2), 1 / area_};
     }
     double point_pdf(const SurfacePoint& /*point*/) const override { return 1 / area_; }
 
@@ -98,20 +90,60 @@ class AreaEmitter final : public Emitter {
     Rgb radiance(const SurfacePoint& point, const Vec3& w) const override {
         const bool lit = shape_.emission->two_sided || point.ng.dot(w) > 0;
         if (shape_.alpha && !invisible_ && !is_opaque(shape_.alpha, point)) return Rgb(0.0);
-        return lit ? shape_.emission->radiance : Rgb(0.0);
+        return lit ? emitted(point) : Rgb(0.0);
     }
     std::optional<EmitterBounds> bounds() const override { return bounds_; }
     const char* kind() const override { return invisible_ ? "invisible area" : "area"; }
 
   private:
+    /// Uniform by area.
+    SurfacePoint place(double u0, double u1, double u2) const {
+        SurfacePoint s;
+        if (const auto* sphere = std::get_if<Sphere>(&shape_.geometry)) {
+            s = sphere_point(*sphere, uniform_sphere(u1, u2), parametrised_);
+        } else {
+            const Vec2 b = uniform_triangle(u1, u2);
+            s = triangle_point(std::get<TriangleMesh>(shape_.geometry), triangles_.sample(u0), b.x, b.y, parametrised_);
+        }
+        s.shape = index_;
+        s.material = shape_.material.get();
+        return s;
+    }
+
+    Rgb emitted(const SurfacePoint& point) const {
+        const SurfaceEmission& emission = *shape_.emission;
+        return emission.picture == nullptr ? emission.radiance : emission.radiance * emission.picture->value(point);
+    }
+
+    /// Over the area, by points of Roberts' sequence. Only probabilities follow from it.
+    double mean_luminance() const {
+        if (shape_.emission->picture == nullptr) return luminance(shape_.emission->radiance);
+        constexpr int kPlaces = 4096;
+        constexpr double kStep0 = 0.8191725133961645, kStep1 = 0.6710436067037893, kStep2 = 0.5497004779019703;
+        const auto part = [](double x) { return x - std::floor(x); };
+        double sum = 0;
+        for (int i = 0; i < kPlaces; ++i)
+            sum += luminance(emitted(place(part(i * kStep0), part(i * kStep1), part(i * kStep2))));
+        return sum / kPlaces;
+    }
+
     const Shape& shape_;
     std::uint32_t index_;
     bool invisible_;
     bool parametrised_;
     double area_;
+    double luminance_ = 0; // mean over the area
     EmitterDistribution triangles_;
     EmitterBounds bounds_;
 };
+
+/// pbrt's is a file. Null where there is none.
+ColorTexture read_picture_of_light(Properties& p) {
+    const Key file{"", "filename"};
+    if (!p.has(file)) return p.find_color_texture({"texture", ""}, kLight);
+    const std::string path = p.path(file, "an image");
+    return p.make_at(file, [&] { return image_texture<Rgb>(path, {}); });
+}
 
 } // namespace
 
@@ -122,10 +154,13 @@ std::unique_ptr<Emitter> make_area_emitter(const Shape& shape, std::uint32_t ind
 AreaLight read_area_light(Properties& p) {
     AreaLight light;
     light.two_sided = p.boolean({"two_sided", "twosided"}, false);
-    if (p.has({"", "filename"})) p.fail("found 'filename', expected emission that is the same everywhere");
+    light.picture = read_picture_of_light(p);
     light.radiance = p.light({"radiance", "L"}, {"power", ""}, 1);
     // The power is a colour in our files, and a number beside the colour in pbrt's.
     light.power = p.has({"power", ""}) ? 1 : std::max(0.0, p.number({"", "power"}, {}, -1));
+    if (light.power > 0 && light.picture != nullptr)
+        p.fail_at("power", p.is_pbrt() ? "found 'power' beside 'filename', expected 'scale'"
+                                       : "found 'power' beside 'texture', expected 'radiance'");
     return light;
 }
 
@@ -134,7 +169,7 @@ std::unique_ptr<SurfaceEmission> emission_of(const AreaLight& light, double area
     // A Lambertian emitter of radiance L sends out pi L from each unit of area of each side.
     const Rgb radiance = light.power > 0 ? light.radiance * light.power / (kPi * area * sides) : light.radiance;
     if (is_black(radiance)) return nullptr;
-    return std::make_unique<SurfaceEmission>(SurfaceEmission{radiance, light.two_sided});
+    return std::make_unique<SurfaceEmission>(SurfaceEmission{radiance, light.two_sided, light.picture});
 }
 
 } // namespace keyhole

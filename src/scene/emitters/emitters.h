@@ -43,10 +43,12 @@ double spot_solid_angle(const SpotParameters& parameters);
 /// @throws InputError for angles out of order.
 std::unique_ptr<Emitter> make_spot_emitter(const SpotParameters& parameters);
 
-/// Light from one direction, everywhere alike: the sun, but without its disc.
+/// Light from one direction, everywhere alike: the sun.
 /// @param w unit direction in which it travels.
 /// @param irradiance in W/m^2 on a plane across `w`. Its power is that times the cross-section of the scene's sphere.
-std::unique_ptr<Emitter> make_distant_emitter(const Vec3& w, const Rgb& irradiance);
+/// @param degrees angle across its disc, below 180; 0: one direction only, which no ray can meet. With a disc it is an
+/// environment.
+std::unique_ptr<Emitter> make_distant_emitter(const Vec3& w, const Rgb& irradiance, double degrees = 0);
 
 /// The same radiance [W/(m^2 sr)] from every direction; directions are uniform on the sphere.
 std::unique_ptr<Emitter> make_constant_environment(const Rgb& radiance);

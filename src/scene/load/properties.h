@@ -31,6 +31,7 @@ constexpr NumberRange kCoordinate{"a coordinate", -1e12, 1e12};
 constexpr NumberRange kLength{"a length", 1e-12, 1e12};
 constexpr NumberRange kReflectance{"a reflectance", 0, 1};
 constexpr NumberRange kShare{"a share", 0, 1};
+constexpr NumberRange kNormal{"a direction's coordinate", 0, 1};
 constexpr NumberRange kNotNegative{"a number", 0, 1e12};
 constexpr NumberRange kFactor{"a factor", -1e12, 1e12};
 constexpr NumberRange kLight{"an amount of light", 0, 1e30};
@@ -99,6 +100,8 @@ class Properties {
             return number_texture(key, operand_range(), otherwise);
     }
     virtual UvMapping mapping() = 0;
+    /// Whether a texture that is read stands for directions, as kNormal says: integers are linear then.
+    bool is_normal() const { return operand_range().what == kNormal.what; }
 
     virtual double refractive_index(Key key) = 0;
     /// A number or texture for both directions, or one for each.
@@ -185,7 +188,8 @@ MaterialPtr read_material(const Kind<MaterialPtr>& kind, Properties& p);
 struct AreaLight {
     Rgb radiance{0.0}; ///< [W/(m^2 sr)]; where power is given its colour
     bool two_sided = false;
-    double power = 0; ///< [W], factor on that colour; 0: radiance says it all
+    double power = 0;       ///< [W], factor on that colour; 0: radiance says it all
+    ColorTexture picture{}; ///< factor on the radiance; null: 1
 };
 AreaLight read_area_light(Properties& p);
 /// Of a shape with that area; null where nothing is emitted.

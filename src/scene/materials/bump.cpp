@@ -1,4 +1,5 @@
 #include "scene/material.h"
+#include "scene/materials/turned.h"
 
 namespace keyhole {
 namespace {
@@ -14,6 +15,7 @@ class BumpedMaterial final : public Material {
     Bsdf bsdf(const SurfacePoint& point) const override { return material_->bsdf(bumped(point)); }
     BsdfTraits traits() const override { return material_->traits(); }
     const char* kind() const override { return material_->kind(); }
+    SurfaceDefaults surface() const override { return material_->surface(); }
 
   private:
     double slope(SurfacePoint point, const Vec2& direction) const {
@@ -33,13 +35,7 @@ class BumpedMaterial final : public Material {
         if (n.z < 0) n = -n; // mirrored texture coordinates
         n.normalize();
         if (!(n.z > 0)) return point; // no parametrisation
-        const Frame frame = point.shading_frame();
-        const Vec3 ns = frame.to_world(Vec3(n)).normalized();
-        if (!(ns.dot(point.ng) > 0)) return point;
-        SurfacePoint out = point;
-        out.ns = ns;
-        out.tangent = (frame.s - ns * ns.dot(frame.s)).normalized();
-        return out;
+        return turned(point, point.shading_frame().to_world(Vec3(n)).normalized());
     }
 
     MaterialPtr material_;

@@ -92,11 +92,11 @@ MaterialPtr make_coated_conductor(const Coat& coat, ColorTexture reflectance, Fl
 MaterialKinds coated_kinds() {
     return {{{"coated_diffuse", "coateddiffuse"},
              "a coated material",
-             {"reflectance", "ior", "roughness", "thickness", "bump"},
+             {"reflectance", "ior", "roughness", "thickness", "bump", "normal_map"},
              read_coated_diffuse},
             {{"coated_conductor", "coatedconductor"},
              "a coated conductor",
-             {"reflectance", "eta", "k", "roughness", "ior", "coat_roughness", "thickness", "bump"},
+             {"reflectance", "eta", "k", "roughness", "ior", "coat_roughness", "thickness", "bump", "normal_map"},
              read_coated_conductor},
             {{"", "plastic"}, "", {}, [](Properties& p) { return read_coated_v3(p, "plastic", 0.25); }},
             {{"", "substrate"}, "", {}, [](Properties& p) { return read_coated_v3(p, "substrate", 0.5); }},

@@ -52,9 +52,10 @@ MaterialPtr make_conductor(ColorTexture reflectance, FloatTexture alpha_x, Float
 }
 
 MaterialKinds conductor_kinds() {
-    return {{"mirror", "a mirror", {"reflectance", "bump"}, read_mirror},
-            {"conductor", "a conductor", {"reflectance", "eta", "k", "roughness", "bump"}, read_conductor},
-            {{"", "metal"}, "", {}, read_metal_v3}};
+    return {
+        {"mirror", "a mirror", {"reflectance", "bump", "normal_map"}, read_mirror},
+        {"conductor", "a conductor", {"reflectance", "eta", "k", "roughness", "bump", "normal_map"}, read_conductor},
+        {{"", "metal"}, "", {}, read_metal_v3}};
 }
 
 } // namespace keyhole

@@ -59,14 +59,14 @@ MaterialPtr make_diffuse_transmission(ColorTexture reflectance, ColorTexture tra
 }
 
 MaterialKinds diffuse_kinds() {
-    return {{{"black", ""}, "a black material", {"bump"}, [](Properties&) { return make_black(); }},
+    return {{{"black", ""}, "a black material", {"bump", "normal_map"}, [](Properties&) { return make_black(); }},
             {"diffuse",
              "a diffuse material",
-             {"reflectance", "bump"},
+             {"reflectance", "bump", "normal_map"},
              [](Properties& p) { return make_diffuse(p.color_texture("reflectance", 0.5)); }},
             {{"diffuse_transmission", "diffusetransmission"},
              "a translucent material",
-             {"reflectance", "transmittance", "bump"},
+             {"reflectance", "transmittance", "bump", "normal_map"},
              read_transmission},
             {{"", "matte"}, "", {}, read_matte},
             {{"", "translucent"}, "", {}, read_translucent}};

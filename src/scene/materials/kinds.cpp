@@ -6,7 +6,8 @@
     FILE(conductor)                                                                                                    \
     FILE(dielectric)                                                                                                   \
     FILE(diffuse)                                                                                                      \
-    FILE(mix)
+    FILE(mix)                                                                                                          \
+    FILE(principled)
 
 namespace keyhole {
 
@@ -19,8 +20,21 @@ const MaterialKinds& material_kinds() {
     return kinds;
 }
 
+namespace {
+
+/// pbrt's is a file. Null where there are none.
+ColorTexture read_normals(Properties& p) {
+    const Key file{"", "normalmap"};
+    if (!p.has(file)) return p.find_color_texture({"normal_map", ""}, kNormal);
+    const std::string path = p.path(file, "an image");
+    return p.make_at(file, [&] { return image_texture<Rgb>(path, {.encoding = Encoding::linear}); });
+}
+
+} // namespace
+
 MaterialPtr read_material(const Kind<MaterialPtr>& kind, Properties& p) {
     MaterialPtr material = kind.read(p);
+    if (ColorTexture normals = read_normals(p)) material = with_normals(std::move(material), std::move(normals));
     const bool v4 = p.has({"", "displacement"});
     FloatTexture bump = p.find_number_texture({"bump", v4 ? "displacement" : "bumpmap"}, kCoordinate);
     return bump ? with_bump(std::move(material), std::move(bump)) : material;

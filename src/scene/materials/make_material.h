@@ -27,7 +27,8 @@ template <class F> class FunctionMaterial final : public Material {
 /// Whether a model looks the same whichever way its frame is turned. Rough ones may not.
 inline bool is_isotropic(const Bsdf::Model& model) {
     return std::visit(
-        []<class M>(const M&) {
+        []<class M>(const M& m) {
+            if constexpr (std::is_same_v<M, PrincipledBsdf>) return m.is_isotropic();
             return std::is_same_v<M, BlackBsdf> || std::is_same_v<M, DiffuseBsdf> ||
                    std::is_same_v<M, DiffuseTransmissionBsdf> || std::is_same_v<M, MirrorBsdf> ||
                    std::is_same_v<M, ConductorBsdf> || std::is_same_v<M, GlassBsdf> ||

@@ -21,6 +21,7 @@ class MixMaterial final : public Material {
         return {a.finite || b.finite, a.delta || b.delta, a.near_lambertian || b.near_lambertian};
     }
     const char* kind() const override { return "mix"; }
+    SurfaceDefaults surface() const override;
 
   private:
     /// Mixes of mixes must choose independently.
@@ -34,10 +35,41 @@ class MixMaterial final : public Material {
     std::uint32_t salt_;
 };
 
+/// The opacity of the material that is at a place.
+class MixedOpacity final : public Texture<double> {
+  public:
+    MixedOpacity(FloatTexture a, FloatTexture b, FloatTexture amount, std::uint32_t salt)
+        : a_(std::move(a)), b_(std::move(b)), amount_(std::move(amount)), salt_(salt) {}
+    double value(const SurfacePoint& point) const override {
+        const FloatTexture& here = place_hash(point, salt_) < amount_->value(point) ? b_ : a_;
+        return here != nullptr ? here->value(point) : 1.0;
+    }
+
+  private:
+    FloatTexture a_, b_, amount_;
+    std::uint32_t salt_;
+};
+
+SurfaceDefaults MixMaterial::surface() const {
+    const FloatTexture a = a_->surface().alpha, b = b_->surface().alpha;
+    if (a == nullptr && b == nullptr) return {};
+    return {std::make_shared<MixedOpacity>(a, b, amount_, salt_)};
+}
+
+void refuse_emission(Properties& p, const MaterialPtr& part) {
+    if (!is_black(part->surface().emission))
+        p.fail("found a mix of a material with 'emission', expected 'emission' of the shape");
+}
+
 /// pbrt-v4 names both in one list; v3's amount is the share of the first.
 MaterialPtr read_mix(Properties& p) {
     const FloatTexture amount = p.number_texture("amount", kShare, 0.5);
-    if (!p.is_pbrt()) return make_mix(p.materials("a")[0], p.materials("b")[0], amount);
+    if (!p.is_pbrt()) {
+        const MaterialPtr a = p.materials("a")[0], b = p.materials("b")[0];
+        refuse_emission(p, a);
+        refuse_emission(p, b);
+        return make_mix(a, b, amount);
+    }
     const Key list{"", "materials"}, first{"", "namedmaterial1"}, second{"", "namedmaterial2"};
     if (p.has(list)) {
         const auto both = p.materials(list);
@@ -54,6 +86,8 @@ MaterialPtr make_mix(MaterialPtr a, MaterialPtr b, FloatTexture amount) {
     return std::make_shared<MixMaterial>(std::move(a), std::move(b), std::move(amount));
 }
 
-MaterialKinds mix_kinds() { return {{"mix", "a mix of materials", {"a", "b", "amount", "bump"}, read_mix}}; }
+MaterialKinds mix_kinds() {
+    return {{"mix", "a mix of materials", {"a", "b", "amount", "bump", "normal_map"}, read_mix}};
+}
 
 } // namespace keyhole

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -60,14 +61,18 @@ template <class T, class Texels> class ImageTexture final : public Texture<T> {
         : image_(std::move(image)), texels_(std::get<Texels>(image_->texels)), options_(options), decoder_(options) {}
 
     T value(const SurfacePoint& point) const override {
-        const UvMapping& m = options_.mapping;
-        const double u = m.su * point.uv.x + m.du, v = m.sv * point.uv.y + m.dv;
+        const auto [u, v] = mapped(point.uv);
         // Texture coordinates past all use, or not numbers, must not become indices.
         if (!(std::abs(u) < 1e6) || !(std::abs(v) < 1e6)) return T(0);
         return finish(filtered(u * image_->width, (1 - v) * image_->height));
     }
 
   private:
+    std::array<double, 2> mapped(const Vec2& uv) const {
+        const Imath::V2d p = options_.mapping(uv);
+        return {p.x, p.y};
+    }
+
     T filtered(double x, double y) const {
         if (options_.filter == Filter::nearest)
             return texel(static_cast<std::int64_t>(std::floor(x)), static_cast<std::int64_t>(std::floor(y)));
@@ -115,7 +120,7 @@ void read_encoding(Properties& p, ImageOptions& o) {
     if (!p.is_pbrt()) {
         const std::string word = p.choice("encoding", "an encoding", {"automatic", "srgb", "linear", "gamma"});
         if (word == "srgb") o.encoding = Encoding::srgb;
-        if (word == "linear") o.encoding = Encoding::linear;
+        if (word == "linear" || (word == "automatic" && p.is_normal())) o.encoding = Encoding::linear;
         if (word == "gamma") o.encoding = Encoding::gamma;
         o.gamma = p.number("gamma", {"a gamma", 0.01, 100}, o.gamma);
         return;
@@ -157,7 +162,7 @@ template <class T> std::shared_ptr<const Texture<T>> read_image(Properties& p) {
 template <class T> TextureKinds<T> image_kinds() {
     return {{{"image", "imagemap"},
              "an image",
-             {"file", "encoding", "gamma", "wrap", "filter", "scale", "invert", "repeat", "shift"},
+             {"file", "encoding", "gamma", "wrap", "filter", "scale", "invert", "repeat", "rotate", "shift"},
              read_image<T>}};
 }
 template TextureKinds<Rgb> image_kinds();

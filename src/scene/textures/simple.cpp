@@ -54,8 +54,8 @@ template <class T> class CheckerboardTexture final : public Texture<T> {
     CheckerboardTexture(Ptr a, Ptr b, const UvMapping& mapping)
         : a_(std::move(a)), b_(std::move(b)), mapping_(mapping) {}
     T value(const SurfacePoint& point) const override {
-        const double squares =
-            std::floor(mapping_.su * point.uv.x + mapping_.du) + std::floor(mapping_.sv * point.uv.y + mapping_.dv);
+        const Imath::V2d place = mapping_(point.uv);
+        const double squares = std::floor(place.x) + std::floor(place.y);
         return (std::fmod(squares, 2) == 0 ? a_ : b_)->value(point);
     }
 
@@ -102,7 +102,7 @@ std::uint64_t cell(float x) { return std::bit_cast<std::uint64_t>(std::floor(sta
 template <class T> TextureKinds<T> simple_kinds() {
     return {{"scale", "a scaled texture", {"texture", "factor"}, read_scale<T>},
             {"mix", "a mix of textures", {"a", "b", "amount"}, read_mix<T>},
-            {"checkerboard", "a checkerboard", {"a", "b", "repeat", "shift"}, read_checkerboard<T>},
+            {"checkerboard", "a checkerboard", {"a", "b", "repeat", "rotate", "shift"}, read_checkerboard<T>},
             {{"", "constant"}, "", {}, [](Properties& p) {
                  return p.operand<T>({"", "value"}, 1);
              }}};

@@ -117,7 +117,8 @@ class Builder {
         const Transform to_world = record.to_world * placement.to_world;
         if (!(regularity(to_world) > 1e-12))
             record.directive.fail("found a transform that flattens the shape, expected a regular one");
-        if (record.material.is_textured || record.alpha) parametrise(geometry);
+        if (record.material.is_textured || record.alpha || (record.light && record.light->picture))
+            parametrise(geometry);
         transform_geometry(geometry, to_world);
         if (auto* mesh = std::get_if<TriangleMesh>(&geometry)) turn_triangles_to_normals(*mesh);
         if (record.reversed) flip(geometry);

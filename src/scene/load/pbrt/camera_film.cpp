@@ -38,23 +38,45 @@ void store(Parameters& p, Settings& settings, std::string_view key, std::int64_t
         p.warn(std::string(key), fmt::format("{} becomes {} = {}", value, key, clamp.stored()));
 }
 
-/// Half the extent of the window across the film's shorter side, at distance 1 and a field of view of 90 degrees.
-double read_window(Parameters& p, const ImageWindow& film) {
+/// The window at distance 1 and a field of view of 90 degrees.
+struct ScreenWindow {
+    double half = 1; ///< of the extent across the film's shorter side
+    Imath::V2d middle{0, 0};
+};
+ScreenWindow read_window(Parameters& p, const ImageWindow& film) {
     const double aspect = static_cast<double>(film.width) / film.height;
     if (const Parameter* ratio = p.find("frameaspectratio", {"float", "integer"});
         ratio != nullptr && std::abs(p.number("frameaspectratio", aspect) / aspect - 1) > 2e-3)
         p.fail(fmt::format("found a frame of aspect ratio {} on a film of {}, expected square pixels",
                            p.number("frameaspectratio", aspect), aspect));
-    if (p.find("screenwindow", {"float"}) == nullptr) return 1;
+    if (p.find("screenwindow", {"float"}) == nullptr) return {};
     const std::vector<double> w = p.numbers("screenwindow", {"float"});
     if (w.size() != 4) p.fail(fmt::format("found {} numbers in 'screenwindow', expected 4", w.size()));
     const double x = (w[1] - w[0]) / 2, y = (w[3] - w[2]) / 2;
-    if (!(x > 0 && y > 0 && std::abs(w[0] + w[1]) < 1e-3 * x && std::abs(w[2] + w[3]) < 1e-3 * y))
-        p.fail("found a 'screenwindow' that is not centred, expected one around the view's axis");
+    if (!(x > 0 && y > 0)) p.fail("found an empty 'screenwindow', expected two ranges of numbers that rise");
     if (std::abs(x / y / aspect - 1) > 2e-3)
         p.fail(fmt::format("found a 'screenwindow' of aspect ratio {} on a film of {}, expected square pixels", x / y,
                            aspect));
-    return std::min(x, y);
+    return {std::min(x, y), {(w[0] + w[1]) / 2, (w[2] + w[3]) / 2}};
+}
+
+/// Shares of the film, or pixels; none where all of it is rendered.
+std::optional<CropWindow> read_crop(Parameters& p, const ImageWindow& film) {
+    const bool shares = p.has("cropwindow");
+    if (!shares && !p.has("pixelbounds")) return std::nullopt;
+    const char* name = shares ? "cropwindow" : "pixelbounds";
+    const std::vector<double> c = shares ? p.numbers(name, {"float"}) : p.numbers(name, {"integer"});
+    if (c.size() != 4) p.fail(fmt::format("found {} numbers in '{}', expected 4", c.size(), name));
+    const auto pixel = [&](double x, int size) {
+        return static_cast<int>(std::clamp(shares ? std::ceil(x * size) : x, -1.0, size + 1.0));
+    };
+    const CropWindow crop{pixel(c[0], film.width), pixel(c[2], film.height), pixel(c[1], film.width),
+                          pixel(c[3], film.height)};
+    if (!(crop.x0 >= 0 && crop.y0 >= 0 && crop.x0 < crop.x1 && crop.y0 < crop.y1 && crop.x1 <= film.width &&
+          crop.y1 <= film.height))
+        p.fail(fmt::format("found '{}' [ {} {} {} {} ], expected pixels of a film of {} x {}", name, c[0], c[1], c[2],
+                           c[3], film.width, film.height));
+    return crop;
 }
 
 } // namespace
@@ -68,8 +90,7 @@ void read_film(Parameters& p, View& view) {
     if (static_cast<std::int64_t>(view.window.width) * view.window.height > (std::int64_t{1} << 28))
         p.fail(fmt::format("found {} x {} pixels, expected 2^28 at most", view.window.width, view.window.height));
     view.exposure = p.number("iso", 100, {1e-6, 1e9}) / 100;
-    for (const std::string_view crop : {"cropwindow", "pixelbounds"})
-        if (p.has(crop)) p.warn("crop", "the whole picture is rendered: the crop is ignored");
+    view.crop = read_crop(p, view.window);
     if (p.string("sensor", "cie1931") != "cie1931")
         p.warn("sensor", "the picture is taken as the eye sees it, not by a sensor");
     p.ignore({"filename", "diagonal", "savefp16", "maxcomponentvalue", "scale"});
@@ -80,7 +101,8 @@ void read_camera(Parameters& p, const Transform& camera_to_world, View& view) {
     if (p.directive().words[0] != "perspective")
         p.fail(fmt::format("found the camera '{}', expected perspective", p.directive().words[0]));
     const double fov = p.has("halffov") ? 2 * p.number("halffov", 45, {5e-4, 89.5}) : p.number("fov", 90, {1e-3, 179});
-    const double half = std::tan(fov * kPi / 360) * read_window(p, view.window);
+    const ScreenWindow window = read_window(p, view.window);
+    const double half = std::tan(fov * kPi / 360) * window.half;
 
     const Imath::V3d right = row(camera_to_world, 0), up = row(camera_to_world, 1), forward = row(camera_to_world, 2);
     const double scale = forward.length();
@@ -101,11 +123,16 @@ void read_camera(Parameters& p, const Transform& camera_to_world, View& view) {
     const Imath::V3d u = f.cross(r);
     camera.up = Vec3(u.dot(up) < 0 ? -u : u);
     camera.fov_degrees = static_cast<float>(std::atan(half) * 360 / kPi);
+    camera.shift = window.middle / (2 * window.half);
     camera.lens_radius = static_cast<float>(p.number("lensradius", 0, {0, 1e12}) * scale);
     camera.focus_distance = static_cast<float>(p.number("focaldistance", 1e6, kPositive) * scale);
     const double open = p.number("shutteropen", 0), close = p.number("shutterclose", 1);
     if (!(close > open)) p.fail(fmt::format("found the shutter open from {} to {}, expected some time", open, close));
     view.exposure *= close - open;
+    if (view.crop) {
+        camera = cropped(camera, view.window, *view.crop);
+        view.window = {view.crop->x1 - view.crop->x0, view.crop->y1 - view.crop->y0, view.window.margin};
+    }
     p.warn_of_the_rest();
 }
 

@@ -6,13 +6,16 @@
 #include "scene/load/load_mesh.h"
 #include "scene/load/pbrt/syntax/parameters.h"
 
+#include <optional>
+
 namespace keyhole::pbrt {
 
 /// What a picture is taken with.
 struct View {
     CameraParameters camera;
     ImageWindow window;
-    double exposure = 1; ///< factor on all light: shutter time times ISO speed over 100
+    std::optional<CropWindow> crop{}; ///< of the film; taken out by read_camera()
+    double exposure = 1;              ///< factor on all light: shutter time times ISO speed over 100
 };
 
 /// Reads a `Film` directive.
@@ -21,8 +24,8 @@ void read_film(Parameters& parameters, View& view);
 
 /// Reads a `Camera` directive, the film being known.
 /// @param camera_to_world the inverse of the transform that stands when the camera is named.
-/// @throws InputError for kinds other than perspective, for transforms that stretch, and for windows that are not
-/// centred or have oblong pixels.
+/// @throws InputError for kinds other than perspective, for transforms that stretch, and for windows that have oblong
+/// pixels.
 void read_camera(Parameters& parameters, const Transform& camera_to_world, View& view);
 
 /// Samples per pixel.

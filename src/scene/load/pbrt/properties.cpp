@@ -201,8 +201,7 @@ MaterialEntry read_material(const std::string& type, Parameters& p, const Librar
     // A mix doesn't tell whether its parts are textured.
     entry.is_textured = name == "mix" || std::ranges::any_of(p.directive().parameters,
                                                              [](const Parameter& q) { return q.type == "texture"; });
-    if (p.find("normalmap", {"string"}) != nullptr)
-        p.warn("normalmap", "'normalmap' is ignored: the surface keeps its shading normals");
+    entry.is_textured |= p.has("normalmap");
     p.warn_of_the_rest();
     return entry;
 }

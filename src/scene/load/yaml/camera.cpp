@@ -7,25 +7,39 @@
 namespace keyhole {
 
 void CameraReader::read_film(const YamlNode& section) {
+    const MapReader map(section, "a film", {"resolution", "crop"});
+    if (const YamlNode* resolution = map.find("resolution")) read_resolution(*resolution);
+    if (const YamlNode* crop = map.find("crop")) read_crop(*crop);
+}
+
+void CameraReader::read_resolution(const YamlNode& node) {
     constexpr NumberRange kPixels{"a number of pixels", 1, 65536};
-    const MapReader map(section, "a film", {"resolution"});
-    const YamlNode* resolution = map.find("resolution");
-    if (resolution == nullptr) return;
-    if (resolution->kind != YamlNode::Kind::list || resolution->items.size() != 2)
-        fail_expected(*resolution, "[width, height] in pixels");
-    const auto width = read_integer(*resolution->items[0], kPixels),
-               height = read_integer(*resolution->items[1], kPixels);
+    if (node.kind != YamlNode::Kind::list || node.items.size() != 2) fail_expected(node, "[width, height] in pixels");
+    const auto width = read_integer(*node.items[0], kPixels), height = read_integer(*node.items[1], kPixels);
     constexpr std::int64_t kMost = std::int64_t{1} << 28;
-    if (width * height > kMost)
-        fail(*resolution, fmt::format("found {} pixels, expected at most {}", width * height, kMost));
+    if (width * height > kMost) fail(node, fmt::format("found {} pixels, expected at most {}", width * height, kMost));
     window_.width = static_cast<int>(width);
     window_.height = static_cast<int>(height);
+}
+
+void CameraReader::read_crop(const YamlNode& node) {
+    if (node.kind != YamlNode::Kind::list || node.items.size() != 4)
+        fail_expected(node, "[left, top, right, bottom] in pixels");
+    constexpr NumberRange kPixel{"a pixel", 0, 65536};
+    const auto at = [&](std::size_t i) { return static_cast<int>(read_integer(*node.items[i], kPixel)); };
+    crop_ = CropWindow{at(0), at(1), at(2), at(3)};
+    crop_node_ = &node;
+}
+
+ImageWindow CameraReader::window() const {
+    if (!crop_) return window_;
+    return {crop_->x1 - crop_->x0, crop_->y1 - crop_->y0, window_.margin};
 }
 
 void CameraReader::read_camera(const YamlNode& section) {
     constexpr NumberRange kFov{"a field of view in degrees", 0.001, 179};
     constexpr NumberRange kLens{"a radius", 0, 1e12};
-    const MapReader map(section, "a camera", {"from", "to", "up", "fov", "lens_radius", "focus_distance"});
+    const MapReader map(section, "a camera", {"from", "to", "up", "fov", "shift", "lens_radius", "focus_distance"});
     if (const YamlNode* from = map.find("from")) from_ = read_vec3(*from, kCoordinate);
     if (const YamlNode* to = map.find("to")) to_ = read_vec3(*(to_node_ = to), kCoordinate);
     if (const YamlNode* up = map.find("up")) {
@@ -33,6 +47,10 @@ void CameraReader::read_camera(const YamlNode& section) {
         if (!(up_.length() > 0)) fail(*up, "found the direction [0, 0, 0], expected one with a length");
     }
     if (const YamlNode* fov = map.find("fov")) fov_ = read_number(*fov, kFov);
+    if (const YamlNode* shift = map.find("shift")) {
+        const auto xy = read_numbers(*shift, 2, {"a shift", -100, 100});
+        shift_ = Imath::V2d(xy[0], xy[1]);
+    }
     if (const YamlNode* lens = map.find("lens_radius")) lens_radius_ = read_number(*lens, kLens);
     if (const YamlNode* focus = map.find("focus_distance")) focus_distance_ = read_number(*focus, kLength);
 }
@@ -45,13 +63,26 @@ void CameraReader::set_base(const CameraParameters& camera, const ImageWindow& w
     fov_.reset();
     lens_radius_.reset();
     focus_distance_.reset();
+    shift_.reset();
+    crop_.reset();
 }
 
 CameraParameters CameraReader::camera(const YamlNode& scene) const {
+    const CameraParameters all = uncropped(scene);
+    if (!crop_) return all;
+    const CropWindow& c = *crop_;
+    if (!(c.x0 < c.x1 && c.y0 < c.y1 && c.x1 <= window_.width && c.y1 <= window_.height))
+        fail(*crop_node_, fmt::format("found a crop from ({}, {}) to ({}, {}), expected pixels of a film of {} x {}",
+                                      c.x0, c.y0, c.x1, c.y1, window_.width, window_.height));
+    return cropped(all, window_, c);
+}
+
+CameraParameters CameraReader::uncropped(const YamlNode& scene) const {
     CameraParameters camera = base_.value_or(CameraParameters{});
     if (fov_) camera.fov_degrees = static_cast<float>(*fov_);
     if (lens_radius_) camera.lens_radius = static_cast<float>(*lens_radius_);
     if (focus_distance_) camera.focus_distance = static_cast<float>(*focus_distance_);
+    if (shift_) camera.shift = *shift_;
     if (base_ && !from_ && !to_) return camera;
     if (!from_ || !to_)
         fail(scene, fmt::format("found no '{}' of the camera, expected camera: {{from: [x, y, z], to: [x, y, z]}}",

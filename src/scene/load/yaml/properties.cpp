@@ -1,5 +1,6 @@
 #include "scene/load/yaml/properties.h"
 
+#include <cmath>
 #include <filesystem>
 #include <type_traits>
 
@@ -64,7 +65,8 @@ class YamlProperties final : public Properties {
             return node != nullptr ? read_numbers(*node, 2, kFactor) : std::vector<double>(2, otherwise);
         };
         const auto repeat = pair("repeat", 1), shift = pair("shift", 0);
-        return {repeat[0], repeat[1], shift[0], shift[1]};
+        const double turn = number("rotate", {"an angle in degrees", -1e6, 1e6}, 0) * kPi / 180;
+        return {repeat[0], repeat[1], shift[0], shift[1], std::cos(turn), std::sin(turn)};
     }
 
     double refractive_index(Key key) override { return number(key, kIor, 1.5); }
@@ -164,7 +166,7 @@ EmitterPtr read_emitter(const YamlNode& node) {
 }
 
 std::unique_ptr<SurfaceEmission> read_emission(const YamlNode& node, double area) {
-    YamlProperties p(node, "an emission", {"radiance", "power", "two_sided"});
+    YamlProperties p(node, "an emission", {"radiance", "power", "two_sided", "texture"});
     return emission_of(read_area_light(p), area);
 }
 

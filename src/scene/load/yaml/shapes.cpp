@@ -80,7 +80,10 @@ void ShapeReader::read_shape(const YamlNode& node, const Placement& placement) {
         shape.material = make_diffuse(Rgb(0.0)); // a lamp that reflects nothing
     }
     constexpr NumberRange kOpacity{"an opacity", 0, 1};
-    if (const YamlNode* alpha = map.find("alpha")) shape.alpha = read_float_texture(*alpha, kOpacity);
+    const SurfaceDefaults surface = shape.material->surface();
+    if (emission == nullptr) shape.emission = emission_of({surface.emission, true}, area);
+    const YamlNode* alpha = map.find("alpha");
+    shape.alpha = alpha != nullptr ? read_float_texture(*alpha, kOpacity) : surface.alpha;
     if (const YamlNode* inside = map.find("inside")) shape.inside = media_.resolve(*inside);
     if (const YamlNode* outside = map.find("outside")) shape.outside = media_.resolve(*outside);
     triangles_ += triangle_count(shape.geometry);
