@@ -27,7 +27,7 @@ struct GlassBsdf {
 struct RoughDielectricBsdf {
     float eta, alpha_x, alpha_y;
 
-    static constexpr BsdfTraits traits() { return {.finite = true}; }
+    static constexpr BsdfTraits traits() { return {.finite = true, .glossy = true}; }
 
     Rgb eval(const Vec3& to_light, const Vec3& to_eye) const;
     double pdf(const Vec3& from, const Vec3& to) const;

@@ -43,7 +43,7 @@ MaterialPtr make_glass(double eta, const Rgb& reflect_tint, const Rgb& transmit_
 MaterialPtr make_dielectric(double eta, FloatTexture alpha_x, FloatTexture alpha_y) {
     checked_index(eta);
     return make_material(
-        "dielectric", {.finite = true, .delta = true},
+        "dielectric", {.finite = true, .delta = true, .glossy = true},
         [=](const SurfacePoint& point) -> Bsdf::Model {
             const auto rough = rough_at(alpha_x, alpha_y, point);
             if (!rough || std::abs(eta - 1) < kNoRefraction) return GlassBsdf{eta};
