@@ -23,6 +23,7 @@ void PrintTo(const FurnaceCase& c, std::ostream* out) { *out << c.name; }
 
 const FurnaceCase kFurnaces[] = {
     {"Diffuse", [] { return test::furnace(kRho); }, false},
+    {"Varnished", [] { return test::varnished_furnace(kRho); }, true},
     {"WithoutLoss", [] { return test::furnace(kRho, true); }, true}, // a mirror and a glass ball that swallow nothing
 };
 
