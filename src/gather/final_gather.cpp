@@ -6,14 +6,15 @@
 #include "sampling/paths/seen_surface.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 namespace keyhole {
 namespace {
 
-/// Glass at which both ways are followed; later ones choose one. Which way a highlight lies would else be the noisiest
-/// question of the picture.
+/// Glass at which both ways are followed, and coats whose mirror images are: later ones choose. Which way a highlight
+/// lies would else be the noisiest question of the picture.
 constexpr int kSplits = 1;
 
 } // namespace
@@ -59,14 +60,17 @@ struct FinalGather::EyeWalk : SpecularWalkHooks {
     }
 
   private:
-    /// Follows both ways on from a vertex that reflects and transmits, where splits are left.
+    /// Where splits are left, follows all specular ways on from a vertex that would choose: between two of them, or
+    /// between one and the finite part, which is done.
     bool split(const Vertex& v, const Vec3& back, const Rgb& throughput) {
-        const auto reflected = v.bsdf.delta(back, Event::reflect), transmitted = v.bsdf.delta(back, Event::transmit);
-        if (splits == 0 || !reflected || !transmitted) return false;
-        for (const DeltaScatter& lobe : {*reflected, *transmitted}) {
-            const Rgb weight = lobe.coefficient / (lobe.eta * lobe.eta);
-            EyeWalk part{{}, gather, source, out, share * lobe.probability, saw_surface, splits - 1, scatterings};
-            part.follow({&v.point, &v.point, lobe.to, throughput * weight});
+        const std::array lobes{v.bsdf.delta(back, Event::reflect), v.bsdf.delta(back, Event::transmit)};
+        const int ways = (lobes[0] ? 1 : 0) + (lobes[1] ? 1 : 0) + (v.bsdf.traits().finite ? 1 : 0);
+        if (splits == 0 || ways < 2) return false;
+        for (const auto& lobe : lobes) {
+            if (!lobe) continue;
+            const Rgb weight = lobe->coefficient / (lobe->eta * lobe->eta);
+            EyeWalk part{{}, gather, source, out, share * lobe->probability, saw_surface, splits - 1, scatterings};
+            part.follow({&v.point, &v.point, lobe->to, throughput * weight});
         }
         return true;
     }

@@ -43,7 +43,7 @@ class FinalGather {
         bool confirm = false;   ///< whether to ask pilot photons
         double unconfirmed = 0; ///< luminance of caustics that they don't confirm
     };
-    /// A walk from the eye by specular events. At the first glass on its way both ways are followed.
+    /// A walk from the eye by specular events. At the first glass or coat on its way all of these are followed.
     struct EyeWalk;
     /// Everything that the finite scattering at the last two vertices seen does: direct light, caustic, gather rays.
     void shade(const Vertex& v, const Vec3& back, const Rgb& throughput, int scatterings, SampleSource& source,
