@@ -99,8 +99,7 @@ CoatInterface::CoatInterface(double eta) : eta_(eta) {
 }
 
 void CoatInterface::fill_mean_through() {
-    // By the square of the cosine the weight of a direction is the same for all.
-    constexpr std::size_t kSteps = 128;
+    constexpr std::size_t kSteps = 128; // by the square of the cosine, in which all directions weigh the same
     for (std::size_t a = 0; a < kAlphas; ++a)
         for (std::size_t u = 0; u < kClear; ++u) {
             const double clear = static_cast<double>(u) / (kClear - 1);
