@@ -4,8 +4,6 @@
 #include "gather/direct_irradiance.h"
 #include "photonmap/surface/surface_region.h"
 
-#include <cmath>
-
 namespace keyhole {
 namespace {
 
@@ -51,10 +49,9 @@ DirectIrradianceCache::Entry DirectIrradianceCache::at(const Scene& scene, std::
     return site;
 }
 
-std::optional<Rgb> DirectIrradianceCache::direct(std::uint32_t i, const Vec3& position, float sky) const {
+std::optional<Rgb> DirectIrradianceCache::direct(std::uint32_t i, const Vec3& position) const {
     const Entry& site = entries_[i];
-    const float reach = std::isinf(site.reach) ? sky : site.reach;
-    if ((places_[i].position() - position).length2() > reach * reach) return std::nullopt;
+    if ((places_[i].position() - position).length2() > site.reach * site.reach) return std::nullopt;
     return site.direct.decode();
 }
 

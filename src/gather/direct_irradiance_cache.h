@@ -25,8 +25,8 @@ class DirectIrradianceCache {
                           const RunContext& context);
 
     /// Irradiance that emitters bring to `position`, near place i [W/m^2]; none where it may change too fast for
-    /// another place's. That of the sky alone, whose distance bounds nothing, is known within `sky` of the place [m].
-    std::optional<Rgb> direct(std::uint32_t i, const Vec3& position, float sky) const;
+    /// another place's.
+    std::optional<Rgb> direct(std::uint32_t i, const Vec3& position) const;
 
     std::size_t bytes() const { return entries_.capacity() * sizeof(Entry); }
     /// Of it, for one place [bytes].

@@ -99,7 +99,7 @@ Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSou
     // Photons may be near, but none that this place sees: those of the other side of a wall.
     if (!known.known) return direct_light(scene_, v, back, 1, source);
     const Rgb f = v.bsdf.diffuse_reflectance(back);
-    const auto near = maps_.direct->direct(known.place, v.point.p, maps_.irradiance->radius(known.place));
+    const auto near = maps_.direct->direct(known.place, v.point.p);
     Rgb sum = near ? f * *near : direct_light(scene_, v, back, 1, source);
     const bool on = too_near(leg, known.place);
     if (!on) {
