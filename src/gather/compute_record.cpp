@@ -31,7 +31,8 @@ HemisphereEstimate RecordMaker::light(const VisiblePoint& c, int count, std::uin
         const auto arrival = rays_.trace(c.vertex, w, local.z * kInvPi, c.scatterings, rng);
         // What lies nearer than the least reach can't be told apart anyway.
         ray.distance = std::max(arrival.distance, min_radius(c));
-        if (!has_rays(spots_.spot_at(c.vertex.point.p + w * arrival.distance))) ray.radiance = arrival.indirect;
+        if (!has_rays(spots_.spot_at(c.vertex.point.p + w * arrival.distance)))
+            ray.radiance = arrival.indirect * c.vertex.bsdf.diffuse_weight(w);
     }
     HemisphereEstimate sum = grid.estimate(found, frame);
     for (const SpotCone& cone : cones) add_spot(c, frame, cone, rng, sum);
@@ -50,7 +51,7 @@ void RecordMaker::add_spot(const VisiblePoint& c, const Frame& frame, const Spot
         if (!(z > 0) || !c.leaves(w)) continue;
         const auto arrival = rays_.trace(c.vertex, w, z * kInvPi, c.scatterings, rng);
         if (spots_.spot_at(c.vertex.point.p + w * arrival.distance) != cone.spot) continue;
-        const Rgb brought = arrival.indirect * share;
+        const Rgb brought = arrival.indirect * (share * c.vertex.bsdf.diffuse_weight(w));
         sum.irradiance += brought * static_cast<double>(z);
         const double y = luminance(brought) * static_cast<double>(z);
         sum1 += y;

@@ -25,9 +25,9 @@ class RecordMaker {
     RecordMaker(const GatherRays& rays, const HotSpots& spots, const CacheOptions& options)
         : rays_(rays), spots_(spots), options_(options) {}
 
-    /// Irradiance at `c` by a hemisphere of about `count` rays, from the random stream `stream`. They find what doesn't
-    /// come from hot spots; each of these has rays of its own, in the cone that it fills, so that no record depends
-    /// on whether one of its few hundred rays happens to meet it.
+    /// Irradiance at `c`, directions weighed as its diffuse part weighs them, by a hemisphere of about `count` rays,
+    /// from the random stream `stream`. They find what doesn't come from hot spots; each of these has rays of its own,
+    /// in the cone that it fills, so that no record depends on whether one of its few hundred rays happens to meet it.
     HemisphereEstimate light(const VisiblePoint& c, int count, std::uint64_t stream) const;
 
     /// The record at `c` with that light.

@@ -2,6 +2,7 @@
 
 #include "gather/direct_light.h"
 #include "scene/bsdfs/diffuse.h"
+#include "scene/material.h"
 
 #include <limits>
 
@@ -42,15 +43,17 @@ DirectIrradiance direct_irradiance(const Scene& scene, const SurfacePoint& point
                                    SampleSource& source) {
     const Vertex v = white_vertex(point, n);
     MeanDistance distance(point.p);
+    const Bsdf bsdf = point.material != nullptr ? point.material->bsdf(point) : Bsdf();
+    const auto weight = [&](const SurfacePoint& emitter) { return bsdf.diffuse_weight(direction(point, emitter)); };
     Rgb sum(0.0);
     for (int i = 0; i < samples; ++i) {
         if (const auto light = sample_direct_light(scene, v, n, source)) {
             distance.add(light->x0.point, light->value);
-            if (scene.visible(point, light->x0.point)) sum += light->value;
+            if (scene.visible(point, light->x0.point)) sum += light->value * weight(light->x0.point);
         }
         sample_emission(scene, v, n, source, [&](const SurfacePoint& emitter, const Rgb& value) {
             distance.add(emitter, value);
-            sum += value;
+            sum += value * weight(emitter);
         });
     }
     return {sum * (kPi / samples), static_cast<float>(kReach * distance.get())};

@@ -46,6 +46,17 @@ Rgb next_event(const Scene& scene, const Vertex& v, const Vec3& back, int sample
     return sum / samples;
 }
 
+std::optional<PartContinuation> continue_by_part(const Vertex& v, const Bsdf& part, const Vec3& back,
+                                                 SampleSource& source) {
+    const auto s = part.sample(back, source);
+    if (!s || is_specular(s->event)) return std::nullopt;
+    const ScatterValue whole = scatter(v.point, v.bsdf, Event::finite, s->to, back);
+    if (!(whole.pdf_to_light > 0)) return std::nullopt;
+    const double cosine = v.point.abs_cos(s->to);
+    return PartContinuation{s->to, scatter(v.point, part, Event::finite, s->to, back).value * (cosine / s->pdf),
+                            whole.value * (cosine / whole.pdf_to_light), whole.pdf_to_light};
+}
+
 Rgb direct_light(const Scene& scene, const Vertex& v, const Vec3& back, int samples, SampleSource& source) {
     Rgb sum = next_event(scene, v, back, samples, source);
     sample_emission(scene, v, back, source, [&](const SurfacePoint& /*emitter*/, const Rgb& value) { sum += value; });

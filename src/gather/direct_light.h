@@ -11,16 +11,49 @@ namespace keyhole {
 /// sample_emission(), or as a gather ray.
 Rgb next_event(const Scene& scene, const Vertex& v, const Vec3& back, int samples, SampleSource& source);
 
+/// A direction drawn from a BSDF.
+struct DrawnDirection {
+    Vec3 w;     ///< unit
+    Rgb weight; ///< scattering times cosine over density
+    double pdf; ///< per solid angle
+};
+/// What lies in that direction of emitters: as sample_emission().
+template <class Visit>
+void visit_emission(const Scene& scene, const Vertex& v, const DrawnDirection& drawn, const Visit& visit) {
+    const auto hit = next_vertex(scene, v, drawn.w);
+    if (!hit || !hit->point.is_emitter()) return;
+    visit(hit->point, drawn.weight * scene.transmittance(v.point, hit->point) *
+                          emission_with_mis(scene, v, *hit, drawn.w, drawn.pdf));
+}
+
 /// What a direction drawn from the BSDF meets of emitters, weighted against next_event(): `visit(const SurfacePoint&
 /// emitter, const Rgb& value)` if it carries anything.
 template <class Visit>
 void sample_emission(const Scene& scene, const Vertex& v, const Vec3& back, SampleSource& source, const Visit& visit) {
     const auto next = continue_walk(v, back, From::eye, source);
     if (!next || is_specular(next->event)) return;
-    const auto hit = next_vertex(scene, v, next->w);
-    if (!hit || !hit->point.is_emitter()) return;
-    visit(hit->point, next->weight * scene.transmittance(v.point, hit->point) *
-                          emission_with_mis(scene, v, *hit, next->w, next->pdf));
+    visit_emission(scene, v, {next->w, next->weight, next->pdf}, visit);
+}
+
+/// A direction drawn from one part of a BSDF (Bsdf::glossy_part(), or a diffuse one), weighed two ways.
+struct PartContinuation {
+    Vec3 w;     ///< unit
+    Rgb part;   ///< scattering by the part, times cosine, over the part's density
+    Rgb whole;  ///< that by the finite part as a whole, over its density
+    double pdf; ///< density of the whole per solid angle
+};
+/// None where the part absorbs. The mean over directions of the whole BSDF is that over its parts, each with the
+/// probability with which the whole draws from it (Bsdf::glossy_probability()).
+std::optional<PartContinuation> continue_by_part(const Vertex& v, const Bsdf& part, const Vec3& back,
+                                                 SampleSource& source);
+
+/// sample_emission() where directions are drawn from the diffuse part alone.
+template <class Visit>
+void sample_emission_by_diffuse_part(const Scene& scene, const Vertex& v, const Vec3& back, SampleSource& source,
+                                     const Visit& visit) {
+    const Bsdf white(Frame(v.bsdf.shading_normal()), DiffuseBsdf{Rgb(1.0)});
+    if (const auto next = continue_by_part(v, white, back, source))
+        visit_emission(scene, v, {next->w, next->whole, next->pdf}, visit);
 }
 
 /// Direct light that `v` reflects towards `back` [W/(m^2 sr)], by both techniques, weighted against each other: the

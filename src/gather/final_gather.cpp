@@ -5,13 +5,16 @@
 #include "sampling/paths/random_walk.h"
 #include "sampling/paths/seen_surface.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <utility>
 
 namespace keyhole {
 namespace {
 
-/// Glass at which both ways are followed; later ones choose one. Which way a highlight lies would else be the noisiest
-/// question of the picture.
+/// Glass at which both ways are followed, and coats whose mirror images are: later ones choose. Which way a highlight
+/// lies would else be the noisiest question of the picture.
 constexpr int kSplits = 1;
 
 } // namespace
@@ -57,14 +60,17 @@ struct FinalGather::EyeWalk : SpecularWalkHooks {
     }
 
   private:
-    /// Follows both ways on from a vertex that reflects and transmits, where splits are left.
+    /// Where splits are left, follows all specular ways on from a vertex that would choose: between two of them, or
+    /// between one and the finite part, which is done.
     bool split(const Vertex& v, const Vec3& back, const Rgb& throughput) {
-        const auto reflected = v.bsdf.delta(back, Event::reflect), transmitted = v.bsdf.delta(back, Event::transmit);
-        if (splits == 0 || !reflected || !transmitted) return false;
-        for (const DeltaScatter& lobe : {*reflected, *transmitted}) {
-            const Rgb weight = lobe.coefficient / (lobe.eta * lobe.eta);
-            EyeWalk part{{}, gather, source, out, share * lobe.probability, saw_surface, splits - 1, scatterings};
-            part.follow({&v.point, &v.point, lobe.to, throughput * weight});
+        const std::array lobes{v.bsdf.delta(back, Event::reflect), v.bsdf.delta(back, Event::transmit)};
+        const int ways = (lobes[0] ? 1 : 0) + (lobes[1] ? 1 : 0) + (v.bsdf.traits().finite ? 1 : 0);
+        if (splits == 0 || ways < 2) return false;
+        for (const auto& lobe : lobes) {
+            if (!lobe) continue;
+            const Rgb weight = lobe->coefficient / (lobe->eta * lobe->eta);
+            EyeWalk part{{}, gather, source, out, share * lobe->probability, saw_surface, splits - 1, scatterings};
+            part.follow({&v.point, &v.point, lobe->to, throughput * weight});
         }
         return true;
     }
@@ -83,26 +89,23 @@ void FinalGather::draw(const Vec2& image, SampleSource& source, Sample& out) con
 
 void FinalGather::shade(const Vertex& v, const Vec3& back, const Rgb& throughput, int scatterings, SampleSource& source,
                         Sample& out) const {
-    if (const auto cached = ask_cache(v, back)) {
-        out.direct += throughput * direct_light(scene_, v, back, samples_.light, source);
-        out.indirect += throughput * *cached;
-    } else {
-        Rgb direct = next_event(scene_, v, back, samples_.light, source), indirect(0.0);
-        for (int i = 0; i < samples_.rays; ++i) {
-            Rgb emitted(0.0);
-            indirect += gather(v, back, scatterings, source, emitted) / samples_.rays;
-            direct += emitted / samples_.rays;
-        }
-        out.direct += throughput * direct;
-        out.indirect += throughput * indirect;
-    }
+    const auto cached = ask_cache(v, back);
+    Light light{Rgb(0.0), cached ? *cached : Rgb(0.0)};
+    if (!cached)
+        light = gather_all(v, back, scatterings, source);
+    else if (v.bsdf.traits().glossy)
+        light += gather_glossy(v, back, scatterings, source);
+    else
+        light.direct = direct_light(scene_, v, back, samples_.light, source);
+    out.direct += throughput * light.direct;
+    out.indirect += throughput * light.indirect;
     const Rgb caustic = throughput * rays_.caustic(v, back);
     out.caustic += caustic;
     if (out.confirm) out.unconfirmed += luminance(caustic) * rays_.unconfirmed_caustic(v, back);
 }
 
 std::optional<Rgb> FinalGather::ask_cache(const Vertex& v, const Vec3& back) const {
-    if (cache_ == nullptr || !v.bsdf.traits().near_lambertian) return std::nullopt;
+    if (cache_ == nullptr || !v.bsdf.traits().diffuse) return std::nullopt;
     const Vec3 normal = cache_normal(v, back);
     const auto answer = cache_->irradiance(v.point.p, normal);
     asked_.fetch_add(1, std::memory_order_relaxed);
@@ -110,16 +113,40 @@ std::optional<Rgb> FinalGather::ask_cache(const Vertex& v, const Vec3& back) con
         unanswered_.fetch_add(1, std::memory_order_relaxed);
         return std::nullopt;
     }
-    return v.bsdf.eval(normal, back) * answer.irradiance;
+    // Light of the side that is seen geometrically; a shading normal may turn that away.
+    return normal.dot(back) > 0 ? v.bsdf.diffuse_reflectance(back) * answer.irradiance : Rgb(0.0);
 }
 
-Rgb FinalGather::gather(const Vertex& from, const Vec3& back, int scatterings, SampleSource& source,
-                        Rgb& direct) const {
-    const auto first = continue_walk(from, back, From::eye, source);
-    if (!first || is_specular(first->event)) return Rgb(0.0);
-    const auto arrival = rays_.trace(from, first->w, first->pdf, scatterings, source);
-    direct = first->weight * arrival.emitted;
-    return first->weight * arrival.indirect;
+FinalGather::Light FinalGather::gather_all(const Vertex& v, const Vec3& back, int scatterings,
+                                           SampleSource& source) const {
+    Light sum{next_event(scene_, v, back, samples_.light, source), Rgb(0.0)};
+    for (int i = 0; i < samples_.rays; ++i) {
+        const auto first = continue_walk(v, back, From::eye, source);
+        if (!first || is_specular(first->event)) continue;
+        const auto arrival = rays_.trace(v, first->w, first->pdf, scatterings, source);
+        sum.indirect += first->weight * arrival.indirect / samples_.rays;
+        sum.direct += first->weight * arrival.emitted / samples_.rays;
+    }
+    return sum;
+}
+
+FinalGather::Light FinalGather::gather_glossy(const Vertex& v, const Vec3& back, int scatterings,
+                                              SampleSource& source) const {
+    Light sum{next_event(scene_, v, back, samples_.light, source), Rgb(0.0)};
+    const double glossy = v.bsdf.glossy_probability(back);
+    sample_emission_by_diffuse_part(scene_, v, back, source, [&](const SurfacePoint& /*emitter*/, const Rgb& value) {
+        sum.direct += value * (1 - glossy);
+    });
+    const Bsdf lobe = v.bsdf.glossy_part();
+    const int rays = std::max(1, static_cast<int>(std::lround(samples_.rays * glossy)));
+    for (int i = 0; i < rays; ++i) {
+        const auto first = continue_by_part(v, lobe, back, source);
+        if (!first) continue;
+        const auto arrival = rays_.trace(v, first->w, first->pdf, scatterings, source);
+        sum.indirect += first->part * arrival.indirect / rays;
+        sum.direct += first->whole * arrival.emitted * (glossy / rays);
+    }
+    return sum;
 }
 
 } // namespace keyhole

@@ -12,7 +12,7 @@ namespace keyhole {
 /// At each visible point.
 struct GatherSamples {
     int light; ///< of emitters
-    int rays;  ///< gather rays, where the cache doesn't serve
+    int rays;  ///< gather rays, where the cache doesn't serve; where it serves the diffuse part, its share of them
 };
 
 /// Thread-safe; immutable but for what it counts. All arguments by reference or pointer must outlive it.
@@ -43,16 +43,29 @@ class FinalGather {
         bool confirm = false;   ///< whether to ask pilot photons
         double unconfirmed = 0; ///< luminance of caustics that they don't confirm
     };
-    /// A walk from the eye by specular events. At the first glass on its way both ways are followed.
+    /// A walk from the eye by specular events. At the first glass or coat on its way all of these are followed.
     struct EyeWalk;
     /// Everything that the finite scattering at the last two vertices seen does: direct light, caustic, gather rays.
     void shade(const Vertex& v, const Vec3& back, const Rgb& throughput, int scatterings, SampleSource& source,
                Sample& out) const;
     void draw(const Vec2& image, SampleSource& source, Sample& out) const;
-    /// Radiance towards `back` by cached irradiance; none where the surface or the cache won't do.
+    /// Radiance towards `back` that the diffuse part reflects by cached irradiance; none where there is no such part or
+    /// no such record.
     std::optional<Rgb> ask_cache(const Vertex& v, const Vec3& back) const;
-    /// One gather ray; its share of direct light (MIS against next_event()) goes to `direct`.
-    Rgb gather(const Vertex& from, const Vec3& back, int scatterings, SampleSource& source, Rgb& direct) const;
+
+    struct Light {
+        Rgb direct, indirect; ///< caustics left out
+        Light& operator+=(const Light& o) {
+            direct += o.direct;
+            indirect += o.indirect;
+            return *this;
+        }
+    };
+    /// By gather rays; what they meet of emitters is direct light, by MIS against next_event().
+    Light gather_all(const Vertex& v, const Vec3& back, int scatterings, SampleSource& source) const;
+    /// All direct light, and indirect light that the glossy part reflects, by gather rays drawn from that part. For
+    /// direct light these stand for the samples of the BSDF that would come from it.
+    Light gather_glossy(const Vertex& v, const Vec3& back, int scatterings, SampleSource& source) const;
 
     const Scene& scene_;
     const GatherRays& rays_;

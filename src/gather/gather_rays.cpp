@@ -22,7 +22,15 @@ PhotonQuery query_at(const Vertex& v, const Vec3& back, float radius, const Look
     return {{v.point.p, facing(v.point.ng, back)}, radius, options.nearest, options.shrink};
 }
 
+/// Least probability with which the glossy part is looked at where a ray ends.
+constexpr double kLeastGlossy = 0.05;
+
 } // namespace
+
+/// What of the light that the glossy part reflects is not known yet.
+struct GatherRays::Missing {
+    bool direct, indirect;
+};
 
 /// Where a ray comes from, as far as what it meets depends on that.
 struct GatherRays::Leg {
@@ -83,20 +91,35 @@ bool GatherRays::too_near(const Leg& leg, std::uint32_t place) const {
 
 Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSource& source) const {
     if (!is_covered(maps_.coverage, v, back)) return Rgb(0.0);
-    if (maps_.irradiance == nullptr || maps_.irradiance->places().empty() || !v.bsdf.traits().near_lambertian) {
+    if (maps_.irradiance == nullptr || maps_.irradiance->places().empty() || !v.bsdf.traits().diffuse) {
         const Rgb direct = direct_light(scene_, v, back, 1, source);
         return direct + global(v, back);
     }
     const auto known = maps_.irradiance->irradiance(v.point, facing(v.point.ng, back));
     // Photons may be near, but none that this place sees: those of the other side of a wall.
     if (!known.known) return direct_light(scene_, v, back, 1, source);
-    const Rgb f = v.bsdf.eval(back, back);
+    const Rgb f = v.bsdf.diffuse_reflectance(back);
     const auto near = maps_.direct->direct(known.place, v.point.p);
-    const Rgb direct = near ? f * *near : direct_light(scene_, v, back, 1, source);
-    if (!too_near(leg, known.place)) return direct + f * known.irradiance;
-    const auto next = continue_walk(v, back, From::eye, source);
-    if (!next || is_specular(next->event)) return direct;
-    return direct + next->weight * trace(v, next->w, next->pdf, {0, leg.scatterings + 1, true}, source).indirect;
+    Rgb sum = near ? f * *near : direct_light(scene_, v, back, 1, source);
+    const bool on = too_near(leg, known.place);
+    if (!on) {
+        sum += f * known.irradiance;
+    } else if (const auto next = continue_walk(v, back, From::eye, source); next && !is_specular(next->event)) {
+        sum += next->weight * trace(v, next->w, next->pdf, {0, leg.scatterings + 1, true}, source).indirect;
+    }
+    if (v.bsdf.traits().glossy) sum += glossy(v, back, {near.has_value(), !on}, source);
+    return sum;
+}
+
+Rgb GatherRays::glossy(const Vertex& v, const Vec3& back, const Missing& missing, SampleSource& source) const {
+    const double p = std::max(kLeastGlossy, v.bsdf.glossy_probability(back));
+    if (!(source.next() < p)) return Rgb(0.0);
+    Vertex lobe = v;
+    lobe.bsdf = v.bsdf.glossy_part();
+    Rgb sum(0.0);
+    if (missing.direct) sum += direct_light(scene_, lobe, back, 1, source);
+    if (missing.indirect) sum += global(lobe, back);
+    return sum / p;
 }
 
 Rgb GatherRays::caustic(const Vertex& v, const Vec3& back) const {

@@ -50,12 +50,15 @@ class GatherRays {
 
   private:
     struct Leg;
+    struct Missing;
     struct Walk;
     Arrival trace(const Vertex& from, const Vec3& w, double pdf, const Leg& start, SampleSource& source) const;
     /// Whether a ray from `leg.distance` away sees the estimate at a place from too near.
     bool too_near(const Leg& leg, std::uint32_t place) const;
     /// Radiance towards `back` that `v` reflects by its finite part.
     Rgb reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSource& source) const;
+    /// What the glossy part adds to that where the rest is known: seldom, and all the more then.
+    Rgb glossy(const Vertex& v, const Vec3& back, const Missing& missing, SampleSource& source) const;
     /// What the global map says of light that `v` reflects towards `back`.
     Rgb global(const Vertex& v, const Vec3& back) const;
 

@@ -16,8 +16,13 @@ struct VisiblePointWalk : SpecularWalkHooks {
         if (v.point.site == Site::infinite) return false;
         ++scatterings;
         length += (v.point.p - ray.last->p).length();
-        if (v.bsdf.traits().near_lambertian) found = {v, -ray.w, length, scatterings};
-        return !found;
+        const BsdfTraits traits = v.bsdf.traits();
+        if (traits.diffuse) found = {v, -ray.w, length, scatterings};
+        return !found || traits.delta;
+    }
+    bool leave(const Vertex& /*v*/, const Continuation& next, const WalkRay& /*ray*/) {
+        if (is_specular(next.event)) found.reset();
+        return is_specular(next.event);
     }
 };
 

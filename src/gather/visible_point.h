@@ -17,7 +17,8 @@ struct VisiblePoint {
     bool leaves(const Vec3& w) const { return w.dot(facing(vertex.point.ng, back)) > 0; }
 };
 
-/// The near-Lambertian point that is seen at `image` (window coordinates), by specular events chosen at random.
+/// The point with a diffuse part that is seen at `image` (window coordinates), by events chosen at random: where it has
+/// a smooth coat, the mirror image in that may be looked at instead.
 std::optional<VisiblePoint> visible_point(const GatherRays& rays, const Vec2& image, SampleSource& source);
 
 /// Shading normal on the side of `back`: what irradiance records are kept by.

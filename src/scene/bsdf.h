@@ -25,7 +25,9 @@ struct BlackBsdf {
 };
 
 /// A model in its shading frame. All directions are unit, in world space, and point away from the surface.
-/// To add a model: a file in bsdfs/ with these five members, and its name here.
+/// To add a model: a file in bsdfs/ with these five members, and its name here. One with a diffuse part has
+/// diffuse_reflectance() and diffuse_weight() besides; if it has a glossy part as well, also glossy_part(),
+/// glossy_albedo() and glossy_probability().
 class Bsdf {
   public:
     using Model = std::variant<BlackBsdf, DiffuseBsdf, DiffuseTransmissionBsdf, MirrorBsdf, ConductorBsdf,
@@ -89,7 +91,69 @@ class Bsdf {
         return d;
     }
 
+    // The finite part is f = r(to_eye) w(to_light) + a glossy part. Where light is the same from everywhere, the
+    // diffuse part reflects r times the irradiance E; elsewhere r times the integral of w L cos, which lies between the
+    // least w and the largest times E (docs/gather.md).
+
+    /// r: what the diffuse part reflects towards `to_eye` of each unit of irradiance [1/sr]; 0 where there is none.
+    Rgb diffuse_reflectance(const Vec3& to_eye) const {
+        return visit([&]<class M>(const M& m) {
+            if constexpr (kIsPartlyDiffuse<M>)
+                return m.diffuse_reflectance(frame_.to_local(to_eye));
+            else
+                return Rgb(0.0);
+        });
+    }
+
+    /// w: the weight of light from `to_light` in that. Its mean over the hemisphere, by cosine, is 1.
+    double diffuse_weight(const Vec3& to_light) const {
+        return visit([&]<class M>(const M& m) -> double {
+            if constexpr (kIsPartlyDiffuse<M>)
+                return m.diffuse_weight(frame_.to_local(to_light));
+            else
+                return 1;
+        });
+    }
+
+    /// What is left without the diffuse part: a BSDF with eval(), pdf(), sample() and delta() of its own.
+    Bsdf glossy_part() const {
+        return {frame_, visit([]<class M>(const M& m) -> Model {
+                    if constexpr (kIsPartlyGlossy<M>)
+                        return m.glossy_part();
+                    else if constexpr (kIsPartlyDiffuse<M>)
+                        return BlackBsdf{};
+                    else
+                        return m;
+                })};
+    }
+
+    /// Fraction of the light along `from` that the glossy part reflects, nearly; 1 for models that are nothing else.
+    double glossy_albedo(const Vec3& from) const {
+        return visit([&]<class M>(const M& m) -> double {
+            if constexpr (kIsPartlyGlossy<M>)
+                return m.glossy_albedo(frame_.to_local(from));
+            else
+                return kIsPartlyDiffuse<M> ? 0 : 1;
+        });
+    }
+
+    /// Probability that sample(), having come along `from`, draws from the glossy part what it draws from the finite
+    /// one: pdf() is that of the two parts, mixed so.
+    double glossy_probability(const Vec3& from) const {
+        return visit([&]<class M>(const M& m) -> double {
+            if constexpr (kIsPartlyGlossy<M>)
+                return m.glossy_probability(frame_.to_local(from));
+            else
+                return kIsPartlyDiffuse<M> ? 0 : 1;
+        });
+    }
+
   private:
+    template <class M> static constexpr bool kIsPartlyDiffuse = requires(const M& m, const Vec3& w) {
+        m.diffuse_reflectance(w);
+    };
+    template <class M> static constexpr bool kIsPartlyGlossy = requires(const M& m) { m.glossy_part(); };
+
     Frame frame_;
     Model model_;
 };

@@ -49,9 +49,15 @@ inline std::optional<BsdfSample> finite_sample(const Vec3& to, double pdf) {
 
 /// What the renderer may leave out for a BSDF that lacks it.
 struct BsdfTraits {
-    bool finite = false;          ///< has a D part
-    bool delta = false;           ///< has S parts
-    bool near_lambertian = false; ///< its finite part may be served from cached irradiance
+    bool finite = false;  ///< has a D part: diffuse, glossy, or both
+    bool delta = false;   ///< has S parts
+    bool diffuse = false; ///< of its finite part something follows from irradiance alone: Bsdf::diffuse_reflectance()
+    bool glossy = false;  ///< and something doesn't
+
+    /// What either has.
+    friend constexpr BsdfTraits operator|(const BsdfTraits& a, const BsdfTraits& b) {
+        return {a.finite || b.finite, a.delta || b.delta, a.diffuse || b.diffuse, a.glossy || b.glossy};
+    }
 };
 
 } // namespace keyhole

@@ -90,10 +90,7 @@ void Scene::attach_shapes() {
         }
         if (is_invisible_light(shape)) continue;
         accelerator_.attach(shape, i);
-        const BsdfTraits t = shape.material ? shape.material->traits() : BsdfTraits{};
-        traits_.finite |= t.finite;
-        traits_.delta |= t.delta;
-        traits_.near_lambertian |= t.near_lambertian;
+        if (shape.material) traits_ = traits_ | shape.material->traits();
     }
     accelerator_.commit();
     lower_ = accelerator_.lower();

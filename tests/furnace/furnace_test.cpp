@@ -23,6 +23,7 @@ void PrintTo(const FurnaceCase& c, std::ostream* out) { *out << c.name; }
 
 const FurnaceCase kFurnaces[] = {
     {"Diffuse", [] { return test::furnace(kRho); }, false},
+    {"Varnished", [] { return test::varnished_furnace(kRho); }, true},
     {"WithoutLoss", [] { return test::furnace(kRho, true); }, true}, // a mirror and a glass ball that swallow nothing
 };
 
@@ -71,7 +72,7 @@ TEST_P(Furnace_HasItsClosedForm, InEveryBlock) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, Furnace_HasItsClosedForm,
-                         testing::Combine(testing::Values(MethodCase{"path"}, MethodCase{"bdpt"}, MethodCase{"mlt"},
+                         testing::Combine(testing::Values(MethodCase{"path"}, MethodCase{"bdpt"}, MethodCase{"mlt", 16},
                                                           MethodCase{"pssmlt"}, MethodCase{"mmlt", 16},
                                                           MethodCase{"rjmlt", 16}, MethodCase{"mps", 16, true},
                                                           MethodCase{"ipm", 8, true}, MethodCase{"pm", 8, true},

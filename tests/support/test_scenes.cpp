@@ -178,6 +178,43 @@ std::unique_ptr<Scene> furnace(double rho, bool specular) {
 
 namespace {
 
+MaterialPtr varnished(const Rgb& base, double alpha) {
+    return make_coated_diffuse(constant_texture(base), constant_texture(alpha), constant_texture(alpha), 1.5,
+                               constant_texture(0.0));
+}
+
+} // namespace
+
+std::unique_ptr<Scene> varnished_furnace(double rho) {
+    SceneMaker m;
+    const auto white = varnished(Rgb(1.0), 0);
+    m.room({-1, -1, -1}, {1, 1, 1}, make_diffuse(Rgb(rho)), Rgb(1.0))
+        .sphere({-0.5f, 0.1f, -0.5f}, 0.35f, white)
+        .sphere({0.4f, 0, 0}, 0.35f, white)
+        .camera({0, 0, 0.9f}, {0, 0, -1}, 60)
+        .window(32, 32);
+    return m.build();
+}
+
+std::unique_ptr<Scene> varnished_box(double alpha) {
+    const auto white = varnished(Rgb(0.75), alpha), red = varnished(Rgb(0.75, 0.25, 0.2), alpha),
+               blue = varnished(Rgb(0.2, 0.4, 0.7), alpha);
+    SceneMaker m;
+    m.rectangle({-1, 0, -1}, {0, 0, 4}, {2, 0, 0}, white)
+        .rectangle({-1, 2, -1}, {2, 0, 0}, {0, 0, 4}, white)
+        .rectangle({-1, 0, -1}, {2, 0, 0}, {0, 2, 0}, make_diffuse(Rgb(0.6)))
+        .rectangle({-1, 0, 3}, {0, 2, 0}, {2, 0, 0}, white)
+        .rectangle({-1, 0, -1}, {0, 2, 0}, {0, 0, 4}, red)
+        .rectangle({1, 0, -1}, {0, 0, 4}, {0, 2, 0}, blue)
+        .rectangle({-0.3f, 1.4f, -0.3f}, {0, 0, 0.6f}, {0.6f, 0, 0}, make_diffuse(Rgb(0.0)), Rgb(40.0))
+        .sphere({-0.45f, 0.4f, -0.4f}, 0.4f, make_mirror(Rgb(0.9)))
+        .camera({0, 1, 2.9f}, {0, 0.95f, -1}, 42)
+        .window(64, 48);
+    return m.build();
+}
+
+namespace {
+
 /// One side of the partition of two rooms at `z`, with the slit from a to b.
 void add_leaf(SceneMaker& m, float a, float b, float z, const std::shared_ptr<const Material>& white) {
     m.rectangle({-2, 0, z}, {a + 2, 0, 0}, {0, 2.5f, 0}, white);

@@ -51,6 +51,9 @@ std::unique_ptr<Scene> glass_wall_box();
 /// a mirror ball and a glass ball that swallow nothing, and so change nothing.
 std::unique_ptr<Scene> furnace(double rho, bool specular = false);
 
+/// furnace() with two balls of a white base under a smooth coat, which swallow nothing, either.
+std::unique_ptr<Scene> varnished_furnace(double rho);
+
 /// Two diffuse rooms joined by a slit of the given width [m]; the light is in the far one. `thin`: what parts them is a
 /// plane, in which an opening lies as well.
 std::unique_ptr<Scene> two_rooms(float slit, bool thin = false);
@@ -60,6 +63,10 @@ std::unique_ptr<Scene> hazy_box();
 
 /// Two rough walls of metal under a smooth coat, which now and then swallow what they scatter, in a diffuse room.
 std::unique_ptr<Scene> coated_box();
+
+/// diffuse_box() whose walls are varnished with coats of roughness `alpha`, on bases of the same colours. Its light
+/// shines at the ceiling alone, so that most of what is seen comes by way of a coat. With a mirror ball.
+std::unique_ptr<Scene> varnished_box(double alpha);
 
 /// Open: a diffuse floor with a mirror ball and a glass ball under a sky that is bright on one side.
 std::unique_ptr<Scene> sky_box();

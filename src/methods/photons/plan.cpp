@@ -54,8 +54,8 @@ PlanItem plan_cache(const Scene& scene, const Settings& settings, bool gather) {
     const char* name = "irradiance cache";
     if (!settings.irradiance_cache) return {name, false, "the setting irradiance_cache is off"};
     if (!gather) return {name, false, "there is no indirect light to cache"};
-    return scene.traits().near_lambertian ? PlanItem{name, true, "there are diffuse surfaces"}
-                                          : PlanItem{name, false, "no surface is diffuse"};
+    return scene.traits().diffuse ? PlanItem{name, true, "there are diffuse surfaces"}
+                                  : PlanItem{name, false, "no surface is diffuse"};
 }
 
 } // namespace

@@ -17,11 +17,13 @@ struct SurveySink {
 
     bool arrival(const EyeWalk& walk, const Rgb& /*throughput*/, int /*finite*/) {
         if (walk.size() > 2) return true;
-        const BsdfTraits traits = walk.back().bsdf.traits();
+        const Vertex& seen = walk.back();
+        const BsdfTraits traits = seen.bsdf.traits();
+        const Vec3 back = direction(seen.point, walk[0].point);
         saw_surface = true;
         survey.specular += traits.delta ? 1 : 0;
-        survey.glossy += traits.finite && !traits.near_lambertian ? 1 : 0;
-        survey.diffuse += traits.near_lambertian ? 1 : 0;
+        survey.glossy += traits.glossy ? seen.bsdf.glossy_probability(back) : 0;
+        survey.diffuse += traits.diffuse ? 1 : 0;
         return true;
     }
     void contribution(const EyeWalk& /*walk*/, const Vertex& x0, const Rgb& value, LightClass light) {

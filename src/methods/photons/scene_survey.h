@@ -20,7 +20,8 @@ struct SceneSurvey {
     /// Mean luminance that light from each emitter makes, direct or not; by the emitter's index.
     std::vector<double> by_emitter;
     /// Shares of the window where the first surface is of a kind: with a delta part, with a finite part that no cache
-    /// serves (glossy), near-Lambertian; they may add up to more than 1. `nothing`: no surface.
+    /// serves (glossy; where there is a diffuse part as well, by its share in what they reflect), with a diffuse part;
+    /// they may add up to more than 1. `nothing`: no surface.
     double specular = 0, glossy = 0, diffuse = 0, nothing = 0;
 
     const RunningStats& of(LightClass c) const { return light[static_cast<std::size_t>(c)]; }

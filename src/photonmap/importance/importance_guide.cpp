@@ -12,8 +12,10 @@ std::vector<Photon> ImportanceGuide::some(const PhotonMap& importons) {
 std::optional<double> ImportanceGuide::visible_power(const Vertex& v, const Vec3& to_light, const Rgb& power) const {
     const auto answer = map_.irradiance(v.point.p, facing(v.point.ng, to_light));
     if (!answer.known) return std::nullopt;
-    // Where light leaves is not known here: a diffuse surface doesn't mind, and others are taken for white ones.
-    const Rgb scattering = v.bsdf.traits().near_lambertian ? v.bsdf.eval(to_light, to_light) : Rgb(1 / kPi);
+    // Where light leaves is not known here: a diffuse part doesn't mind, and what a glossy one reflects in all is taken
+    // to leave evenly.
+    const Rgb scattering = v.bsdf.diffuse_reflectance(to_light) * v.bsdf.diffuse_weight(to_light) +
+                           Rgb(v.bsdf.glossy_albedo(to_light) / kPi);
     const double visible = luminance(power * scattering * answer.irradiance);
     if (!(visible > 0)) return std::nullopt;
     return visible;

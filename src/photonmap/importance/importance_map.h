@@ -29,7 +29,10 @@ class ImportanceMap {
 
         /// Whether a power may be divided by it: enough importons say so, none that a wall may hide, on a surface where
         /// they can tell; a glossy lobe sees few of them, however many there are.
-        bool trusted(const Bsdf& bsdf) const { return importons >= 16 && !obstructed && bsdf.traits().near_lambertian; }
+        bool trusted(const Bsdf& bsdf) const {
+            const BsdfTraits traits = bsdf.traits();
+            return importons >= 16 && !obstructed && traits.diffuse && !traits.glossy;
+        }
     };
 
     /// E(d2, to_light) = integral of fs(d2) G(d2, d1) fs(d1) ... over all ways on to the eye: the sum over importons

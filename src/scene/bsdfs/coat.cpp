@@ -95,6 +95,29 @@ CoatInterface::CoatInterface(double eta) : eta_(eta) {
         sum += share;
     }
     for (float& share : internal_share_) share = sum > 0 ? share / static_cast<float>(sum) : 0.0f;
+    fill_mean_through();
+}
+
+void CoatInterface::fill_mean_through() {
+    constexpr std::size_t kSteps = 128; // by the square of the cosine, in which all directions weigh the same
+    for (std::size_t a = 0; a < kAlphas; ++a)
+        for (std::size_t u = 0; u < kClear; ++u) {
+            const double clear = static_cast<double>(u) / (kClear - 1);
+            double sum = 0;
+            for (std::size_t i = 0; i < kSteps; ++i) {
+                const double cosine = std::sqrt(node(i, kSteps)), inside = refracted(cosine);
+                const double way = clear == 1 ? 1.0 : clear > 0 && inside > 0 ? std::pow(clear, 1 / inside) : 0.0;
+                sum += transmittance(cosine, static_cast<double>(a) / (kAlphas - 1)) * way;
+            }
+            mean_through_[a][u] = static_cast<float>(sum / kSteps);
+        }
+}
+
+double CoatInterface::mean_through(double alpha, double thickness) const {
+    const auto [a, ta] = locate(alpha, kAlphas);
+    const auto [u, tu] = locate(std::exp(-thickness), kClear);
+    const auto row = [&](std::size_t k) { return lerp(mean_through_[k][u], mean_through_[k][u + 1], tu); };
+    return lerp(row(a), row(a + 1), ta);
 }
 
 double CoatInterface::look_up(const Table& table, double cos_i, double alpha) {

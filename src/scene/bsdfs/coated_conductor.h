@@ -28,7 +28,9 @@ class CoatedConductorBsdf {
     CoatedConductorBsdf(const CoatInterface& interface, Roughness coat, double thickness, const ComplexIndex& metal,
                         Roughness base);
 
-    BsdfTraits traits() const { return {.finite = !base_.smooth(), .delta = coat_.smooth()}; }
+    BsdfTraits traits() const {
+        return {.finite = !base_.smooth(), .delta = coat_.smooth(), .glossy = !base_.smooth()};
+    }
 
     Rgb eval(const Vec3& to_light, const Vec3& to_eye) const;
     double pdf(const Vec3& from, const Vec3& to) const;

@@ -71,4 +71,28 @@ std::optional<DeltaScatter> CoatedDiffuseBsdf::delta(const Vec3& from, Event eve
     return DeltaScatter{mirrored(from), Rgb(interface_->reflectance(cosine, 0)), coat, 1.0};
 }
 
+Rgb CoatedDiffuseBsdf::diffuse_reflectance(const Vec3& to_eye) const {
+    return Rgb(base_) * (mean_through() * through(upper(to_eye).z));
+}
+
+double CoatedDiffuseBsdf::diffuse_weight(const Vec3& to_light) const {
+    const double mean = mean_through();
+    return mean > 0 ? through(upper(to_light).z) / mean : 1.0;
+}
+
+CoatedDiffuseBsdf CoatedDiffuseBsdf::glossy_part() const {
+    CoatedDiffuseBsdf coat = *this;
+    coat.base_ = {};
+    coat.base_albedo_ = 0;
+    return coat;
+}
+
+double CoatedDiffuseBsdf::glossy_albedo(const Vec3& from) const {
+    return smooth() ? 0.0 : interface_->reflectance(upper(from).z, alpha());
+}
+
+double CoatedDiffuseBsdf::glossy_probability(const Vec3& from) const {
+    return smooth() ? 0.0 : coat_probability(upper(from).z);
+}
+
 } // namespace keyhole

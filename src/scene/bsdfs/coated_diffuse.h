@@ -20,17 +20,31 @@ class CoatedDiffuseBsdf {
     CoatedDiffuseBsdf(const CoatInterface& interface, const Rgb& reflectance, double alpha_x, double alpha_y,
                       double thickness);
 
-    BsdfTraits traits() const { return {.finite = base_.x + base_.y + base_.z > 0 || !smooth(), .delta = smooth()}; }
+    BsdfTraits traits() const {
+        const bool diffuse = base_.x + base_.y + base_.z > 0;
+        return {.finite = diffuse || !smooth(), .delta = smooth(), .diffuse = diffuse, .glossy = !smooth()};
+    }
 
     Rgb eval(const Vec3& to_light, const Vec3& to_eye) const;
     double pdf(const Vec3& from, const Vec3& to) const;
     std::optional<BsdfSample> sample(const Vec3& from, double u0, double u1, double u2) const;
     std::optional<DeltaScatter> delta(const Vec3& from, Event event) const;
 
+    /// What has been through the coat follows from irradiance E alone, but for the weight of each direction in that:
+    /// T(o) <T> rho / (pi eta^2 (1 - rho R)) times E, and the weight is T(i) / <T>, with <T> the mean of T over the
+    /// hemisphere, by cosine.
+    Rgb diffuse_reflectance(const Vec3& to_eye) const;
+    double diffuse_weight(const Vec3& to_light) const;
+    /// The coat's reflection.
+    CoatedDiffuseBsdf glossy_part() const;
+    double glossy_albedo(const Vec3& from) const;
+    double glossy_probability(const Vec3& from) const;
+
   private:
     bool smooth() const { return alpha_x_ == 0; }
     double alpha() const { return std::sqrt(alpha_x_ * alpha_y_); }
     double through(double cosine) const;
+    double mean_through() const { return interface_->mean_through(alpha(), thickness_); }
     double coat_probability(double cosine) const;
 
     const CoatInterface* interface_;

@@ -50,7 +50,7 @@ struct RoughConductorBsdf {
     ComplexIndex index;
     float alpha_x, alpha_y; ///< at least kSmoothAlpha / 10
 
-    static constexpr BsdfTraits traits() { return {.finite = true}; }
+    static constexpr BsdfTraits traits() { return {.finite = true, .glossy = true}; }
 
     Rgb eval(const Vec3& to_light, const Vec3& to_eye) const;
     double pdf(const Vec3& from, const Vec3& to) const;

@@ -10,7 +10,7 @@ namespace keyhole {
 struct DiffuseBsdf {
     StoredRgb reflectance;
 
-    static constexpr BsdfTraits traits() { return {.finite = true, .near_lambertian = true}; }
+    static constexpr BsdfTraits traits() { return {.finite = true, .diffuse = true}; }
 
     Rgb eval(const Vec3& to_light, const Vec3& to_eye) const {
         return to_light.z * to_eye.z > 0 ? Rgb(reflectance) * kInvPi : Rgb(0.0);
@@ -23,13 +23,17 @@ struct DiffuseBsdf {
         return finite_sample(to, pdf(from, to));
     }
     static std::optional<DeltaScatter> delta(const Vec3& /*from*/, Event /*event*/) { return std::nullopt; }
+
+    Rgb diffuse_reflectance(const Vec3& /*to_eye*/) const { return Rgb(reflectance) * kInvPi; }
+    static double diffuse_weight(const Vec3& /*to_light*/) { return 1; }
 };
 
-/// Lambertian reflection and transmission: paper, leaves, lamp shades.
+/// Lambertian reflection and transmission: paper, leaves, lamp shades. Light from behind is no part of the irradiance
+/// in front, so that all of it counts as glossy.
 struct DiffuseTransmissionBsdf {
     StoredRgb reflectance, transmittance;
 
-    static constexpr BsdfTraits traits() { return {.finite = true}; }
+    static constexpr BsdfTraits traits() { return {.finite = true, .glossy = true}; }
 
     Rgb eval(const Vec3& to_light, const Vec3& to_eye) const {
         const double sides = static_cast<double>(to_light.z) * to_eye.z;

@@ -3,7 +3,17 @@
 namespace keyhole {
 namespace {
 
-constexpr BsdfTraits kSmoothOrRough{.finite = true, .delta = true};
+constexpr BsdfTraits kSmoothOrRough{.finite = true, .delta = true, .glossy = true};
+
+/// Where roughness is the same everywhere it is known whether the coat reflects as a mirror.
+BsdfTraits coated_diffuse_traits(const FloatTexture& alpha_x, const FloatTexture& alpha_y) {
+    BsdfTraits traits{.finite = true, .delta = true, .diffuse = true, .glossy = true};
+    if (alpha_x->is_constant() && alpha_y->is_constant()) {
+        traits.glossy = rough_at(alpha_x, alpha_y, {}).has_value();
+        traits.delta = !traits.glossy;
+    }
+    return traits;
+}
 
 using Alphas = CoatedConductorBsdf::Roughness;
 
@@ -66,7 +76,7 @@ MaterialPtr read_coated_v3(Properties& p, const std::string& kind, double kd) {
 MaterialPtr make_coated_diffuse(ColorTexture reflectance, FloatTexture alpha_x, FloatTexture alpha_y, double eta,
                                 FloatTexture thickness) {
     return make_material(
-        "coated_diffuse", kSmoothOrRough,
+        "coated_diffuse", coated_diffuse_traits(alpha_x, alpha_y),
         [=, interface = CoatInterface::of(eta)](const SurfacePoint& point) -> Bsdf::Model {
             const Alphas coat = roughness(rough_at(alpha_x, alpha_y, point));
             return CoatedDiffuseBsdf(*interface, clamp01(reflectance->value(point)), coat.x, coat.y,

@@ -3,7 +3,7 @@
 namespace keyhole {
 namespace {
 
-constexpr BsdfTraits kConductorTraits{.finite = true, .delta = true};
+constexpr BsdfTraits kConductorTraits{.finite = true, .delta = true, .glossy = true};
 
 Bsdf::Model conductor(const ComplexIndex& index, const std::optional<Alpha>& rough) {
     if (!rough) return ConductorBsdf{index};

@@ -16,10 +16,7 @@ class MixMaterial final : public Material {
     Bsdf bsdf(const SurfacePoint& point) const override {
         return (place_hash(point, salt_) < amount_->value(point) ? b_ : a_)->bsdf(point);
     }
-    BsdfTraits traits() const override {
-        const BsdfTraits a = a_->traits(), b = b_->traits();
-        return {a.finite || b.finite, a.delta || b.delta, a.near_lambertian || b.near_lambertian};
-    }
+    BsdfTraits traits() const override { return a_->traits() | b_->traits(); }
     const char* kind() const override { return "mix"; }
     SurfaceDefaults surface() const override;
 
