@@ -100,7 +100,7 @@ TEST_F(PrincipledMaterial, IsASimplerOneWhereItCan) {
     EXPECT_EQ(Rgb(glass.transmit_tint), Rgb(1, 0.5, 0)) << "light goes in and out";
     EXPECT_EQ(Rgb(glass.reflect_tint), Rgb(1.0));
     EXPECT_FALSE(shape("type: principled, specular: 0").material->traits().delta);
-    EXPECT_TRUE(shape("type: principled, specular: 0").material->traits().near_lambertian);
+    EXPECT_TRUE(shape("type: principled, specular: 0").material->traits().diffuse);
 }
 
 TEST_F(PrincipledMaterial, IsGlassByItsShareWhereItIsNoMetal) {

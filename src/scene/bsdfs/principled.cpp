@@ -104,14 +104,48 @@ void PrincipledBsdf::find_means() {
 }
 
 BsdfTraits PrincipledBsdf::traits() const {
-    const bool diffuse = !is_black(base_) || !is_black(metal_) || sheen_weight() > 0;
-    return {.finite = diffuse || (has_gloss() && !smooth()) || (coat_ > 0 && !smooth_coat()),
-            .delta = (has_gloss() && smooth()) || (coat_ > 0 && smooth_coat())};
+    const bool diffuse = !is_black(base_), glossy = !is_black(metal_) || sheen_weight() > 0 ||
+                                                    (has_gloss() && !smooth()) || (coat_ > 0 && !smooth_coat());
+    return {.finite = diffuse || glossy,
+            .delta = delta_ && ((has_gloss() && smooth()) || (coat_ > 0 && smooth_coat())),
+            .diffuse = diffuse,
+            .glossy = glossy};
+}
+
+Rgb PrincipledBsdf::diffuse_reflectance(const Vec3& to_eye) const {
+    return Rgb(base_) * (layers(upper(to_eye).z).base * kInvPi);
+}
+
+double PrincipledBsdf::diffuse_weight(const Vec3& to_light) const {
+    return layers(upper(to_light).z).base / base_mean_;
+}
+
+PrincipledBsdf PrincipledBsdf::glossy_part() const {
+    PrincipledBsdf part = *this;
+    part.base_ = Rgb(0.0);
+    part.delta_ = false;
+    return part;
+}
+
+/// Of what is not a delta lobe.
+double PrincipledBsdf::glossy_albedo(const Vec3& from) const {
+    const double cosine = upper(from).z;
+    const Layers at = layers(cosine);
+    double sum = mean_of(Rgb(metal_)) * at.metal;
+    if (!smooth_coat()) sum += (1 - at.sheen) * at.coat;
+    if (!smooth()) sum += (1 - at.sheen) * (1 - at.coat) * at.gloss(mean_of(rgb(f0_)), f90_);
+    if (at.sheen > 0) sum += mean_of(rgb(sheen_)) * sheen_albedo(cosine);
+    return sum;
+}
+
+double PrincipledBsdf::glossy_probability(const Vec3& from) const {
+    const double glossy = glossy_albedo(from), base = mean_of(Rgb(base_)) * layers(upper(from).z).base;
+    return glossy + base > 0 ? glossy / (glossy + base) : 1;
 }
 
 Rgb PrincipledBsdf::sheen_part(double cosine_to_half) const { return rgb(sheen_) * schlick_weight(cosine_to_half); }
 
-Rgb PrincipledBsdf::glossy_part(const LocalVec& i, const LocalVec& o, const Layers& at_i, const Layers& at_o) const {
+Rgb PrincipledBsdf::glossy_value(const LocalVec& i, const LocalVec& o, const Layers& at_i, const Layers& at_o) const {
     const LocalVec h = half_vector(i, o);
     const double c = std::min(1.0, o.dot(h)), below = 1 - std::max(at_i.sheen, at_o.sheen);
     Rgb f(0.0);
@@ -137,6 +171,8 @@ PrincipledBsdf::Choice PrincipledBsdf::choice(double cosine, const Layers& at) c
     p.gloss = (1 - at.sheen) * (1 - at.coat) * at.gloss(mean_of(rgb(f0_)), f90_);
     p.cosine = mean_of(diffuse_albedo(at));
     if (at.sheen > 0) p.cosine += mean_of(rgb(sheen_)) * sheen_albedo(cosine);
+    if (!delta_ && smooth_coat()) p.coat = 0;
+    if (!delta_ && smooth()) p.gloss = 0;
     const double all = p.coat + p.gloss + p.cosine;
     return all > 0 ? Choice{p.coat / all, p.gloss / all, p.cosine / all} : Choice{};
 }
@@ -145,7 +181,7 @@ Rgb PrincipledBsdf::eval(const Vec3& to_light, const Vec3& to_eye) const {
     if (!(to_light.z * to_eye.z > 0)) return Rgb(0.0);
     const LocalVec i = upper(to_light), o = upper(to_eye);
     const Layers at_i = layers(i.z), at_o = layers(o.z);
-    return diffuse_part(at_i, at_o) + glossy_part(i, o, at_i, at_o);
+    return diffuse_part(at_i, at_o) + glossy_value(i, o, at_i, at_o);
 }
 
 double PrincipledBsdf::pdf(const Vec3& from, const Vec3& to) const {

@@ -30,9 +30,8 @@ struct PrincipledParameters {
 /// - Gloss is GGX with Schlick's Fresnel term; metal and dielectric differ in its reflectances only. A reflectance
 ///   below 0.02, which no matter has, fades at grazing angles too.
 /// - The diffuse base gets what its dielectric does not reflect: base (1 - A(i)) (1 - A(o)) / (pi (1 - mean A)), A
-/// being
-///   the albedo of all that lies above (Kelemen and Szirmay-Kalos 2001). `base_color` is thus what is seen, darkening
-///   by reflections inside the dielectric (Saunderson 1942) included.
+///   being the albedo of all that lies above (Kelemen and Szirmay-Kalos 2001). `base_color` is thus what is seen,
+///   darkening by reflections inside the dielectric (Saunderson 1942) included.
 /// - Light that a rough metal reflects several times comes back in the same form (Kulla and Conty 2017).
 /// - What lies below coat and sheen as gloss does is scaled by 1 - max(A(i), A(o)) of theirs, which is exact where the
 ///   gloss is narrow.
@@ -47,6 +46,15 @@ class PrincipledBsdf {
     double pdf(const Vec3& from, const Vec3& to) const;
     std::optional<BsdfSample> sample(const Vec3& from, double u0, double u1, double u2) const;
     std::optional<DeltaScatter> delta(const Vec3& from, Event event) const;
+
+    /// The diffuse base follows from irradiance alone, but for the weight of each direction: what is left to it there
+    /// over the mean of that. Metal's later reflections and the sheen count as glossy.
+    Rgb diffuse_reflectance(const Vec3& to_eye) const;
+    double diffuse_weight(const Vec3& to_light) const;
+    /// All but the base and delta lobes.
+    PrincipledBsdf glossy_part() const;
+    double glossy_albedo(const Vec3& from) const;
+    double glossy_probability(const Vec3& from) const;
 
     /// Whether it looks the same however it is turned around its normal.
     bool is_isotropic() const { return alpha_x_ == alpha_y_; }
@@ -92,7 +100,7 @@ class PrincipledBsdf {
     Choice choice(double cosine, const Layers& at) const;
 
     Rgb sheen_part(double cosine_to_half) const;
-    Rgb glossy_part(const LocalVec& i, const LocalVec& o, const Layers& at_i, const Layers& at_o) const;
+    Rgb glossy_value(const LocalVec& i, const LocalVec& o, const Layers& at_i, const Layers& at_o) const;
     Rgb diffuse_part(const Layers& at_i, const Layers& at_o) const;
     /// Integral of diffuse_part() times the light's cosine over all lights above.
     Rgb diffuse_albedo(const Layers& at_o) const;
@@ -102,6 +110,7 @@ class PrincipledBsdf {
     float alpha_x_, alpha_y_, coat_alpha_;
     Shares f0_, sheen_; // gloss along the normal; colour of the sheen
     Share f90_, dielectric_f0_, coat_;
+    bool delta_ = true; // whether smooth layers are followed
 };
 
 } // namespace keyhole
