@@ -4,8 +4,8 @@
 #pragma once
 
 #include "scene/camera.h"
-#include "scene/emitters/direct_light_sampler.h"
 #include "scene/emitter.h"
+#include "scene/emitters/direct_light_sampler.h"
 #include "scene/light_tree.h"
 #include "scene/media.h"
 #include "scene/shape.h"
