@@ -19,6 +19,19 @@ SurfacePoint point_of(std::uint32_t emitter, SurfacePoint point) {
     return point;
 }
 
+/// The place that is nearest to the mean of all.
+SurfacePoint middle_of(std::span<const FoundLight* const> found) {
+    Imath::V3d sum(0.0);
+    for (const FoundLight* f : found) sum += Imath::V3d(f->at.p);
+    const Vec3 mean(sum / static_cast<double>(found.size()));
+    const FoundLight* nearest =
+        *std::ranges::min_element(found, {}, [&](const FoundLight* f) { return (f->at.p - mean).length2(); });
+    SurfacePoint point;
+    point.p = nearest->at.p;
+    point.ng = point.ns = nearest->at.n;
+    return point;
+}
+
 } // namespace
 
 const LearnedDirectLight::Share* LearnedDirectLight::Cell::share_of(std::uint32_t emitter) const {
@@ -65,7 +78,7 @@ std::vector<LearnedDirectLight::Share> LearnedDirectLight::make_shares(std::span
     return shares;
 }
 
-LearnedDirectLight::Cell LearnedDirectLight::make_cell(std::span<const FoundLight* const> found) {
+LearnedDirectLight::Cell LearnedDirectLight::make_cell(std::span<const FoundLight* const> found) const {
     Cell cell;
     cell.count = found.size();
     if (found.size() < kLeastFound) return cell;
@@ -74,10 +87,12 @@ LearnedDirectLight::Cell LearnedDirectLight::make_cell(std::span<const FoundLigh
     std::array<double, kPlainShares.size()> moments{};
     Cell whole;
     whole.shares = make_shares(found);
+    cell.middle = middle_of(found);
+    for (Share& share : whole.shares) share.by_tree = scene_->light_tree().probability(cell.middle, share.emitter);
     for (const auto& [learned, held_out] : {std::pair{&some, &others}, std::pair{&others, &some}}) {
         cell.shares = make_shares(*learned, &whole);
         for (const FoundLight* f : *held_out) {
-            const double by_tree = f->choice * f->point_pdf, by_shares = cell.pdf(*f);
+            const double by_tree = whole.share_of(f->emitter)->by_tree * f->point_pdf, by_shares = cell.pdf(*f);
             for (std::size_t k = 0; k < moments.size(); ++k)
                 moments[k] +=
                     f->value * f->value / f->density / (kPlainShares[k] * by_tree + (1 - kPlainShares[k]) * by_shares);
@@ -111,7 +126,7 @@ EmitterPoint LearnedDirectLight::sample(const SurfacePoint& at, SampleSource& so
     const double u = source.next();
     EmitterPoint drawn;
     if (u < cell.plain) {
-        const std::uint32_t emitter = scene_->light_tree().sample(at, u / cell.plain).emitter;
+        const std::uint32_t emitter = scene_->light_tree().sample(asked_for(cell, at), u / cell.plain).emitter;
         drawn.point = point_of(emitter, scene_->emitter(emitter).sample_point(source).point);
     } else {
         const double v = (u - cell.plain) / (1 - cell.plain);
@@ -128,10 +143,15 @@ EmitterPoint LearnedDirectLight::sample(const SurfacePoint& at, SampleSource& so
     return drawn;
 }
 
+double LearnedDirectLight::by_tree(const Cell& cell, const SurfacePoint& at, std::uint32_t emitter) const {
+    if (const Share* share = cell.share_of(emitter)) return share->by_tree;
+    return scene_->light_tree().probability(asked_for(cell, at), emitter);
+}
+
 double LearnedDirectLight::pdf(const Cell& cell, const SurfacePoint& at, const SurfacePoint& x0) const {
     const Emitter& emitter = scene_->emitter(x0.emitter);
     const double point_pdf = emitter.point_pdf(x0);
-    double sum = cell.plain * scene_->light_tree().probability(at, x0.emitter) * point_pdf;
+    double sum = cell.plain * by_tree(cell, at, x0.emitter) * point_pdf;
     if (cell.plain < 1) sum += (1 - cell.plain) * cell.pdf(x0.emitter, at.p, direction(at, x0), point_pdf);
     return sum;
 }
@@ -142,7 +162,8 @@ double LearnedDirectLight::pdf(const SurfacePoint& at, const SurfacePoint& x0) c
 
 double LearnedDirectLight::pdf(const FoundLight& f) const {
     const Cell& cell = cells_[tree_.cell_of(f.at)];
-    return cell.plain * f.choice * f.point_pdf + (1 - cell.plain) * cell.pdf(f);
+    if (cell.plain == 1) return f.choice * f.point_pdf;
+    return cell.plain * by_tree(cell, cell.middle, f.emitter) * f.point_pdf + (1 - cell.plain) * cell.pdf(f);
 }
 
 std::size_t LearnedDirectLight::bytes() const {

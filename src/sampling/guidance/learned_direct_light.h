@@ -50,10 +50,12 @@ class LearnedDirectLight final : public DirectLightSampler {
         std::uint32_t emitter;
         double probability = 0;
         double up_to = 0;                ///< sum of the probabilities so far
+        double by_tree = 0;              ///< probability that the light tree has for the cell
         DirectionHistogram directions{}; ///< to an environment; empty: by the emitter
     };
     struct Cell {
         double plain = 1;          ///< share of samples by the light tree
+        SurfacePoint middle;       ///< what the light tree is asked for, where that is not all: cheaper than each place
         std::vector<Share> shares; ///< of the others; by emitter
         double ratio = 1;          ///< of second moments
         std::size_t count = 0;     ///< of samples that it was made from
@@ -65,8 +67,14 @@ class LearnedDirectLight final : public DirectLightSampler {
     };
     /// `like`: planes of the histograms are those that these have.
     static std::vector<Share> make_shares(std::span<const FoundLight* const> found, const Cell* like = nullptr);
-    static Cell make_cell(std::span<const FoundLight* const> found);
+    Cell make_cell(std::span<const FoundLight* const> found) const;
     const Cell& cell_of(const SurfacePoint& at) const { return cells_[tree_.cell_of({at.p, at.ng})]; }
+    /// What the light tree is asked for.
+    static const SurfacePoint& asked_for(const Cell& cell, const SurfacePoint& at) {
+        return cell.plain < 1 ? cell.middle : at;
+    }
+    /// With which the light tree chooses an emitter in a cell.
+    double by_tree(const Cell& cell, const SurfacePoint& at, std::uint32_t emitter) const;
     double pdf(const Cell& cell, const SurfacePoint& at, const SurfacePoint& x0) const;
 
     const Scene* scene_;
