@@ -116,7 +116,9 @@ void CoatInterface::fill_mean_through() {
 double CoatInterface::mean_through(double alpha, double thickness) const {
     const auto [a, ta] = locate(alpha, kAlphas);
     const auto [u, tu] = locate(std::exp(-thickness), kClear);
-    const auto row = [&](std::size_t k) { return lerp(mean_through_[k][u], mean_through_[k][u + 1], tu); };
+    const auto row = [&, u = u, tu = tu](std::size_t k) {
+        return lerp(mean_through_[k][u], mean_through_[k][u + 1], tu);
+    };
     return lerp(row(a), row(a + 1), ta);
 }
 
