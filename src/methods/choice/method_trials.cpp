@@ -19,12 +19,12 @@ namespace {
 /// Of the whole time, at most; and so many seconds with a smaller share of longer times.
 constexpr double kMost = 0.115, kSeconds = 0.55, kShare = 0.03;
 /// Of the whole time, what the survey that methods with photons start with may take.
-constexpr double kPlan = 0.08;
+constexpr double kPlan = 0.12;
 /// A trial that takes so many times as long as it should is given up.
 constexpr double kPatience = 3;
 /// Photons need some time however little they are to do: that share of all of it, up to so many seconds. To do without
 /// them may cost a hundred times the error.
-constexpr double kPatienceForPhotons = 0.055, kMostPatience = 0.4;
+constexpr double kPatienceForPhotons = 0.08, kMostPatience = 0.8;
 /// What traces importance costs is told by so many walks.
 constexpr std::int64_t kImportons = 4000;
 /// Number of the first render of a trial, for its seed; those that count have others.
