@@ -8,6 +8,7 @@
 #include "scene/emitters/sphere_map.h"
 #include "support/chi_squared.h"
 #include "support/test_scenes.h"
+#include "support/window_room.h"
 
 #include <gtest/gtest.h>
 
@@ -15,23 +16,6 @@
 
 namespace keyhole {
 namespace {
-
-/// A room of 3 x 2.5 x 3 m whose only opening is a window of 0.8 x 0.8 m in the wall at z = 0.
-test::SceneMaker room_with_a_window() {
-    const auto wall = make_diffuse(Rgb(0.6));
-    test::SceneMaker m;
-    m.rectangle({0, 0, 0}, {0, 0, 3}, {3, 0, 0}, wall);
-    m.rectangle({0, 2.5, 0}, {3, 0, 0}, {0, 0, 3}, wall);
-    m.rectangle({3, 0, 3}, {-3, 0, 0}, {0, 2.5, 0}, wall);
-    m.rectangle({0, 0, 3}, {0, 0, -3}, {0, 2.5, 0}, wall);
-    m.rectangle({3, 0, 0}, {0, 0, 3}, {0, 2.5, 0}, wall);
-    m.rectangle({0, 0, 0}, {3, 0, 0}, {0, 1, 0}, wall);
-    m.rectangle({0, 1.8f, 0}, {3, 0, 0}, {0, 0.7f, 0}, wall);
-    m.rectangle({0, 1, 0}, {1, 0, 0}, {0, 0.8f, 0}, wall);
-    m.rectangle({1.8f, 1, 0}, {1.2f, 0, 0}, {0, 0.8f, 0}, wall);
-    m.camera({1.5f, 1.3f, 2.9f}, {1.5f, 1.0f, 0}, 80).window(32, 24);
-    return m;
-}
 
 /// Thirty lamps, each in a closed room of its own; the eye sees the first. The second has a sliver of a door to it.
 test::SceneMaker many_rooms() {
@@ -158,7 +142,8 @@ TEST(DirectionHistogram, KeepsDirectionsWhereRaysDoNotMeet) {
 class LearnedDirectLight_Window : public testing::Test {
   protected:
     static std::unique_ptr<Scene> make() {
-        auto m = room_with_a_window();
+        auto m = test::room_with_a_window();
+        m.camera({1.5f, 1.3f, 2.9f}, {1.5f, 1.0f, 0}, 80).window(32, 24);
         m.emitter(make_constant_environment(Rgb(1, 2, 3)));
         m.emitter(make_distant_emitter(Vec3(0.2f, -0.6f, 0.7f).normalized(), Rgb(3)));
         return m.build();
@@ -259,7 +244,8 @@ TEST(LearnedDirectLight, LearnsNothingWhereThereIsNoChoiceOrNoGain) {
 }
 
 TEST(LearnedDirectLight, FallsBackOnTheLightTreeWhereNothingWasFound) {
-    auto m = room_with_a_window();
+    auto m = test::room_with_a_window();
+    m.camera({1.5f, 1.3f, 2.9f}, {1.5f, 1.0f, 0}, 80).window(32, 24);
     m.emitter(make_constant_environment(Rgb(1.0)));
     const auto scene = m.build();
     const LearnedDirectLight nothing(*scene, {});

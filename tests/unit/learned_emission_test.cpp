@@ -5,6 +5,7 @@
 #include "scene/emitters/emitters.h"
 #include "support/chi_squared.h"
 #include "support/test_scenes.h"
+#include "support/window_room.h"
 
 #include <gtest/gtest.h>
 
@@ -63,27 +64,17 @@ TEST(PlaneHistogram, IsEmptyWithoutAnArea) {
     EXPECT_TRUE(PlaneHistogram().empty());
 }
 
-/// A room of 3 x 2.5 x 3 m whose only opening is a window of 0.8 x 0.8 m in the wall at z = 0, and a yard before it.
-std::unique_ptr<Scene> room_with_a_window() {
-    const auto wall = make_diffuse(Rgb(0.6));
-    test::SceneMaker m;
-    m.rectangle({0, 0, 0}, {0, 0, 3}, {3, 0, 0}, wall);
-    m.rectangle({0, 2.5, 0}, {3, 0, 0}, {0, 0, 3}, wall);
-    m.rectangle({3, 0, 3}, {-3, 0, 0}, {0, 2.5, 0}, wall);
-    m.rectangle({0, 0, 3}, {0, 0, -3}, {0, 2.5, 0}, wall);
-    m.rectangle({3, 0, 0}, {0, 0, 3}, {0, 2.5, 0}, wall);
-    m.rectangle({0, 0, 0}, {3, 0, 0}, {0, 1, 0}, wall);
-    m.rectangle({0, 1.8f, 0}, {3, 0, 0}, {0, 0.7f, 0}, wall);
-    m.rectangle({0, 1, 0}, {1, 0, 0}, {0, 0.8f, 0}, wall);
-    m.rectangle({1.8f, 1, 0}, {1.2f, 0, 0}, {0, 0.8f, 0}, wall);
-    m.rectangle({-4, -0.2f, -8}, {0, 0, 7.9f}, {10, 0, 0}, wall);
+/// The room with a yard before its window, under a sky and a sun.
+std::unique_ptr<Scene> room_in_a_yard() {
+    auto m = test::room_with_a_window();
+    m.rectangle({-4, -0.2f, -8}, {0, 0, 7.9f}, {10, 0, 0}, make_diffuse(Rgb(0.6)));
     m.emitter(make_constant_environment(Rgb(1, 2, 3)));
     m.emitter(make_distant_emitter(Vec3(0.2f, -0.6f, 0.7f).normalized(), Rgb(8)));
     m.camera({1.5f, 1.3f, 2.9f}, {1.5f, 1.2f, 0}, 60).window(32, 24);
     return m.build();
 }
 
-/// Power that arrives at some walls, by the path; `scale`: of all power.
+/// Power that arrives at some walls, by the path.
 struct Arrivals {
     RunningStats floor, ceiling, inside;
     std::int64_t paths_inside = 0;
@@ -122,7 +113,7 @@ double z_score(const RunningStats& a, const RunningStats& b) {
 class LearnedEmissionInARoom : public testing::Test {
   protected:
     static constexpr int kPlainPaths = 2'000'000, kLearnedPaths = 200'000;
-    const std::unique_ptr<Scene> scene = room_with_a_window();
+    const std::unique_ptr<Scene> scene = room_in_a_yard();
     const LearnedEmission learned{*scene, {.paths = 16'384, .max_scatterings = kDepth}, {}};
 };
 
@@ -174,11 +165,11 @@ TEST(LearnedEmission, ChoosesTheLampsThatShineWhereTheEyeIs) {
 
 TEST(LearnedEmission, IsForLightFromInfinity) {
     EXPECT_FALSE(LearnedEmission::can_learn(*test::diffuse_box()));
-    EXPECT_TRUE(LearnedEmission::can_learn(*room_with_a_window()));
+    EXPECT_TRUE(LearnedEmission::can_learn(*room_in_a_yard()));
 }
 
 TEST(LearnedEmission, KnowsNothingWhereNoLightWasSeenAndBringsItStill) {
-    const auto scene = room_with_a_window();
+    const auto scene = room_in_a_yard();
     const LearnedEmission nothing(*scene, {.paths = 0, .max_scatterings = kDepth}, {});
     const Arrivals plain = trace(*scene, 400'000, 21, [&](Rng& rng) { return emit_light(*scene, rng); });
     const Arrivals same = trace(*scene, 400'000, 22, [&](Rng& rng) { return nothing.sample(rng); });
