@@ -48,6 +48,12 @@ struct PhotonQuality {
     };
     std::optional<Cache> cache;
     std::optional<double> unconfirmed; ///< share of the picture with caustics that pilot photons don't confirm
+    /// Squared errors relative to the picture, on average over it.
+    struct Noise {
+        double samples; ///< of a picture of one sample a pixel, from where in the pixel it lies and all that it draws
+        double records; ///< from the rays that records of the irradiance cache had at first
+    };
+    std::optional<Noise> noise;
 };
 
 struct RenderStats {

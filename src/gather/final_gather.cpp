@@ -25,11 +25,11 @@ PixelSample FinalGather::sample(const Vec2& image, SampleSource& source) const {
     return out;
 }
 
-FinalGather::Confirmation FinalGather::confirm(const Vec2& image, SampleSource& source) const {
+FinalGather::Doubts FinalGather::doubt(const Vec2& image, bool confirm, SampleSource& source) const {
     Sample out;
-    out.confirm = true;
+    out.confirm = confirm;
     draw(image, source, out);
-    return {luminance(out.direct + out.indirect + out.caustic), out.unconfirmed};
+    return {luminance(out.direct + out.indirect + out.caustic), out.unconfirmed, out.of_records};
 }
 
 struct FinalGather::EyeWalk : SpecularWalkHooks {
@@ -90,7 +90,7 @@ void FinalGather::draw(const Vec2& image, SampleSource& source, Sample& out) con
 void FinalGather::shade(const Vertex& v, const Vec3& back, const Rgb& throughput, int scatterings, SampleSource& source,
                         Sample& out) const {
     const auto cached = ask_cache(v, back);
-    Light light{Rgb(0.0), cached ? *cached : Rgb(0.0)};
+    Light light{Rgb(0.0), cached ? cached->radiance : Rgb(0.0)};
     if (!cached)
         light = gather_all(v, back, scatterings, source);
     else if (v.bsdf.traits().glossy)
@@ -99,12 +99,13 @@ void FinalGather::shade(const Vertex& v, const Vec3& back, const Rgb& throughput
         light.direct = direct_light(scene_, v, back, samples_.light, source);
     out.direct += throughput * light.direct;
     out.indirect += throughput * light.indirect;
-    const Rgb caustic = throughput * rays_.caustic(v, back);
+    const Rgb caustic = throughput * rays_.caustic(v, back, luminance(light.direct + light.indirect), source);
     out.caustic += caustic;
+    if (cached) out.of_records += luminance(throughput) * cached->error;
     if (out.confirm) out.unconfirmed += luminance(caustic) * rays_.unconfirmed_caustic(v, back);
 }
 
-std::optional<Rgb> FinalGather::ask_cache(const Vertex& v, const Vec3& back) const {
+std::optional<FinalGather::Cached> FinalGather::ask_cache(const Vertex& v, const Vec3& back) const {
     if (cache_ == nullptr || !v.bsdf.traits().diffuse) return std::nullopt;
     const Vec3 normal = cache_normal(v, back);
     const auto answer = cache_->irradiance(v.point.p, normal);
@@ -114,7 +115,9 @@ std::optional<Rgb> FinalGather::ask_cache(const Vertex& v, const Vec3& back) con
         return std::nullopt;
     }
     // Light of the side that is seen geometrically; a shading normal may turn that away.
-    return normal.dot(back) > 0 ? v.bsdf.diffuse_reflectance(back) * answer.irradiance : Rgb(0.0);
+    if (!(normal.dot(back) > 0)) return Cached{};
+    const Rgb f = v.bsdf.diffuse_reflectance(back);
+    return Cached{f * answer.irradiance, luminance(f) * answer.error};
 }
 
 FinalGather::Light FinalGather::gather_all(const Vertex& v, const Vec3& back, int scatterings,

@@ -25,12 +25,14 @@ class FinalGather {
     /// Estimates what arrives at the eye through window point `image`. Unbiased but for the maps and the cache.
     PixelSample sample(const Vec2& image, SampleSource& source) const;
 
-    /// Luminance of a sample, and of the caustics in it that pilot photons don't confirm (unconfirmed_share()).
-    struct Confirmation {
-        double all = 0, unconfirmed = 0;
+    /// Luminance of a sample [W/(m^2 sr)], and what is doubtful of it.
+    struct Doubts {
+        double all = 0;
+        double unconfirmed = 0; ///< of caustics, by pilot photons (unconfirmed_share()), where they were asked
+        double of_records = 0;  ///< standard error of the cached irradiance in it, by the records' first rays
     };
-    /// Draws a sample, and asks pilot photons about it.
-    Confirmation confirm(const Vec2& image, SampleSource& source) const;
+    /// Draws a sample and asks pilot photons about it, if `confirm`.
+    Doubts doubt(const Vec2& image, bool confirm, SampleSource& source) const;
 
     /// Share of the questions to the cache, by all samples so far, that it had no record for; 0 before any.
     double starving() const {
@@ -42,6 +44,7 @@ class FinalGather {
     struct Sample : PixelSample {
         bool confirm = false;   ///< whether to ask pilot photons
         double unconfirmed = 0; ///< luminance of caustics that they don't confirm
+        double of_records = 0;  ///< standard error of the cached part of its luminance
     };
     /// A walk from the eye by specular events. At the first glass or coat on its way all of these are followed.
     struct EyeWalk;
@@ -49,9 +52,13 @@ class FinalGather {
     void shade(const Vertex& v, const Vec3& back, const Rgb& throughput, int scatterings, SampleSource& source,
                Sample& out) const;
     void draw(const Vec2& image, SampleSource& source, Sample& out) const;
-    /// Radiance towards `back` that the diffuse part reflects by cached irradiance; none where there is no such part or
-    /// no such record.
-    std::optional<Rgb> ask_cache(const Vertex& v, const Vec3& back) const;
+    /// What the diffuse part reflects towards `back` by cached irradiance.
+    struct Cached {
+        Rgb radiance{0.0};
+        double error = 0; ///< standard error of its luminance
+    };
+    /// None where there is no such part or no such record.
+    std::optional<Cached> ask_cache(const Vertex& v, const Vec3& back) const;
 
     struct Light {
         Rgb direct, indirect; ///< caustics left out

@@ -2,7 +2,7 @@
 
 #include "gather/direct_light.h"
 #include "photonmap/confirmation.h"
-#include "photonmap/surface/sight.h"
+#include "photonmap/surface/density_in_sight.h"
 #include "sampling/paths/direct_light.h"
 #include "sampling/paths/gather_coverage.h"
 #include "sampling/paths/random_walk.h"
@@ -25,11 +25,16 @@ PhotonQuery query_at(const Vertex& v, const Vec3& back, float radius, const Look
 /// Least probability with which the glossy part is looked at where a ray ends.
 constexpr double kLeastGlossy = 0.05;
 
+/// Caustics are the lesser part of the light where they are below this share of the rest; least probability with which
+/// they are looked at there.
+constexpr double kLesserCaustic = 0.1, kLeastLook = 0.1;
+
 } // namespace
 
 /// What of the light that the glossy part reflects is not known yet.
 struct GatherRays::Missing {
     bool direct, indirect;
+    std::uint32_t place; // of the irradiance map, near by
 };
 
 /// Where a ray comes from, as far as what it meets depends on that.
@@ -91,13 +96,17 @@ bool GatherRays::too_near(const Leg& leg, std::uint32_t place) const {
 
 Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSource& source) const {
     if (!is_covered(maps_.coverage, v, back)) return Rgb(0.0);
-    if (maps_.irradiance == nullptr || maps_.irradiance->places().empty() || !v.bsdf.traits().diffuse) {
+    if (maps_.irradiance == nullptr || maps_.irradiance->places().empty()) {
         const Rgb direct = direct_light(scene_, v, back, 1, source);
         return direct + global(v, back);
     }
     const auto known = maps_.irradiance->irradiance(v.point, facing(v.point.ng, back));
     // Photons may be near, but none that this place sees: those of the other side of a wall.
     if (!known.known) return direct_light(scene_, v, back, 1, source);
+    if (!v.bsdf.traits().diffuse) {
+        const Rgb direct = direct_light(scene_, v, back, 1, source);
+        return direct + global_near(known.place, v, back);
+    }
     const Rgb f = v.bsdf.diffuse_reflectance(back);
     const auto near = maps_.direct->direct(known.place, v.point.p);
     Rgb sum = near ? f * *near : direct_light(scene_, v, back, 1, source);
@@ -107,7 +116,7 @@ Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSou
     } else if (const auto next = continue_walk(v, back, From::eye, source); next && !is_specular(next->event)) {
         sum += next->weight * trace(v, next->w, next->pdf, {0, leg.scatterings + 1, true}, source).indirect;
     }
-    if (v.bsdf.traits().glossy) sum += glossy(v, back, {near.has_value(), !on}, source);
+    if (v.bsdf.traits().glossy) sum += glossy(v, back, {near.has_value(), !on, known.place}, source);
     return sum;
 }
 
@@ -118,17 +127,22 @@ Rgb GatherRays::glossy(const Vertex& v, const Vec3& back, const Missing& missing
     lobe.bsdf = v.bsdf.glossy_part();
     Rgb sum(0.0);
     if (missing.direct) sum += direct_light(scene_, lobe, back, 1, source);
-    if (missing.indirect) sum += global(lobe, back);
+    if (missing.indirect) sum += global_near(missing.place, lobe, back);
     return sum / p;
 }
 
-Rgb GatherRays::caustic(const Vertex& v, const Vec3& back) const {
+Rgb GatherRays::caustic(const Vertex& v, const Vec3& back, double besides, SampleSource& source) const {
     if (maps_.caustic == nullptr) return Rgb(0.0);
     const PhotonQuery query = query_at(v, back, options_.caustic_radius, options_);
     const float r = piloted_radius(maps_.caustic->pilots(), query);
-    return estimate_density_in_sight(scene_, maps_.caustic->main_photons(), query.region, r, *maps_.patches,
-                                     reflection(v, back))
-        .value;
+    const PhotonMap& photons = maps_.caustic->main_photons();
+    // What the BSDF makes of each photon, and what edges and walls make of the region, takes time to find out.
+    const Rgb irradiance = estimate_density(photons, query.region, r, nullptr, [](const Photon&) { return 1.0; }).value;
+    if (!(luminance(irradiance) > 0)) return Rgb(0.0);
+    const double about = luminance(irradiance * v.bsdf.eval(facing(v.bsdf.shading_normal(), back), back));
+    const double p = std::clamp(about / (kLesserCaustic * besides), kLeastLook, 1.0);
+    if (!(source.next() < p)) return Rgb(0.0);
+    return estimate_density_in_sight(scene_, photons, query.region, r, *maps_.patches, reflection(v, back)).value / p;
 }
 
 double GatherRays::unconfirmed_caustic(const Vertex& v, const Vec3& back) const {
@@ -145,6 +159,17 @@ Rgb GatherRays::global(const Vertex& v, const Vec3& back) const {
     const PhotonQuery query = query_at(v, back, options_.max_radius, options_);
     const DensityEstimate e = estimate_density(*maps_.global, query, maps_.patches, reflection(v, back));
     return e.value / share_in_reach(maps_.coverage, query.region, e.radius);
+}
+
+Rgb GatherRays::global_near(std::uint32_t place, const Vertex& v, const Vec3& back) const {
+    if (maps_.global == nullptr) return Rgb(0.0);
+    const PhotonQuery query = query_at(v, back, options_.max_radius, options_);
+    const float r = maps_.irradiance->radius(place);
+    const double share = maps_.irradiance->area_share(place);
+    if (!(share > 0)) return Rgb(0.0);
+    const DensityEstimate e =
+        estimate_density(maps_.global->main_photons(), query.region, r, nullptr, reflection(v, back));
+    return e.value / (share * share_in_reach(maps_.coverage, query.region, r));
 }
 
 } // namespace keyhole

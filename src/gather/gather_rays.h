@@ -40,8 +40,9 @@ class GatherRays {
     /// those between the eye and the ray.
     Arrival trace(const Vertex& from, const Vec3& w, double pdf, int scatterings, SampleSource& source) const;
 
-    /// Radiance towards `back` that the caustic map gives at a visible point.
-    Rgb caustic(const Vertex& v, const Vec3& back) const;
+    /// Radiance towards `back` that the caustic map gives at a visible point, which reflects so much luminance besides.
+    /// Where it is the lesser part it is looked at by chance, and counts all the more then.
+    Rgb caustic(const Vertex& v, const Vec3& back, double besides, SampleSource& source) const;
     /// Share of its luminance that pilot photons don't confirm (unconfirmed_share()).
     double unconfirmed_caustic(const Vertex& v, const Vec3& back) const;
 
@@ -61,6 +62,8 @@ class GatherRays {
     Rgb glossy(const Vertex& v, const Vec3& back, const Missing& missing, SampleSource& source) const;
     /// What the global map says of light that `v` reflects towards `back`.
     Rgb global(const Vertex& v, const Vec3& back) const;
+    /// The same near a place of the irradiance map, whose radius and surface do for `v`, too.
+    Rgb global_near(std::uint32_t place, const Vertex& v, const Vec3& back) const;
 
     const Scene& scene_;
     GatherMaps maps_;

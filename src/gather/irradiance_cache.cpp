@@ -58,7 +58,7 @@ template <class Visit> void IrradianceCache::visit_near(const Vec3& position, Vi
 
 IrradianceCache::Answer IrradianceCache::irradiance(const Vec3& position, const Vec3& normal) const {
     Vec3 sum(0.0f);
-    float weights = 0, covered = 0;
+    float weights = 0, covered = 0, variance = 0;
     visit_near(position, [&](std::uint32_t i) {
         const Stored& r = records_[i];
         const Vec3 d = position - r.position;
@@ -75,10 +75,11 @@ IrradianceCache::Answer IrradianceCache::irradiance(const Vec3& position, const 
         covered += kernel(std::max(across2 / (r.radius * r.radius) + raised, turned));
         sum += irradiance_at(r, d, turn) * w;
         weights += w;
+        variance += w * w * r.variance;
     });
     if (!(weights > 0)) return {};
     sum /= weights;
-    return {Rgb(sum.x, sum.y, sum.z), true, covered};
+    return {Rgb(sum.x, sum.y, sum.z), std::sqrt(variance) / weights, true, covered};
 }
 
 /// What `r` predicts at an offset `to` from it, where normals are turned by `turn`.

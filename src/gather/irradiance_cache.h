@@ -47,6 +47,7 @@ class IrradianceCache {
 
     struct Answer {
         Rgb irradiance{0.0}; ///< [W/m^2]
+        double error = 0;    ///< standard error of its luminance by the rays that records had at first [W/m^2]
         bool known = false;  ///< whether any record had a say
         double covered = 0;  ///< by the records within whose radius this is; at a record 1 at least
     };

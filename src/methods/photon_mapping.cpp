@@ -18,7 +18,8 @@
 namespace keyhole {
 namespace {
 
-constexpr Stage kPlanning{"plan"}, kTrialOfSamplers{"trial of samplers"}, kPixelBrightness{"brightness of pixels"};
+constexpr Stage kPlanning{"plan"}, kTrialOfSamplers{"trial of samplers"}, kPixelBrightness{"brightness of pixels"},
+    kReport{"error of photons and pixels"};
 
 /// What `auto` stands for in this scene where photons are asked for; says so.
 const Method& choose_method(const SamplerContext& c, RenderStats& stats, const RunContext& context) {
@@ -111,9 +112,11 @@ class Passes {
             gather.emplace(c_, plan_, pass, seed, std::move(photons), stats_, context);
         }
         if (context.communicator != nullptr && context.stopped()) return false;
-        const StageClock clock(stats_, stages::gather);
         const bool whole = sample_rounds(*gather, pass, context.alone());
-        gather->report(stats_);
+        {
+            const StageClock clock(stats_, kReport);
+            gather->report(stats_);
+        }
         return whole ||
                context.communicator != nullptr; // a process group ends where all can agree on it: in the next pass
     }
@@ -128,6 +131,7 @@ class Passes {
 
     /// Samples pixels, round by round of a pass. Returns whether the last round came to its end.
     bool sample_rounds(const PassGather& gather, std::int64_t pass, const RunContext& context) {
+        const StageClock clock(stats_, stages::gather);
         const SamplingStage stage(c_.scene, c_.settings.spp, "gather", context);
         while (next_ && work_.pass_of(*next_) == pass) {
             if (!sample_round(c_.scene, *work_.unit().film, *next_, static_cast<std::uint64_t>(c_.settings.seed),

@@ -1,7 +1,7 @@
 // Density estimates beside walls that stand on a surface.
 #include "photon_support.h"
 #include "photonmap/irradiance/irradiance_map.h"
-#include "photonmap/surface/sight.h"
+#include "photonmap/surface/density_in_sight.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>

@@ -102,7 +102,8 @@ std::optional<TrialRender> render_trial(const TrialContext& c, Settings settings
                        {.cost = cost,
                         .taken = in_time ? start - left() : cost.total(),
                         .samples = r.stats.samples,
-                        .balance = in_time ? rebalance({}, r.stats) : StageBalance()}};
+                        .balance = in_time ? rebalance({}, r.stats) : StageBalance(),
+                        .noise = r.stats.photon_quality.noise}};
 }
 
 /// The same under a cap; none if it was given up.
@@ -204,8 +205,8 @@ double predict(const TriedMethod& t, const TrialContext& c, double left) {
         return t.method->trial.doubt * (e.grain * time * size + (e.blotches + e.missing) * time);
     Settings s = c.settings;
     s.method = t.method;
-    const double effort = affordable_effort(t.of.cost, s, c.given, t.of.balance, pixels, left);
-    s = with_effort(s, effort, static_cast<std::int64_t>(pixels), c.given, t.of.balance);
+    double effort = 0;
+    s = t.of.settings_for(s, c.given, pixels, left, effort);
     const double samples = static_cast<double>(s.spp * s.passes) / t.of.samples;
     const double growth = effort / t.of.cost.effort;
     return t.method->trial.doubt * (e.grain * (t.by_samples / samples + (1 - t.by_samples) / growth) +
@@ -250,6 +251,13 @@ void rank(std::vector<TriedMethod>& tried, const TrialContext& c, double left) {
 }
 
 } // namespace
+
+Settings TrialCost::settings_for(const Settings& s, const std::set<std::string>& given, double pixels, double seconds,
+                                 double& effort) const {
+    effort = affordable_effort(cost, s, given, balance, pixels, seconds);
+    const Settings even = with_effort(s, effort, static_cast<std::int64_t>(pixels), given, balance);
+    return noise ? split_stage_three(even, cost, *noise, pixels, given) : even;
+}
 
 std::optional<TrialCost> try_cost(const TrialContext& c, const Method& method, double seconds, double most) {
     const WindowScope window(c.scene, c.settings, trial_window(c.scene.camera().window(), kTrialsOfATrial * seconds));

@@ -21,6 +21,11 @@ struct TrialCost {
     double taken;         ///< by it: seconds, or rays
     double samples;       ///< of a pixel
     StageBalance balance; ///< that it found best
+    std::optional<PhotonQuality::Noise> noise;
+
+    /// Settings of a render of so many seconds, or rays, at least with effort `least`; `effort` becomes its effort.
+    Settings settings_for(const Settings& s, const std::set<std::string>& given, double pixels, double seconds,
+                          double& effort) const;
 };
 
 /// A method after its trial: two independent renders of a small window.

@@ -176,8 +176,8 @@ class RenderInTime {
             if (!given_.contains("spp")) s.spp = 1 << 24;
             return s;
         }
-        effort_ = affordable_effort(cost_->cost, s, given_, cost_->balance, pixels_, kUse * seconds);
-        s = with_effort(s, effort_, static_cast<std::int64_t>(pixels_), given_, cost_->balance);
+        s = cost_->settings_for(s, given_, pixels_, kUse * seconds, effort_);
+        planned_spp_ = s.spp;
         if (!method_->keeps_photons) {
             s.chain_groups = 1;
             if (!given_.contains("mutations"))
@@ -202,8 +202,7 @@ class RenderInTime {
         WorkPartition share = share_to_look_at();
         if (method_->keeps_photons) {
             Settings planned = chosen;
-            planned.spp = std::min<std::int64_t>(
-                chosen.spp, with_effort(chosen, effort_, static_cast<std::int64_t>(pixels_), {}).spp);
+            planned.spp = std::min(chosen.spp, planned_spp_);
             share.for_gather = std::min(1.2 * cost_->cost.predict(Stage::Work::gather, planned, pixels_), seconds / 2) /
                                static_cast<double>(std::max<std::int64_t>(1, chosen.passes));
             if (!last) limited.reserve = std::max(0.0, start - 1.5 * seconds); // ends by itself
@@ -280,6 +279,7 @@ class RenderInTime {
     std::vector<TriedMethod> tried_; // the best first
     double at_choice_ = 0;           // time that was left then [s]
     double effort_ = 0;              // of the render under way
+    std::int64_t planned_spp_ = 0;   // of it
     bool used_up_ = false;           // everything that was asked for by number is done before the time
     std::int64_t renders_ = 0;       // begun
     std::vector<std::string> remarks_;

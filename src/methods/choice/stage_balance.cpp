@@ -6,6 +6,16 @@
 namespace keyhole {
 namespace {
 
+/// Share of the rays of records that these have at first, when their noise is told.
+constexpr double kRaysAtFirst = 0.5;
+/// Records with fewer rays don't see what is around them.
+constexpr double kLeastRays = 64;
+/// Of the time of all stages that settings have a say in, what light paths take at least. Too few photons blur light,
+/// which no noise tells.
+constexpr double kLeastForPhotons = 0.15, kMostMorePhotons = 8;
+/// Of the samples of pixels that effort gives.
+constexpr double kLeastSamples = 0.5;
+
 /// CPU time of stages [s].
 double seconds_of(Stage::Work work, const RenderStats& stats) {
     double seconds = 0;
@@ -15,6 +25,37 @@ double seconds_of(Stage::Work work, const RenderStats& stats) {
 }
 
 } // namespace
+
+Settings split_stage_three(const Settings& settings, const Experience& cost, const PhotonQuality::Noise& noise,
+                           double pixels, const std::set<std::string>& given) {
+    if (given.contains("cache_rays") || given.contains("spp") || !(noise.records > 0) || !(noise.samples > 0))
+        return settings;
+    const auto seconds = [&](const Stage& of) {
+        double sum = 0;
+        for (const auto& [stage, time] : cost.stages)
+            if (stage == &of) sum += cost.predict(*stage, time, settings, pixels);
+        return sum;
+    };
+    const double records = seconds(stages::cache), samples = seconds(stages::gather);
+    const double photons = seconds(stages::photons_of_light_paths);
+    if (!(records > 0 && samples > 0)) return settings;
+    Settings s = settings;
+    const double more = kLeastForPhotons * (records + samples + photons) - photons;
+    if (photons > 0 && more > 0 && !given.contains("light_paths") && !given.contains("photons")) {
+        const double factor = std::min(kMostMorePhotons, 1 + more / photons);
+        s.light_paths = static_cast<std::int64_t>(factor * static_cast<double>(s.light_paths));
+        s.photons = static_cast<std::int64_t>(factor * static_cast<double>(s.photons));
+    }
+    const auto rays = static_cast<double>(s.cache_rays), spp = static_cast<double>(s.spp);
+    const double of_records = noise.records * kRaysAtFirst * static_cast<double>(cost.settings.cache_rays) / rays;
+    const double of_samples = noise.samples / spp;
+    const double x = std::sqrt(of_records * records), y = std::sqrt(of_samples * samples);
+    const double both = records + samples - std::max(more, 0.0);
+    s.cache_rays = static_cast<std::int64_t>(std::clamp(rays * both * x / (x + y) / records, std::min(rays, kLeastRays), rays));
+    const double left = both - records * static_cast<double>(s.cache_rays) / rays;
+    s.spp = std::max<std::int64_t>(1, static_cast<std::int64_t>(spp * std::max(left / samples, kLeastSamples)));
+    return s;
+}
 
 StageBalance rebalance(const StageBalance& balance, const RenderStats& stats) {
     const double one = seconds_of(Stage::Work::brightness, stats), two = seconds_of(Stage::Work::chains, stats);

@@ -3,6 +3,7 @@
 
 #include "core/render_stats.h"
 #include "methods/choice/effort.h"
+#include "methods/choice/experience.h"
 
 namespace keyhole {
 
@@ -10,5 +11,12 @@ namespace keyhole {
 /// fall as the reciprocal of time, so the best times are as errors times the roots of times. Nothing changes where an
 /// error isn't known.
 StageBalance rebalance(const StageBalance& balance, const RenderStats& stats);
+
+/// `settings` with the time of stage three split between records of the irradiance cache and samples of pixels such
+/// that their squared errors add up to the least, told from the noise that a render whose cost is known had. Settings
+/// named in `given` stay as they are.
+/// @param pixels of the picture.
+Settings split_stage_three(const Settings& settings, const Experience& cost, const PhotonQuality::Noise& noise,
+                           double pixels, const std::set<std::string>& given);
 
 } // namespace keyhole

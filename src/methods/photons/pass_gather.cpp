@@ -26,7 +26,7 @@ LookupOptions lookups(const Settings& settings, const Radii& radii) {
 
 PassGather::PassGather(const SamplerContext& c, const RenderPlan& plan, std::int64_t pass, std::uint64_t seed,
                        Photons photons, RenderStats& stats, const RunContext& context)
-    : seed_(seed), global_(std::move(photons.global)), caustic_(std::move(photons.caustic)) {
+    : window_(c.scene.camera().window()), seed_(seed), global_(std::move(photons.global)), caustic_(std::move(photons.caustic)) {
     const Settings& s = c.settings;
     const Radii radii(c.scene, pass);
     // An estimate made beforehand is asked from a little way off. Once regions get as small as that, each is made where
@@ -67,6 +67,7 @@ PassGather::PassGather(const SamplerContext& c, const RenderPlan& plan, std::int
 void PassGather::report(RenderStats& stats) const {
     if (cache_) report_cache(*cache_, gather_->starving(), stats);
     if (!caustic_.main_photons().photons().empty()) report_false_spots(*gather_, seed_, stats);
+    report_noise(*gather_, window_, seed_, stats);
 }
 
 } // namespace keyhole

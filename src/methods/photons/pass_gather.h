@@ -28,10 +28,11 @@ class PassGather {
     /// A sample of what is seen at a point of the window.
     PixelSample sample(const Vec2& image, SampleSource& source) const { return gather_->sample(image, source); }
 
-    /// Says what the samples have shown of the cache, and looks for spots that are not there.
+    /// Says what the samples have shown of the cache, how noisy they are, and looks for spots that are not there.
     void report(RenderStats& stats) const;
 
   private:
+    ImageWindow window_;
     std::uint64_t seed_;
     PilotedMap global_, caustic_;
     std::optional<IrradianceMap> irradiance_;

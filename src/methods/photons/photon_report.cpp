@@ -1,6 +1,7 @@
 #include "methods/photons/photon_report.h"
 
 #include "core/parallel.h"
+#include "core/statistics.h"
 #include "core/vec.h"
 #include "sampling/paths/image_lattice.h"
 
@@ -23,6 +24,10 @@ constexpr double kShows = 0.1;       ///< of the light of a sample, or of the pi
 constexpr double kMostFalse = 0.004; ///< of the picture
 constexpr double kMostNoise = 0.2;   ///< of irradiance records, where passes don't make it less
 
+constexpr int kPoints = 4096;   // of the picture that are looked at for false spots
+constexpr double kDark = 0.01;  // of the square of the mean: what is darker still has no relative error to speak of
+constexpr double kMost = 0.95;  // of pixels: the rest hold bright, rare samples, which say nothing of the others
+
 double share_of_brightest(const std::vector<Photon>& photons) {
     if (photons.empty()) return 0;
     std::vector<double> powers;
@@ -32,6 +37,13 @@ double share_of_brightest(const std::vector<Photon>& photons) {
     std::ranges::nth_element(powers, few - 1, std::greater<>());
     const double all = std::accumulate(powers.begin(), powers.end(), 0.0);
     return all > 0 ? std::accumulate(powers.begin(), few, 0.0) / all : 0;
+}
+
+/// The mean without the largest.
+double mean_of_most(std::vector<double>& values) {
+    const auto most = values.begin() + static_cast<std::ptrdiff_t>(kMost * static_cast<double>(values.size()));
+    std::ranges::nth_element(values, most);
+    return std::accumulate(values.begin(), most, 0.0) / static_cast<double>(most - values.begin());
 }
 
 } // namespace
@@ -52,16 +64,50 @@ void report_cache(const IrradianceCache& cache, double starving, RenderStats& st
 }
 
 void report_false_spots(const FinalGather& gather, std::uint64_t seed, RenderStats& stats) {
-    constexpr int kPoints = 4096;
-    std::vector<FinalGather::Confirmation> seen(kPoints);
+    std::vector<FinalGather::Doubts> seen(kPoints);
     parallel_for(kPoints, [&](std::int64_t i) {
         Rng rng(seed, StreamPurpose::survey, static_cast<std::uint64_t>(i));
-        seen[static_cast<std::size_t>(i)] = gather.confirm(lattice_image_point(seed, StreamPurpose::survey, i), rng);
+        seen[static_cast<std::size_t>(i)] = gather.doubt(lattice_image_point(seed, StreamPurpose::survey, i), true, rng);
     });
     double mean = 0;
     for (const auto& s : seen) mean += s.all / kPoints;
     const auto shows = [&](const auto& s) { return s.unconfirmed > kShows * std::max(s.all, mean); };
     stats.photon_quality.unconfirmed = static_cast<double>(std::ranges::count_if(seen, shows)) / kPoints;
+}
+
+void report_noise(const FinalGather& gather, const ImageWindow& window, std::uint64_t seed, RenderStats& stats) {
+    // In a quarter of a pixel: where the window is that of a trial, its pixels are larger than the picture's.
+    constexpr int kPixels = 256, kSamples = 8;
+    constexpr double kWidth = 0.25;
+    struct Pixel {
+        double mean = 0, variance = 0, of_records = 0;
+    };
+    std::vector<Pixel> pixels(kPixels);
+    parallel_for(kPixels, [&](std::int64_t i) {
+        Rng rng(seed, StreamPurpose::survey, static_cast<std::uint64_t>(kPoints + i));
+        const Vec2 corner = lattice_image_point(seed, StreamPurpose::survey, i);
+        RunningStats seen;
+        Pixel& pixel = pixels[static_cast<std::size_t>(i)];
+        for (int k = 0; k < kSamples; ++k) {
+            const double across = kWidth * rng.next() / window.width, down = kWidth * rng.next() / window.height;
+            const Vec2 at(std::min(corner.x + static_cast<float>(across), 0x1.fffffep-1f),
+                          std::min(corner.y + static_cast<float>(down), 0x1.fffffep-1f));
+            const FinalGather::Doubts sample = gather.doubt(at, false, rng);
+            seen.add(sample.all);
+            pixel.of_records += sample.of_records / kSamples;
+        }
+        pixel.mean = seen.mean();
+        pixel.variance = seen.variance();
+    });
+    double mean = 0;
+    for (const Pixel& p : pixels) mean += p.mean / kPixels;
+    const auto relative = [&](double squared, const Pixel& p) { return squared / (p.mean * p.mean + kDark * mean * mean); };
+    std::vector<double> samples, records;
+    for (const Pixel& p : pixels) {
+        samples.push_back(relative(p.variance, p));
+        records.push_back(relative(p.of_records * p.of_records, p));
+    }
+    if (mean > 0) stats.photon_quality.noise = {mean_of_most(samples), mean_of_most(records)};
 }
 
 void warn_of_photons(RenderStats& stats, std::int64_t passes) {

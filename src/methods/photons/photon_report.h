@@ -25,6 +25,9 @@ void report_cache(const IrradianceCache& cache, double starving, RenderStats& st
 /// the light there, and of the mean.
 void report_false_spots(const FinalGather& gather, std::uint64_t seed, RenderStats& stats);
 
+/// Puts into `stats` how noisy samples of pixels are, and what records of the cache add to that.
+void report_noise(const FinalGather& gather, const ImageWindow& window, std::uint64_t seed, RenderStats& stats);
+
 /// Warns by what the last of `passes` left in `stats`: few photons with most of the power, maps too sparse where they
 /// are asked, spots of light that pilot photons don't confirm, an irradiance cache that is noisy or without answers, no
 /// photons at all.

@@ -1,7 +1,7 @@
 #include "photonmap/irradiance/irradiance_map.h"
 
 #include "core/shared_work.h"
-#include "photonmap/surface/sight.h"
+#include "photonmap/surface/density_in_sight.h"
 
 #include <algorithm>
 
@@ -66,8 +66,9 @@ IrradianceMap::Count IrradianceMap::estimate(std::uint32_t i, const PhotonMap& m
             ? estimate_density_in_sight(*options.scene, main_photons, query.region, r, *options.patches, one)
             : estimate_density(main_photons, query.region, r, options.patches, one);
     e.value /= share_in_reach(options.coverage, query.region, r);
-    estimates_[i] =
-        Estimate(e.value, r, e.obstructed ? obstructed_levels(*options.patches, query.region, r) : std::uint8_t{0});
+    const double disc = kPi * static_cast<double>(r) * r;
+    estimates_[i] = Estimate(e.value, r, disc > 0 ? e.area / disc : 0.0,
+                             e.obstructed ? obstructed_levels(*options.patches, query.region, r) : std::uint8_t{0});
     return {static_cast<double>(e.photons), squares > 0 ? sum * sum / squares : 0.0};
 }
 

@@ -7,7 +7,9 @@
 #include "sampling/paths/gather_coverage.h"
 #include "scene/scene.h"
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -48,6 +50,8 @@ class IrradianceMap {
     std::span<const Photon> places() const { return pilots_.photons(); }
     /// Radius of the estimate at place i [m].
     float radius(std::uint32_t i) const { return estimates_[i].radius(); }
+    /// Area of the surface in that radius over that of the disc.
+    double area_share(std::uint32_t i) const { return estimates_[i].area_share(); }
 
     /// Memory without that of the pilot photons [bytes].
     std::size_t bytes() const { return estimates_.capacity() * sizeof(Estimate) + (grid_ ? grid_->bytes() : 0); }
@@ -66,18 +70,19 @@ class IrradianceMap {
       public:
         Estimate() = default;
         /// `obstructed`, bit i: something may stand on the region of radius / 2^i.
-        Estimate(const Rgb& e, float radius, std::uint8_t obstructed)
+        Estimate(const Rgb& e, float radius, double area_share, std::uint8_t obstructed)
             : irradiance_(e), obstructed_(obstructed),
-              radius_(static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(radius) >> 16)) {}
+              area_share_(static_cast<std::uint8_t>(std::lround(255 * std::clamp(area_share, 0.0, 1.0)))), radius_(static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(radius) >> 16)) {}
 
         Rgb irradiance() const { return irradiance_.decode(); }
         unsigned obstructed() const { return obstructed_; }
+        double area_share() const { return area_share_ / 255.0; }
         /// At most the one given, and at least 127/128 of it [m].
         float radius() const { return std::bit_cast<float>(std::uint32_t{radius_} << 16); }
 
       private:
         SharedExponentRgb irradiance_;
-        std::uint8_t obstructed_ = 0;
+        std::uint8_t obstructed_ = 0, area_share_ = 0;
         std::uint16_t radius_ = 0; ///< the upper half of a float
     };
     /// The estimate at `place`, or another one where something hides that from the region's middle.

@@ -1,7 +1,7 @@
 // What a wall that stands on a surface hides from one another.
 #pragma once
 
-#include "photonmap/density_estimate.h"
+#include "photonmap/surface/surface_region.h"
 #include "sampling/paths/gather_coverage.h"
 #include "scene/scene.h"
 
@@ -33,37 +33,6 @@ double share_of_region(const SurfaceRegion& region, float r, const Counts& count
         held += holds(place) ? 1 : 0;
     }
     return counted > 0 ? static_cast<double>(held) / counted : 0.0;
-}
-
-/// The share of the surface in the region that its middle sees. Where the surface ends, at a wall that stands on it or
-/// at an edge, there is nothing to be seen, and nothing is hidden.
-inline double share_in_sight(const Scene& scene, const SurfaceRegion& region, float r, float lift) {
-    const auto on_surface = [&](const Vec3& p) {
-        return !scene.visible(p + region.normal * lift, p - region.normal * lift);
-    };
-    return share_of_region(region, r, on_surface, [&](const Vec3& p) { return in_sight(scene, region, lift, p); });
-}
-
-/// estimate_density() over a region of radius `r` from what its middle sees, where something stands on it that could
-/// hide photons of the other side.
-template <class Weight>
-DensityEstimate estimate_density_in_sight(const Scene& scene, const PhotonMap& map, const SurfaceRegion& region,
-                                          float r, const SurfacePatches& patches, const Weight& weight) {
-    DensityEstimate e;
-    const bool obstructed = patches.obstructed(region, r);
-    const float lift = 2 * r / SurfaceRegion::kFlattening;
-    // Where nothing is in sight the middle lies in a crevice, and the test says nothing.
-    const double seen = obstructed ? share_in_sight(scene, region, r, lift) : 0;
-    if (seen > 0) {
-        e = estimate_density(map, region, r, &patches, [&](const Photon& p) {
-            return in_sight(scene, region, lift, p.position()) ? weight(p) : decltype(weight(p))(0.0);
-        });
-        e.value /= seen;
-    } else {
-        e = estimate_density(map, region, r, &patches, weight);
-    }
-    e.obstructed = obstructed;
-    return e;
 }
 
 /// The share that gather rays come to: outside their coverage the global map is empty. At least that of the middle,

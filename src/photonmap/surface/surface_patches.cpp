@@ -1,6 +1,8 @@
 #include "photonmap/surface/surface_patches.h"
 
+#include "core/kronecker.h"
 #include "photonmap/surface/disc_area.h"
+#include "photonmap/surface/sight.h"
 
 #include <algorithm>
 
@@ -13,8 +15,12 @@ constexpr double kFlat = SurfaceRegion::kFlattening;
 
 /// Of a scene: a tree of more would take longer to build than a short render lasts.
 constexpr std::size_t kMostInTree = 150'000;
-constexpr int kRing = 8, kDisc = 32; // rays that look for edges of a region, and that measure it there
+constexpr int kRing = 8; // rays that look for edges of a region
 constexpr double kRingRadius = 0.85;
+// Rays that measure a region at an edge go on until so many found some of its surface: hits / rays then has the
+// expectation of the reciprocal very nearly, however narrow the surface is.
+constexpr int kFewestRays = 32, kHits = 16, kMostRays = 256;
+constexpr int kMostLayers = 8; // of surface in a region, one above the other
 
 bool holds_photons(const Shape& shape) {
     return !is_interface(shape) && (shape.material == nullptr || shape.material->traits().finite);
@@ -101,28 +107,61 @@ double SurfacePatches::area(const SurfaceRegion& region, double r) const {
     return all ? std::min(sum, kPi * r * r) : area_by_rays(region, r);
 }
 
-/// Rays go through the region against its normal. Nearly all regions lie away from edges, which a few rays near the
-/// border tell.
-double SurfacePatches::area_by_rays(const SurfaceRegion& region, double r) const {
+/// Area of the surface in the region over that of its projection, at a place of the disc (polar coordinates), where
+/// `counts(point)`. All layers count: a photon on any of them is found there.
+template <class Counts>
+double SurfacePatches::surface_over(const SurfaceRegion& region, double r, double distance, double angle,
+                                    const Counts& counts) const {
     const Frame frame(region.normal);
-    // Area of the surface over that of its projection, where a ray at a place of the disc finds some in the region.
-    const auto stretch = [&](double distance, double angle) {
-        const double height = std::sqrt(r * r - distance * distance) / kFlat;
-        SurfacePoint start;
-        start.site = Site::point;
-        start.p = region.position + frame.s * static_cast<float>(distance * std::cos(angle)) +
-                  frame.t * static_cast<float>(distance * std::sin(angle)) + frame.n * static_cast<float>(height);
-        const auto hit = scene_->trace(start, -frame.n);
-        if (!hit || hit->site != Site::surface || !holds_photons(shapes_[hit->shape])) return 0.0;
-        const double cosine = std::abs(static_cast<double>(hit->ng.dot(frame.n)));
-        return (hit->p - start.p).length() <= 2 * height && cosine > SurfaceRegion::kMinCosine ? 1 / cosine : 0.0;
-    };
-    int covered = 0;
-    while (covered < kRing && stretch(kRingRadius * r, 2 * kPi * covered / kRing) > 0) ++covered;
-    if (covered == kRing) return kPi * r * r;
+    const double height = std::sqrt(r * r - distance * distance) / kFlat;
+    SurfacePoint from;
+    from.site = Site::point;
+    from.p = region.position + frame.s * static_cast<float>(distance * std::cos(angle)) +
+             frame.t * static_cast<float>(distance * std::sin(angle)) + frame.n * static_cast<float>(height);
+    const Vec3 top = from.p;
     double sum = 0;
-    for (int i = 0; i < kDisc; ++i) sum += stretch(r * std::sqrt((i + 0.5) / kDisc), kGoldenAngle * i);
-    return kPi * r * r * std::min(1.0, sum / kDisc);
+    std::uint32_t entered = SurfacePoint::kNone; // the solid that the ray is in, if it is
+    double into = 0;                             // the cosine with which it went in
+    for (int layer = 0; layer < kMostLayers; ++layer) {
+        const auto hit = scene_->trace(from, -frame.n);
+        if (!hit || hit->site != Site::surface || !((hit->p - top).length() <= 2 * height)) break;
+        from = *hit;
+        const double cosine = hit->ng.dot(frame.n);
+        if (!holds_photons(shapes_[hit->shape])) continue;
+        if (hit->shape == entered && into * cosine < 0) { // seen from within: no photon comes to that side
+            entered = SurfacePoint::kNone;
+            continue;
+        }
+        entered = hit->shape;
+        into = cosine;
+        if (std::abs(cosine) > SurfaceRegion::kMinCosine && counts(*hit)) sum += 1 / std::abs(cosine);
+    }
+    return sum;
+}
+
+template <class Counts>
+double SurfacePatches::sampled_area(const SurfaceRegion& region, double r, const Counts& counts) const {
+    double sum = 0;
+    int rays = 0;
+    for (int hits = 0; rays < kMostRays && (rays < kFewestRays || hits < kHits); ++rays) {
+        const double distance = r * std::sqrt(kronecker(0.5, rays, kR2[0]));
+        const double there = surface_over(region, r, distance, 2 * kPi * kronecker(0.5, rays, kR2[1]), counts);
+        hits += there > 0 ? 1 : 0;
+        sum += there;
+    }
+    return kPi * r * r * std::min(1.0, sum / rays);
+}
+
+/// Nearly all regions lie away from edges, which a few rays near the border tell.
+double SurfacePatches::area_by_rays(const SurfaceRegion& region, double r) const {
+    const auto all = [](const SurfacePoint&) { return true; };
+    int covered = 0;
+    while (covered < kRing && surface_over(region, r, kRingRadius * r, 2 * kPi * covered / kRing, all) > 0) ++covered;
+    return covered == kRing ? kPi * r * r : sampled_area(region, r, all);
+}
+
+double SurfacePatches::area_in_sight(const SurfaceRegion& region, double r, float lift) const {
+    return sampled_area(region, r, [&](const SurfacePoint& p) { return in_sight(*scene_, region, lift, p.p); });
 }
 
 bool SurfacePatches::obstructed(const SurfaceRegion& region, double r) const {

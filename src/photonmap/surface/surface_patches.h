@@ -26,6 +26,10 @@ class SurfacePatches {
     /// (a box on a floor) both count, although photons reach only one; so the area is held to that of the disc, pi r^2.
     double area(const SurfaceRegion& region, double r) const;
 
+    /// Area [m^2] of what the region's middle sees of that surface (in_sight()), by rays; 0 where it sees nothing, as in
+    /// a crevice. Only with a scene.
+    double area_in_sight(const SurfaceRegion& region, double r, float lift) const;
+
     /// Whether other surfaces may stand on the region of radius `r`, where they could part one half of it from the
     /// other. By bounding boxes: true more often than need be on slanted and curved surfaces; by rays along the surface
     /// where there are too many.
@@ -41,6 +45,11 @@ class SurfacePatches {
     void add_patches();
     double triangle_area(const Patch& patch, const SurfaceRegion& region, double r) const;
     double area_by_rays(const SurfaceRegion& region, double r) const;
+    template <class Counts>
+    double surface_over(const SurfaceRegion& region, double r, double distance, double angle,
+                        const Counts& counts) const;
+    /// Area of what `counts(point)` of the surface in the region, by rays through it against its normal.
+    template <class Counts> double sampled_area(const SurfaceRegion& region, double r, const Counts& counts) const;
     bool obstructed_by_rays(const SurfaceRegion& region, double r) const;
 
     const std::vector<Shape>& shapes_;

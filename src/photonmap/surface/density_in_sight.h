@@ -1,0 +1,32 @@
+// Densities of photons beside walls that stand on a surface.
+#pragma once
+
+#include "photonmap/density_estimate.h"
+#include "photonmap/surface/sight.h"
+
+namespace keyhole {
+
+/// estimate_density() over a region of radius `r` from what its middle sees, where something stands on it that could
+/// hide photons of the other side.
+template <class Weight>
+DensityEstimate estimate_density_in_sight(const Scene& scene, const PhotonMap& map, const SurfaceRegion& region,
+                                          float r, const SurfacePatches& patches, const Weight& weight) {
+    const bool obstructed = patches.obstructed(region, r);
+    const float lift = 2 * r / SurfaceRegion::kFlattening;
+    // Where nothing is in sight the middle lies in a crevice, and the test says nothing.
+    const double seen = obstructed ? patches.area_in_sight(region, r, lift) : 0;
+    DensityEstimate e;
+    if (seen > 0) {
+        e = estimate_density(map, region, r, nullptr, [&](const Photon& p) {
+            return in_sight(scene, region, lift, p.position()) ? weight(p) : decltype(weight(p))(0.0);
+        });
+        e.value *= e.area / seen;
+        e.area = seen;
+    } else {
+        e = estimate_density(map, region, r, &patches, weight);
+    }
+    e.obstructed = obstructed;
+    return e;
+}
+
+} // namespace keyhole
