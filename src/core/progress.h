@@ -91,6 +91,7 @@ struct RunContext {
     double reserve = 0;                   ///< of the time until `stop`, what is left to later stages [s]
     bool whole_round = false;             ///< every pixel gets its first sample even if time is up
     bool in_overtime = false;             ///< goes on when time is up, until somebody asks for a stop
+    bool by_time = false;                 ///< stages may do more or less than the settings say, for the sake of others
     Communicator* communicator = nullptr; ///< that does this together: its user throws ProcessLost; null: alone
 
     /// Whether to finish early: where there is a process group, by what it has agreed on.

@@ -58,11 +58,13 @@ class CacheFill {
         flush(context);
     }
 
+    int first() const { return first_; }
     /// The rest of the rays, where records have the most to say: most of them stand in corners and serve a few pixels.
-    void refine(const RunContext& context) {
+    void refine(int rays_on_average, const RunContext& context) {
+        if (rays_on_average <= first_) return;
         std::vector<double> worths = cache_.relative_noise();
         for (std::size_t i = 0; i < worths.size(); ++i) worths[i] *= cache_.radius(i) / placed_[i].pixel;
-        const std::vector<int> rays = share_rays(worths, first_, options_.rays - first_);
+        const std::vector<int> rays = share_rays(worths, first_, rays_on_average - first_);
         const std::uint64_t streams = 2 * kSteps.size() * pixels(); // that fill_level() uses
         for (std::size_t begin = 0; begin < placed_.size() && !context.stopped(); begin += kBatch) {
             std::vector<HemisphereEstimate> found(std::min(kBatch, placed_.size() - begin));
@@ -134,18 +136,21 @@ CacheOptions cache_options(const Settings& settings, double shrink, std::uint64_
     return options;
 }
 
-IrradianceCache fill_cache(const GatherRays& rays, const CacheOptions& options, const RunContext& context) {
+IrradianceCache fill_cache(const GatherRays& rays, const CacheOptions& options, const RunContext& context,
+                           const RaysOfRecords& decide) {
     IrradianceCache cache(static_cast<float>(options.error), static_cast<float>(options.overlap));
     context.begin("irradiance cache", kSteps.size() + 1, "levels");
     const HotSpots spots(rays, spot_rays(options), options.seed, context);
     const RecordMaker maker(rays, spots, options);
     CacheFill fill(maker, options, cache);
+    const double start = context.stop != nullptr ? context.stop->seconds_left() : 0;
     std::uint64_t level = 0;
     for (const int step : kSteps) {
         fill.fill_level(step, level++, context);
         context.advance(1);
     }
-    fill.refine(context);
+    const double seconds = std::isfinite(start) && context.stop != nullptr ? start - context.stop->seconds_left() : 0;
+    fill.refine(decide ? decide({cache, fill.first(), seconds}) : options.rays, context);
     context.advance(1);
     context.end();
     return cache;

@@ -26,6 +26,10 @@ std::map<std::string, double> figures(const RenderStats& stats) {
         all["cached irradiances, noise of one pass"] = q.cache->noise;
         all["cached irradiances, share of points without"] = q.cache->starving;
     }
+    if (q.noise) {
+        all["squared error of one sample a pixel"] = q.noise->samples;
+        all["squared error of cached irradiances by their first rays"] = q.noise->records;
+    }
     add("photons seen, share of the picture not confirmed by pilots", q.unconfirmed);
     return all;
 }

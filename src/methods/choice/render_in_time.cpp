@@ -200,6 +200,7 @@ class RenderInTime {
         limited.whole_round = last && mean_.empty(); // a noisy picture is better than one with holes
         if (!last) limited.reserve = std::max(0.0, start - seconds);
         WorkPartition share = share_to_look_at();
+        limited.by_time = last && chosen.passes == 1 && !given_.contains("cache_rays") && !given_.contains("spp");
         if (method_->keeps_photons) {
             Settings planned = chosen;
             planned.spp = std::min(chosen.spp, planned_spp_);

@@ -12,6 +12,8 @@ namespace {
 
 /// Share of the time for stage three that the samples of pixels get at least.
 constexpr double kForSamples = 0.25;
+/// Rays that records get in the end over those they have first, at most.
+constexpr double kMostMoreRays = 16;
 
 const PilotedMap* null_if_empty(const PilotedMap& map) { return map.main_photons().photons().empty() ? nullptr : &map; }
 
@@ -56,18 +58,38 @@ PassGather::PassGather(const SamplerContext& c, const RenderPlan& plan, std::int
                              .patches = &c.patches,
                              .coverage = c.coverage},
                   lookups(s, radii), static_cast<int>(s.max_depth));
-    if (plan.cache)
-        cache_ = fill_cache(*rays_, cache_options(s, static_cast<double>(radii.shrink), seed),
-                            context.with_reserve(kForSamples));
-    gather_.emplace(*rays_, cache_ ? &*cache_ : nullptr,
-                    GatherSamples{.light = static_cast<int>(s.light_samples),
-                                  .rays = plan.gather ? static_cast<int>(s.gather_rays) : 1});
+    const GatherSamples samples{.light = static_cast<int>(s.light_samples),
+                                .rays = plan.gather ? static_cast<int>(s.gather_rays) : 1};
+    if (plan.cache) {
+        const CacheOptions options = cache_options(s, static_cast<double>(radii.shrink), seed);
+        RaysOfRecords decide;
+        if (context.by_time && context.communicator == nullptr)
+            decide = [&](const PlacedRecords& placed) { return rays_worth_their_time(placed, samples, context); };
+        cache_ = fill_cache(*rays_, options, context.with_reserve(kForSamples), decide);
+    }
+    gather_.emplace(*rays_, cache_ ? &*cache_ : nullptr, samples);
+}
+
+/// The squared error of the picture is C / R + A / S with R rays of records and S samples of pixels, which share the
+/// time as c R + s S. It is least where the derivatives by time are the same for both.
+int PassGather::rays_worth_their_time(const PlacedRecords& placed, const GatherSamples& samples,
+                                      const RunContext& context) const {
+    const FinalGather gather(*rays_, &placed.cache, samples);
+    const double start = context.stop->seconds_left();
+    const auto noise = noise_of(gather, window_, seed_);
+    const double left = context.stop->seconds_left();
+    if (!noise || !(placed.seconds > 0) || !(start > left)) return placed.rays;
+    const double of_ray = placed.seconds / placed.rays;
+    const double of_sample = (start - left) / kSamplesForNoise * window_.size();
+    const double records = std::sqrt(noise->records * placed.rays), pixels = std::sqrt(noise->samples * of_sample * of_ray);
+    const double rays = records * (left + placed.seconds) / (pixels + records * of_ray);
+    return static_cast<int>(std::clamp(rays, static_cast<double>(placed.rays), kMostMoreRays * placed.rays));
 }
 
 void PassGather::report(RenderStats& stats) const {
     if (cache_) report_cache(*cache_, gather_->starving(), stats);
     if (!caustic_.main_photons().photons().empty()) report_false_spots(*gather_, seed_, stats);
-    report_noise(*gather_, window_, seed_, stats);
+    stats.photon_quality.noise = noise_of(*gather_, window_, seed_);
 }
 
 } // namespace keyhole

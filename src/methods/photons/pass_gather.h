@@ -2,6 +2,7 @@
 #pragma once
 
 #include "gather/direct_irradiance_cache.h"
+#include "gather/fill_cache.h"
 #include "gather/final_gather.h"
 #include "gather/irradiance_cache.h"
 #include "methods/photons/photon_sampler.h"
@@ -32,6 +33,9 @@ class PassGather {
     void report(RenderStats& stats) const;
 
   private:
+    int rays_worth_their_time(const PlacedRecords& placed, const GatherSamples& samples,
+                              const RunContext& context) const;
+
     ImageWindow window_;
     std::uint64_t seed_;
     PilotedMap global_, caustic_;

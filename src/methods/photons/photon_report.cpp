@@ -26,7 +26,7 @@ constexpr double kMostNoise = 0.2;   ///< of irradiance records, where passes do
 
 constexpr int kPoints = 4096;   // of the picture that are looked at for false spots
 constexpr double kDark = 0.01;  // of the square of the mean: what is darker still has no relative error to speak of
-constexpr double kMost = 0.95;  // of pixels: the rest hold bright, rare samples, which say nothing of the others
+constexpr double kMost = 0.98;  // of pixels: the rest hold bright, rare samples, which say nothing of the others
 
 double share_of_brightest(const std::vector<Photon>& photons) {
     if (photons.empty()) return 0;
@@ -75,9 +75,9 @@ void report_false_spots(const FinalGather& gather, std::uint64_t seed, RenderSta
     stats.photon_quality.unconfirmed = static_cast<double>(std::ranges::count_if(seen, shows)) / kPoints;
 }
 
-void report_noise(const FinalGather& gather, const ImageWindow& window, std::uint64_t seed, RenderStats& stats) {
+std::optional<PhotonQuality::Noise> noise_of(const FinalGather& gather, const ImageWindow& window, std::uint64_t seed) {
     // In a quarter of a pixel: where the window is that of a trial, its pixels are larger than the picture's.
-    constexpr int kPixels = 256, kSamples = 8;
+    constexpr int kSamples = 8, kPixels = kSamplesForNoise / kSamples;
     constexpr double kWidth = 0.25;
     struct Pixel {
         double mean = 0, variance = 0, of_records = 0;
@@ -107,7 +107,8 @@ void report_noise(const FinalGather& gather, const ImageWindow& window, std::uin
         samples.push_back(relative(p.variance, p));
         records.push_back(relative(p.of_records * p.of_records, p));
     }
-    if (mean > 0) stats.photon_quality.noise = {mean_of_most(samples), mean_of_most(records)};
+    if (!(mean > 0)) return std::nullopt;
+    return PhotonQuality::Noise{mean_of_most(samples), mean_of_most(records)};
 }
 
 void warn_of_photons(RenderStats& stats, std::int64_t passes) {

@@ -7,6 +7,8 @@
 #include "photonmap/irradiance/irradiance_map.h"
 #include "photonmap/photons.h"
 
+#include <optional>
+
 namespace keyhole {
 
 /// Puts into `stats` how many photons there are, and how much of the power the brightest 0.1 % of them carry, of the
@@ -25,8 +27,9 @@ void report_cache(const IrradianceCache& cache, double starving, RenderStats& st
 /// the light there, and of the mean.
 void report_false_spots(const FinalGather& gather, std::uint64_t seed, RenderStats& stats);
 
-/// Puts into `stats` how noisy samples of pixels are, and what records of the cache add to that.
-void report_noise(const FinalGather& gather, const ImageWindow& window, std::uint64_t seed, RenderStats& stats);
+/// How noisy samples of pixels are, and what records of the cache add to that; none where the picture is black.
+constexpr int kSamplesForNoise = 2048; ///< that this takes
+std::optional<PhotonQuality::Noise> noise_of(const FinalGather& gather, const ImageWindow& window, std::uint64_t seed);
 
 /// Warns by what the last of `passes` left in `stats`: few photons with most of the power, maps too sparse where they
 /// are asked, spots of light that pilot photons don't confirm, an irradiance cache that is noisy or without answers, no
