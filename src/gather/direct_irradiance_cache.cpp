@@ -4,6 +4,8 @@
 #include "gather/direct_irradiance.h"
 #include "photonmap/surface/surface_region.h"
 
+#include <algorithm>
+
 namespace keyhole {
 namespace {
 
@@ -49,9 +51,10 @@ DirectIrradianceCache::Entry DirectIrradianceCache::at(const Scene& scene, std::
     return site;
 }
 
-std::optional<Rgb> DirectIrradianceCache::direct(std::uint32_t i, const Vec3& position) const {
+std::optional<Rgb> DirectIrradianceCache::direct(std::uint32_t i, const Vec3& position, float farthest) const {
     const Entry& site = entries_[i];
-    if ((places_[i].position() - position).length2() > site.reach * site.reach) return std::nullopt;
+    const float reach = std::min(site.reach, farthest);
+    if ((places_[i].position() - position).length2() > reach * reach) return std::nullopt;
     return site.direct.decode();
 }
 

@@ -108,7 +108,7 @@ Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSou
         return direct + global_near(known.place, v, back);
     }
     const Rgb f = v.bsdf.diffuse_reflectance(back);
-    const auto near = maps_.direct->direct(known.place, v.point.p);
+    const auto near = maps_.direct->direct(known.place, v.point.p, maps_.irradiance->radius(known.place));
     Rgb sum = near ? f * *near : direct_light(scene_, v, back, 1, source);
     const bool on = too_near(leg, known.place);
     if (!on) {
