@@ -1,10 +1,10 @@
 #include "photonmap/surface/surface_patches.h"
 
-#include "core/kronecker.h"
 #include "photonmap/surface/disc_area.h"
 #include "photonmap/surface/sight.h"
 
 #include <algorithm>
+#include <array>
 
 namespace keyhole {
 namespace {
@@ -17,9 +17,10 @@ constexpr double kFlat = SurfaceRegion::kFlattening;
 constexpr std::size_t kMostInTree = 150'000;
 constexpr int kRing = 8; // rays that look for edges of a region
 constexpr double kRingRadius = 0.85;
-// Rays that measure a region at an edge go on until so many found some of its surface: hits / rays then has the
-// expectation of the reciprocal very nearly, however narrow the surface is.
-constexpr int kFewestRays = 32, kHits = 16, kMostRays = 256;
+// Rays that measure a region at an edge: the first of these numbers of which so many hit its surface. With fewer hits
+// the mean of the reciprocal would be far too large.
+constexpr std::array kRays{32, 128, 512};
+constexpr int kHits = 8;
 constexpr int kMostLayers = 8; // of surface in a region, one above the other
 
 bool holds_photons(const Shape& shape) {
@@ -141,15 +142,19 @@ double SurfacePatches::surface_over(const SurfaceRegion& region, double r, doubl
 
 template <class Counts>
 double SurfacePatches::sampled_area(const SurfaceRegion& region, double r, const Counts& counts) const {
-    double sum = 0;
-    int rays = 0;
-    for (int hits = 0; rays < kMostRays && (rays < kFewestRays || hits < kHits); ++rays) {
-        const double distance = r * std::sqrt(kronecker(0.5, rays, kR2[0]));
-        const double there = surface_over(region, r, distance, 2 * kPi * kronecker(0.5, rays, kR2[1]), counts);
-        hits += there > 0 ? 1 : 0;
-        sum += there;
+    double share = 0;
+    for (const int rays : kRays) {
+        double sum = 0;
+        int hits = 0;
+        for (int i = 0; i < rays; ++i) {
+            const double there = surface_over(region, r, r * std::sqrt((i + 0.5) / rays), kGoldenAngle * i, counts);
+            hits += there > 0 ? 1 : 0;
+            sum += there;
+        }
+        share = sum / rays;
+        if (hits >= kHits) break;
     }
-    return kPi * r * r * std::min(1.0, sum / rays);
+    return kPi * r * r * std::min(1.0, share);
 }
 
 /// Nearly all regions lie away from edges, which a few rays near the border tell.
@@ -161,7 +166,13 @@ double SurfacePatches::area_by_rays(const SurfaceRegion& region, double r) const
 }
 
 double SurfacePatches::area_in_sight(const SurfaceRegion& region, double r, float lift) const {
-    return sampled_area(region, r, [&](const SurfacePoint& p) { return in_sight(*scene_, region, lift, p.p); });
+    double all = 0, seen = 0;
+    sampled_area(region, r, [&](const SurfacePoint& p) {
+        all += 1;
+        seen += in_sight(*scene_, region, lift, p.p) ? 1 : 0;
+        return true;
+    });
+    return seen > 0 ? area(region, r) * seen / all : 0;
 }
 
 bool SurfacePatches::obstructed(const SurfaceRegion& region, double r) const {

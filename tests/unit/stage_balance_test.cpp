@@ -1,0 +1,83 @@
+// How the time of stage three is split between records of the irradiance cache and samples of pixels.
+#include "methods/choice/stage_balance.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace keyhole {
+namespace {
+
+constexpr double kPixels = 1e4;
+
+/// A render of 10 s: 4 s each for records and pixels, 2 s for photons.
+Experience ten_seconds(const Settings& s) {
+    RenderStats stats;
+    stats.stages = {{&stages::photons_of_light_paths, 2, 2, 0}, {&stages::cache, 4, 4, 0}, {&stages::gather, 4, 4, 0}};
+    return {s, 1, kPixels, stats, 10};
+}
+
+Settings settings() {
+    Settings s;
+    s.cache_rays = 1000;
+    s.spp = 1000;
+    s.passes = 1;
+    return s;
+}
+
+/// The squared error that is left with settings `s`.
+double error(const Settings& s, const PhotonQuality::Noise& noise) {
+    return 0.5 * noise.records * 1000 / static_cast<double>(s.cache_rays) + noise.samples / static_cast<double>(s.spp);
+}
+
+TEST(StageBalance, LeavesTheLeastErrorForTheTime) {
+    const Settings s = settings();
+    const Experience cost = ten_seconds(s);
+    for (const double samples : {0.1, 1.0, 10.0}) {
+        SCOPED_TRACE(samples);
+        const PhotonQuality::Noise noise{samples, 2e-4};
+        const Settings best = split_stage_three(s, cost, noise, kPixels, {});
+        EXPECT_NEAR(cost.predict(best, kPixels), 10, 0.1);
+        EXPECT_EQ(best.light_paths, s.light_paths);
+        for (const double factor : {0.5, 0.8, 1.25}) {
+            Settings other = best;
+            other.cache_rays = static_cast<std::int64_t>(factor * static_cast<double>(best.cache_rays));
+            if (other.cache_rays > s.cache_rays) continue; // it gives no more than effort does
+            const double left = 8 - 4e-3 * static_cast<double>(other.cache_rays);
+            other.spp = static_cast<std::int64_t>(left / 4e-3);
+            EXPECT_GE(error(other, noise), 0.999 * error(best, noise)) << factor;
+        }
+    }
+}
+
+TEST(StageBalance, TakesNoiseOfPixelsIntoAccount) {
+    const Settings s = settings();
+    const Experience cost = ten_seconds(s);
+    const Settings calm = split_stage_three(s, cost, {0.1, 2e-4}, kPixels, {});
+    const Settings noisy = split_stage_three(s, cost, {10, 2e-4}, kPixels, {});
+    EXPECT_LT(noisy.cache_rays, calm.cache_rays / 2);
+    EXPECT_GT(noisy.spp, calm.spp);
+}
+
+TEST(StageBalance, KeepsWhatWasGivenAndWhatNoNoiseTells) {
+    const Settings s = settings();
+    const Experience cost = ten_seconds(s);
+    EXPECT_EQ(split_stage_three(s, cost, {10, 2e-4}, kPixels, {"cache_rays"}).cache_rays, s.cache_rays);
+    EXPECT_EQ(split_stage_three(s, cost, {10, 2e-4}, kPixels, {"spp"}).spp, s.spp);
+    EXPECT_EQ(split_stage_three(s, cost, {0, 0}, kPixels, {}).cache_rays, s.cache_rays);
+}
+
+TEST(StageBalance, GivesPhotonsTheirShare) {
+    // What too few photons blur shows in no noise.
+    const Settings s = settings();
+    RenderStats stats;
+    stats.stages = {{&stages::photons_of_light_paths, 0.2, 0.2, 0}, {&stages::cache, 4, 4, 0}, {&stages::gather, 4, 4, 0}};
+    const Experience cost(s, 1, kPixels, stats, 8.2);
+    const Settings more = split_stage_three(s, cost, {1, 2e-4}, kPixels, {});
+    EXPECT_GT(more.light_paths, 4 * s.light_paths);
+    EXPECT_NEAR(cost.predict(more, kPixels), 8.2, 0.2);
+    EXPECT_EQ(split_stage_three(s, cost, {1, 2e-4}, kPixels, {"light_paths"}).light_paths, s.light_paths);
+}
+
+} // namespace
+} // namespace keyhole
