@@ -30,8 +30,7 @@ TEST(CausticLookup, IsRightOnAverageWhereItIsDoneByChance) {
         ASSERT_EQ(luminance(rays.caustic(seen->vertex, seen->back, 0, rng)), whole) << "the greater part is looked at";
         for (const double besides : {20 * whole, 1e6 * whole}) {
             RunningStats found;
-            for (int i = 0; i < 4000; ++i)
-                found.add(luminance(rays.caustic(seen->vertex, seen->back, besides, rng)));
+            for (int i = 0; i < 4000; ++i) found.add(luminance(rays.caustic(seen->vertex, seen->back, besides, rng)));
             EXPECT_TRUE(test::has_mean(found, whole));
             EXPECT_GT(found.variance(), 0) << "it was always looked at";
         }

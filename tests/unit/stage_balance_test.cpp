@@ -71,7 +71,8 @@ TEST(StageBalance, GivesPhotonsTheirShare) {
     // What too few photons blur shows in no noise.
     const Settings s = settings();
     RenderStats stats;
-    stats.stages = {{&stages::photons_of_light_paths, 0.2, 0.2, 0}, {&stages::cache, 4, 4, 0}, {&stages::gather, 4, 4, 0}};
+    stats.stages = {
+        {&stages::photons_of_light_paths, 0.2, 0.2, 0}, {&stages::cache, 4, 4, 0}, {&stages::gather, 4, 4, 0}};
     const Experience cost(s, 1, kPixels, stats, 8.2);
     const Settings more = split_stage_three(s, cost, {1, 2e-4}, kPixels, {});
     EXPECT_GT(more.light_paths, 4 * s.light_paths);

@@ -51,7 +51,8 @@ Settings split_stage_three(const Settings& settings, const Experience& cost, con
     const double of_samples = noise.samples / spp;
     const double x = std::sqrt(of_records * records), y = std::sqrt(of_samples * samples);
     const double both = records + samples - std::max(more, 0.0);
-    s.cache_rays = static_cast<std::int64_t>(std::clamp(rays * both * x / (x + y) / records, std::min(rays, kLeastRays), rays));
+    s.cache_rays =
+        static_cast<std::int64_t>(std::clamp(rays * both * x / (x + y) / records, std::min(rays, kLeastRays), rays));
     const double left = both - records * static_cast<double>(s.cache_rays) / rays;
     s.spp = std::max<std::int64_t>(1, static_cast<std::int64_t>(spp * std::max(left / samples, kLeastSamples)));
     return s;

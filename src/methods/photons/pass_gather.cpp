@@ -28,7 +28,8 @@ LookupOptions lookups(const Settings& settings, const Radii& radii) {
 
 PassGather::PassGather(const SamplerContext& c, const RenderPlan& plan, std::int64_t pass, std::uint64_t seed,
                        Photons photons, RenderStats& stats, const RunContext& context)
-    : window_(c.scene.camera().window()), seed_(seed), global_(std::move(photons.global)), caustic_(std::move(photons.caustic)) {
+    : window_(c.scene.camera().window()), seed_(seed), global_(std::move(photons.global)),
+      caustic_(std::move(photons.caustic)) {
     const Settings& s = c.settings;
     const Radii radii(c.scene, pass);
     // An estimate made beforehand is asked from a little way off. Once regions get as small as that, each is made where
@@ -81,7 +82,8 @@ int PassGather::rays_worth_their_time(const PlacedRecords& placed, const GatherS
     if (!noise || !(placed.seconds > 0) || !(start > left)) return placed.rays;
     const double of_ray = placed.seconds / placed.rays;
     const double of_sample = (start - left) / kSamplesForNoise * window_.size();
-    const double records = std::sqrt(noise->records * placed.rays), pixels = std::sqrt(noise->samples * of_sample * of_ray);
+    const double records = std::sqrt(noise->records * placed.rays),
+                 pixels = std::sqrt(noise->samples * of_sample * of_ray);
     const double rays = records * (left + placed.seconds) / (pixels + records * of_ray);
     return static_cast<int>(std::clamp(rays, static_cast<double>(placed.rays), kMostMoreRays * placed.rays));
 }

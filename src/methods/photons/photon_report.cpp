@@ -24,9 +24,9 @@ constexpr double kShows = 0.1;       ///< of the light of a sample, or of the pi
 constexpr double kMostFalse = 0.004; ///< of the picture
 constexpr double kMostNoise = 0.2;   ///< of irradiance records, where passes don't make it less
 
-constexpr int kPoints = 4096;   // of the picture that are looked at for false spots
-constexpr double kDark = 0.01;  // of the square of the mean: what is darker still has no relative error to speak of
-constexpr double kMost = 0.98;  // of pixels: the rest hold bright, rare samples, which say nothing of the others
+constexpr int kPoints = 4096;  // of the picture that are looked at for false spots
+constexpr double kDark = 0.01; // of the square of the mean: what is darker still has no relative error to speak of
+constexpr double kMost = 0.98; // of pixels: the rest hold bright, rare samples, which say nothing of the others
 
 double share_of_brightest(const std::vector<Photon>& photons) {
     if (photons.empty()) return 0;
@@ -67,7 +67,8 @@ void report_false_spots(const FinalGather& gather, std::uint64_t seed, RenderSta
     std::vector<FinalGather::Doubts> seen(kPoints);
     parallel_for(kPoints, [&](std::int64_t i) {
         Rng rng(seed, StreamPurpose::survey, static_cast<std::uint64_t>(i));
-        seen[static_cast<std::size_t>(i)] = gather.doubt(lattice_image_point(seed, StreamPurpose::survey, i), true, rng);
+        seen[static_cast<std::size_t>(i)] =
+            gather.doubt(lattice_image_point(seed, StreamPurpose::survey, i), true, rng);
     });
     double mean = 0;
     for (const auto& s : seen) mean += s.all / kPoints;
@@ -101,7 +102,9 @@ std::optional<PhotonQuality::Noise> noise_of(const FinalGather& gather, const Im
     });
     double mean = 0;
     for (const Pixel& p : pixels) mean += p.mean / kPixels;
-    const auto relative = [&](double squared, const Pixel& p) { return squared / (p.mean * p.mean + kDark * mean * mean); };
+    const auto relative = [&](double squared, const Pixel& p) {
+        return squared / (p.mean * p.mean + kDark * mean * mean);
+    };
     std::vector<double> samples, records;
     for (const Pixel& p : pixels) {
         samples.push_back(relative(p.variance, p));

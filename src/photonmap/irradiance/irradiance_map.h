@@ -72,7 +72,8 @@ class IrradianceMap {
         /// `obstructed`, bit i: something may stand on the region of radius / 2^i.
         Estimate(const Rgb& e, float radius, double area_share, std::uint8_t obstructed)
             : irradiance_(e), obstructed_(obstructed),
-              area_share_(static_cast<std::uint8_t>(std::lround(255 * std::clamp(area_share, 0.0, 1.0)))), radius_(static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(radius) >> 16)) {}
+              area_share_(static_cast<std::uint8_t>(std::lround(255 * std::clamp(area_share, 0.0, 1.0)))),
+              radius_(static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(radius) >> 16)) {}
 
         Rgb irradiance() const { return irradiance_.decode(); }
         unsigned obstructed() const { return obstructed_; }

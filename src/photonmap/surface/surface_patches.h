@@ -26,8 +26,8 @@ class SurfacePatches {
     /// (a box on a floor) both count, although photons reach only one; so the area is held to that of the disc, pi r^2.
     double area(const SurfaceRegion& region, double r) const;
 
-    /// Area [m^2] of what the region's middle sees of that surface (in_sight()), by rays; 0 where it sees nothing, as in
-    /// a crevice. Only with a scene.
+    /// Area [m^2] of what the region's middle sees of that surface (in_sight()), by rays; 0 where it sees nothing, as
+    /// in a crevice. Only with a scene.
     double area_in_sight(const SurfaceRegion& region, double r, float lift) const;
 
     /// Whether other surfaces may stand on the region of radius `r`, where they could part one half of it from the
