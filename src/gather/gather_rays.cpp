@@ -136,13 +136,18 @@ Rgb GatherRays::caustic(const Vertex& v, const Vec3& back, double besides, Sampl
     const PhotonQuery query = query_at(v, back, options_.caustic_radius, options_);
     const float r = piloted_radius(maps_.caustic->pilots(), query);
     const PhotonMap& photons = maps_.caustic->main_photons();
-    // What the BSDF makes of each photon, and what edges and walls make of the region, takes time to find out.
-    const Rgb irradiance = estimate_density(photons, query.region, r, nullptr, [](const Photon&) { return 1.0; }).value;
-    if (!(luminance(irradiance) > 0)) return Rgb(0.0);
-    const double about = luminance(irradiance * v.bsdf.eval(facing(v.bsdf.shading_normal(), back), back));
-    const double p = std::clamp(about / (kLesserCaustic * besides), kLeastLook, 1.0);
-    if (!(source.next() < p)) return Rgb(0.0);
+    const double p = maps_.patches->takes_rays() ? chance_of_caustic(v, back, query.region, r, besides) : 1;
+    if (!(p > 0) || (p < 1 && !(source.next() < p))) return Rgb(0.0);
     return estimate_density_in_sight(scene_, photons, query.region, r, *maps_.patches, reflection(v, back)).value / p;
+}
+
+double GatherRays::chance_of_caustic(const Vertex& v, const Vec3& back, const SurfaceRegion& region, float r,
+                                     double besides) const {
+    const Rgb irradiance =
+        estimate_density(maps_.caustic->main_photons(), region, r, nullptr, [](const Photon&) { return 1.0; }).value;
+    if (!(luminance(irradiance) > 0)) return 0;
+    const double about = luminance(irradiance * v.bsdf.eval(facing(v.bsdf.shading_normal(), back), back));
+    return std::clamp(about / (kLesserCaustic * besides), kLeastLook, 1.0);
 }
 
 double GatherRays::unconfirmed_caustic(const Vertex& v, const Vec3& back) const {

@@ -41,7 +41,8 @@ class GatherRays {
     Arrival trace(const Vertex& from, const Vec3& w, double pdf, int scatterings, SampleSource& source) const;
 
     /// Radiance towards `back` that the caustic map gives at a visible point, which reflects so much luminance besides.
-    /// Where it is the lesser part it is looked at by chance, and counts all the more then.
+    /// Where the surface is so fine that a lookup takes many rays, and the caustic is the lesser part, it is looked at
+    /// by chance, and counts all the more then.
     Rgb caustic(const Vertex& v, const Vec3& back, double besides, SampleSource& source) const;
     /// Share of its luminance that pilot photons don't confirm (unconfirmed_share()).
     double unconfirmed_caustic(const Vertex& v, const Vec3& back) const;
@@ -50,6 +51,9 @@ class GatherRays {
     int max_scatterings() const { return max_scatterings_; }
 
   private:
+    /// With which probability a caustic is worth a look; 0 where there is none.
+    double chance_of_caustic(const Vertex& v, const Vec3& back, const SurfaceRegion& region, float r,
+                             double besides) const;
     struct Leg;
     struct Missing;
     struct Walk;

@@ -12,13 +12,17 @@ namespace {
 using namespace photon_test;
 
 TEST(CausticLookup, IsRightOnAverageWhereItIsDoneByChance) {
-    test::SceneMaker m;
-    m.rectangle({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, make_diffuse(Rgb(0.5)));
-    m.rectangle({0.5f, 0, 0.4f}, {0, 0.3f, 0}, {0, 0, 0.6f}, make_diffuse(Rgb(0.5)));
-    const auto scene = m.camera({0.3f, 2, 0.5f}, {0.31f, 0, 0.5f}, 40).window(8, 8).build();
-    const SurfacePatches patches(*scene);
-    Rng rng = make_rng(1);
     const Rectangle floor{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}};
+    SceneDescription d;
+    d.shapes.push_back(shape_of(floor, 300));
+    d.shapes.push_back(shape_of({{0.5f, 0, 0.4f}, {0, 0.3f, 0}, {0, 0, 0.6f}}));
+    for (Shape& shape : d.shapes) shape.material = make_diffuse(Rgb(0.5));
+    d.camera = {.origin = {0.5f, 2, 0.5f}, .right = {1, 0, 0}, .up = {0, 0, -1}, .forward = {0, -1, 0}};
+    d.window.width = d.window.height = 8;
+    const auto scene = std::make_unique<Scene>(std::move(d));
+    const SurfacePatches patches(*scene);
+    ASSERT_TRUE(patches.takes_rays());
+    Rng rng = make_rng(1);
     const PilotedMap map({.pilots = throw_photons(floor, 500, rng), .main_photons = throw_photons(floor, 2000, rng)});
     const GatherRays rays(*scene, {.caustic = &map, .patches = &patches},
                           {.nearest = 40, .max_radius = 0.3f, .caustic_radius = 0.3f}, 5);

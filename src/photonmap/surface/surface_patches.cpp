@@ -166,6 +166,7 @@ double SurfacePatches::area_by_rays(const SurfaceRegion& region, double r) const
 }
 
 double SurfacePatches::area_in_sight(const SurfaceRegion& region, double r, float lift) const {
+    if (scene_ == nullptr) return 0;
     double all = 0, seen = 0;
     sampled_area(region, r, [&](const SurfacePoint& p) {
         all += 1;

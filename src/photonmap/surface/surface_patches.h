@@ -27,13 +27,16 @@ class SurfacePatches {
     double area(const SurfaceRegion& region, double r) const;
 
     /// Area [m^2] of what the region's middle sees of that surface (in_sight()), by rays; 0 where it sees nothing, as
-    /// in a crevice. Only with a scene.
+    /// in a crevice, and without a scene.
     double area_in_sight(const SurfaceRegion& region, double r, float lift) const;
 
     /// Whether other surfaces may stand on the region of radius `r`, where they could part one half of it from the
     /// other. By bounding boxes: true more often than need be on slanted and curved surfaces; by rays along the surface
     /// where there are too many.
     bool obstructed(const SurfaceRegion& region, double r) const;
+
+    /// Whether the scene is too fine for a tree of its triangles, so that every area takes rays.
+    bool takes_rays() const { return !has_tree_; }
 
     /// Triangles in a region that are added up one by one.
     static constexpr int kMostTriangles = 64;
