@@ -27,6 +27,8 @@ constexpr double kPatience = 3;
 constexpr double kPatienceForPhotons = 0.08, kMostPatience = 0.8;
 /// What traces importance costs is told by so many walks.
 constexpr std::int64_t kImportons = 4000;
+/// Rays of records in a trial: their noise is told by few, and there are many records even in a small window.
+constexpr std::int64_t kCacheRays = 64;
 /// Number of the first render of a trial, for its seed; those that count have others.
 constexpr std::int64_t kTrialSeed = std::int64_t{1} << 20;
 /// What photons and records err falls as this power of the effort at least: often faster while they are few, but two
@@ -75,6 +77,7 @@ Settings trial_settings(const TrialContext& c, const Method& method, double effo
     // What is given may be much: it is left for the render.
     s = with_effort(s, effort, static_cast<std::int64_t>(c.scene.camera().window().size()), {});
     s.importons = std::min(s.importons, kImportons);
+    if (c.context.stop != nullptr) s.cache_rays = std::min(s.cache_rays, kCacheRays);
     s.save_map.clear();
     s.chain_groups = 1;
     if (method.samples_pixels) s.spp = 1 << 24; // as many as the cap leaves time for, unless somebody says how many
@@ -103,7 +106,7 @@ std::optional<TrialRender> render_trial(const TrialContext& c, Settings settings
                         .taken = in_time ? start - left() : cost.total(),
                         .samples = r.stats.samples,
                         .balance = in_time ? rebalance({}, r.stats) : StageBalance(),
-                        .noise = r.stats.photon_quality.noise}};
+                        .noise = in_time ? r.stats.photon_quality.noise : std::nullopt}};
 }
 
 /// The same under a cap; none if it was given up.

@@ -18,10 +18,10 @@ namespace keyhole {
 /// What a render of a small window tells of a method's cost.
 struct TrialCost {
     Experience cost;
-    double taken;         ///< by it: seconds, or rays
-    double samples;       ///< of a pixel
-    StageBalance balance; ///< that it found best
-    std::optional<PhotonQuality::Noise> noise;
+    double taken;                              ///< by it: seconds, or rays
+    double samples;                            ///< of a pixel
+    StageBalance balance;                      ///< that it found best
+    std::optional<PhotonQuality::Noise> noise; ///< told where time is limited: otherwise settings stay as they are
 
     /// Settings of a render of so many seconds, or rays, at least with effort `least`; `effort` becomes its effort.
     Settings settings_for(const Settings& s, const std::set<std::string>& given, double pixels, double seconds,
