@@ -67,6 +67,16 @@ TEST(StageBalance, KeepsWhatWasGivenAndWhatNoNoiseTells) {
     EXPECT_EQ(split_stage_three(s, cost, {0, 0}, kPixels, {}).cache_rays, s.cache_rays);
 }
 
+TEST(StageBalance, GivesChainsThatMakePhotonsTheirShare) {
+    const Settings s = settings();
+    RenderStats stats;
+    stats.stages = {{&stages::photons_of_chains, 0.2, 0.2, 0}, {&stages::cache, 4, 4, 0}, {&stages::gather, 4, 4, 0}};
+    const Experience cost(s, 1, kPixels, stats, 8.2);
+    const Settings more = split_stage_three(s, cost, {1, 2e-4}, kPixels, {});
+    EXPECT_GT(more.mutations, 4 * s.mutations);
+    EXPECT_NEAR(cost.predict(more, kPixels), 8.2, 0.2);
+}
+
 TEST(StageBalance, GivesPhotonsTheirShare) {
     // What too few photons blur shows in no noise.
     const Settings s = settings();

@@ -10,8 +10,8 @@ namespace {
 constexpr double kRaysAtFirst = 0.5;
 /// Records with fewer rays don't see what is around them.
 constexpr double kLeastRays = 64;
-/// Of the time of all stages that settings have a say in, what light paths take at least. Too few photons blur light,
-/// which no noise tells.
+/// Of the time of all stages that settings have a say in, what light paths or chains take at least. Too few photons
+/// blur light, which no noise tells.
 constexpr double kLeastForPhotons = 0.15, kMostMorePhotons = 8;
 /// Of the samples of pixels that effort gives.
 constexpr double kLeastSamples = 0.5;
@@ -37,13 +37,15 @@ Settings split_stage_three(const Settings& settings, const Experience& cost, con
         return sum;
     };
     const double records = seconds(stages::cache), samples = seconds(stages::gather);
-    const double photons = seconds(stages::photons_of_light_paths);
+    const double photons = seconds(stages::photons_of_light_paths) + seconds(stages::photons_of_chains);
     if (!(records > 0 && samples > 0)) return settings;
     Settings s = settings;
     const double more = kLeastForPhotons * (records + samples + photons) - photons;
-    if (photons > 0 && more > 0 && !given.contains("light_paths") && !given.contains("photons")) {
+    if (photons > 0 && more > 0 && !given.contains("light_paths") && !given.contains("mutations") &&
+        !given.contains("photons")) {
         const double factor = std::min(kMostMorePhotons, 1 + more / photons);
         s.light_paths = static_cast<std::int64_t>(factor * static_cast<double>(s.light_paths));
+        s.mutations = static_cast<std::int64_t>(factor * static_cast<double>(s.mutations));
         s.photons = static_cast<std::int64_t>(factor * static_cast<double>(s.photons));
     }
     const auto rays = static_cast<double>(s.cache_rays), spp = static_cast<double>(s.spp);
