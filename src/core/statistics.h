@@ -37,4 +37,11 @@ class RunningStats {
     double mean_ = 0, m2_ = 0;
 };
 
+/// Share of a time that the first of two parts of a work should get, so that their squared errors, which fall as the
+/// reciprocals of their times, add up to the least. Both are told as squared error times time; one is positive.
+inline double best_share_of_time(double first, double second) {
+    const double a = std::sqrt(first), b = std::sqrt(second);
+    return a / (a + b);
+}
+
 } // namespace keyhole

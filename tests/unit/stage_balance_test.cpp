@@ -1,4 +1,5 @@
 // How the time of stage three is split between records of the irradiance cache and samples of pixels.
+#include "core/statistics.h"
 #include "methods/choice/stage_balance.h"
 
 #include <gtest/gtest.h>
@@ -28,6 +29,16 @@ Settings settings() {
 /// The squared error that is left with settings `s`.
 double error(const Settings& s, const PhotonQuality::Noise& noise) {
     return 0.5 * noise.records * 1000 / static_cast<double>(s.cache_rays) + noise.samples / static_cast<double>(s.spp);
+}
+
+TEST(StageBalance, SharesTimeForTheLeastError) {
+    for (const double ratio : {1e-3, 0.5, 1.0, 40.0}) {
+        const double best = best_share_of_time(ratio, 1);
+        const auto error = [&](double share) { return ratio / share + 1 / (1 - share); };
+        for (const double share : {0.7 * best, 0.9 * best, 1 - 0.9 * (1 - best), 1 - 0.7 * (1 - best)})
+            EXPECT_GT(error(share), error(best)) << ratio << ' ' << share;
+    }
+    EXPECT_EQ(best_share_of_time(0, 1), 0);
 }
 
 TEST(StageBalance, LeavesTheLeastErrorForTheTime) {

@@ -1,5 +1,7 @@
 #include "methods/choice/stage_balance.h"
 
+#include "core/statistics.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -51,10 +53,10 @@ Settings split_stage_three(const Settings& settings, const Experience& cost, con
     const auto rays = static_cast<double>(s.cache_rays), spp = static_cast<double>(s.spp);
     const double of_records = noise.records * kRaysAtFirst * static_cast<double>(cost.settings.cache_rays) / rays;
     const double of_samples = noise.samples / spp;
-    const double x = std::sqrt(of_records * records), y = std::sqrt(of_samples * samples);
+    const double share = best_share_of_time(of_records * records, of_samples * samples);
     const double both = records + samples - std::max(more, 0.0);
     s.cache_rays =
-        static_cast<std::int64_t>(std::clamp(rays * both * x / (x + y) / records, std::min(rays, kLeastRays), rays));
+        static_cast<std::int64_t>(std::clamp(rays * both * share / records, std::min(rays, kLeastRays), rays));
     const double left = both - records * static_cast<double>(s.cache_rays) / rays;
     s.spp = std::max<std::int64_t>(1, static_cast<std::int64_t>(spp * std::max(left / samples, kLeastSamples)));
     return s;
@@ -63,9 +65,8 @@ Settings split_stage_three(const Settings& settings, const Experience& cost, con
 StageBalance rebalance(const StageBalance& balance, const RenderStats& stats) {
     const double one = seconds_of(Stage::Work::brightness, stats), two = seconds_of(Stage::Work::chains, stats);
     if (!stats.agreement || !(stats.agreement->error > 0 && stats.brightness > 0 && one > 0 && two > 0)) return balance;
-    const double to_one = stats.brightness_error / stats.brightness * std::sqrt(one);
-    const double to_two = stats.agreement->error * std::sqrt(two);
-    const double share = to_one / (to_one + to_two);
+    const double of_one = stats.brightness_error / stats.brightness, of_two = stats.agreement->error;
+    const double share = best_share_of_time(of_one * of_one * one, of_two * of_two * two);
     // Bounds, for what short renders say of their errors is vague; and groups of chains that agree too well, as those
     // do that have not mixed, think their error smaller than it is.
     return {std::clamp(balance.brightness * share * (one + two) / one, 0.25, 1.2),

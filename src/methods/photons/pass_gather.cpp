@@ -1,5 +1,6 @@
 #include "methods/photons/pass_gather.h"
 
+#include "core/statistics.h"
 #include "gather/fill_cache.h"
 #include "methods/photons/photon_report.h"
 #include "methods/photons/radii.h"
@@ -79,12 +80,11 @@ int PassGather::rays_worth_their_time(const PlacedRecords& placed, const GatherS
     const double start = context.stop->seconds_left();
     const auto noise = noise_of(gather, window_, seed_);
     const double left = context.stop->seconds_left();
-    if (!noise || !(placed.seconds > 0) || !(start > left)) return placed.rays;
+    if (!noise || !(noise->records > 0) || !(placed.seconds > 0) || !(start > left)) return placed.rays;
     const double of_ray = placed.seconds / placed.rays;
     const double of_sample = (start - left) / kSamplesForNoise * window_.size();
-    const double records = std::sqrt(noise->records * placed.rays),
-                 pixels = std::sqrt(noise->samples * of_sample * of_ray);
-    const double rays = records * (left + placed.seconds) / (pixels + records * of_ray);
+    const double share = best_share_of_time(noise->records * placed.rays * of_ray, noise->samples * of_sample);
+    const double rays = share * (left + placed.seconds) / of_ray;
     return static_cast<int>(std::clamp(rays, static_cast<double>(placed.rays), kMostMoreRays * placed.rays));
 }
 

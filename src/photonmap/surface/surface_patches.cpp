@@ -168,12 +168,12 @@ double SurfacePatches::area_by_rays(const SurfaceRegion& region, double r) const
 double SurfacePatches::area_in_sight(const SurfaceRegion& region, double r, float lift) const {
     if (scene_ == nullptr) return 0;
     double all = 0, seen = 0;
-    sampled_area(region, r, [&](const SurfacePoint& p) {
+    const double sampled = sampled_area(region, r, [&](const SurfacePoint& p) {
         all += 1;
         seen += in_sight(*scene_, region, lift, p.p) ? 1 : 0;
         return true;
     });
-    return seen > 0 ? area(region, r) * seen / all : 0;
+    return seen > 0 ? (has_tree_ ? area(region, r) : sampled) * seen / all : 0;
 }
 
 bool SurfacePatches::obstructed(const SurfaceRegion& region, double r) const {
