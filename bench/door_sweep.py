@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Two rooms and an ever narrower door: the error of each sampler at equal CPU time, with user paths and without.
+"""Two rooms and an ever narrower door: the error of each sampler at equal CPU time, with user paths, with openings that it finds, and without.
 
-usage: bench/door_sweep.py [--keyhole build/keyhole] [--widths 0.3,0.1,...] [--seconds 5] [--repeats 2] [--reference-seconds 40]
+usage: bench/door_sweep.py [--keyhole build/keyhole] [--widths 0.3,0.1,...] [--seconds 5] [--repeats 2] [--reference-seconds 40] [--figure doors.svg]
 
 The lamp stands behind a screen in one room, the eye looks at the far wall of the other, so that all light in the picture has come
 through the door after a scattering or more. Without doors to compare with, the references are two independent long renders by mlt
@@ -18,8 +18,10 @@ import numpy
 from common import luminance
 
 GUIDED = ["--user-paths", "USER_PATHS"]
-METHODS = {"pm": [], "ipm": [], "mps": [], "pss": [], "auto": [], "ipm, user paths": GUIDED, "mps, user paths": GUIDED,
-           "auto, user paths": GUIDED, "mlt, user paths": GUIDED}
+NOT_LOOKING = ["-D", "find_openings=false"]
+METHODS = {"pm": [], "ipm, not looking": NOT_LOOKING, "mps, not looking": NOT_LOOKING, "auto, not looking": NOT_LOOKING,
+           "ipm": [], "mps": [], "pss": [], "auto": [],
+           "ipm, user paths": GUIDED, "mps, user paths": GUIDED, "auto, user paths": GUIDED, "mlt, user paths": GUIDED}
 SCENE = """film: {{resolution: [64, 48]}}
 camera: {{from: [0.4, 1.2, -1.2], to: [3, 1, 0.3], fov: 60}}
 materials:
@@ -78,6 +80,22 @@ def root_mean(values):
     return numpy.sqrt(max(0.0, float(values.mean())))
 
 
+def draw(errors, path):
+    """A line for each method that was measured: error over the width of the door."""
+    import matplotlib
+    matplotlib.use("svg")
+    matplotlib.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "doors", "font.size": 9})
+    from matplotlib import pyplot
+    figure, axes = pyplot.subplots(figsize=(6, 3.4))
+    for (name, points), marker in zip(errors.items(), "osv^D*xP+<>h"):
+        axes.loglog(*zip(*points), marker=marker, label=name)
+    axes.set_xlabel("width of the door [m]")
+    axes.set_ylabel("relative error")
+    axes.legend(frameon=False)
+    figure.tight_layout()
+    figure.savefig(path, metadata={"Date": None})
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--keyhole", default="build/keyhole")
@@ -87,6 +105,8 @@ def main():
     parser.add_argument("--repeats", type=int, default=2)
     parser.add_argument("--reference-seconds", type=float, default=40)
     parser.add_argument("--work", default="door-sweep")
+    parser.add_argument("--figure", help="SVG to draw errors in; needs matplotlib")
+    errors = {}
     bench = Bench(parser.parse_args())
     print("| door [m] | method | error | brightness / width | photons | KiB | error x sqrt(KiB) | used |")
     print("| --- | --- | --- | --- | --- | --- | --- | --- |")
@@ -103,8 +123,11 @@ def main():
                 squares.append((picture - halves[0]) * (picture - halves[1]) / mean ** 2)
                 bright.append(picture.mean() / width)
             e, kib = root_mean(numpy.array(squares)), stats["photon_bytes"] / 1024
+            errors.setdefault(name, []).append((width, e))
             print(f"| {width:g} | {name} | {e:.3f} | {numpy.mean(bright):.3g} | {stats['photons_global'] + stats['photons_caustic']} | {kib:.0f} | "
                   f"{e * kib ** 0.5:.2f} | {stats['method']} |", flush=True)
+    if bench.arguments.figure:
+        draw(errors, bench.arguments.figure)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
-# keyhole_embed_page(<folder> <output>): makes a source file of the page in <folder>: page.html with style.css and all
-# scripts, in the order of their names, put where it has @KEYHOLE_PAGE_STYLE@ and @KEYHOLE_PAGE_SCRIPT@.
-function(keyhole_embed_page folder output)
+# keyhole_embed_page(<folder> <name> <output>): makes a source file of the page in <folder>, the PageParts <name>:
+# page.html with style.css and all scripts, in the order of their names, put where it has @KEYHOLE_PAGE_STYLE@ and
+# @KEYHOLE_PAGE_SCRIPT@.
+function(keyhole_embed_page folder name output)
   file(GLOB scripts CONFIGURE_DEPENDS ${folder}/*.js)
   list(SORT scripts)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${folder}/page.html ${folder}/style.css ${scripts})
@@ -11,15 +12,15 @@ function(keyhole_embed_page folder output)
     string(APPEND KEYHOLE_PAGE_SCRIPT "${text}")
   endforeach()
   # The data come at run time: the page is cut there.
-  set(KEYHOLE_PAGE_DATA ")page\";\nconst std::string_view kPageAfterData = R\"page(")
+  set(KEYHOLE_PAGE_DATA ")page\",\nR\"page(")
   file(READ ${folder}/page.html page)
   string(CONFIGURE "${page}" page @ONLY)
   file(CONFIGURE OUTPUT ${output} @ONLY CONTENT [=[
-#include "cli/chart/page_parts.h"
+#include "cli/page/page_parts.h"
 
 namespace keyhole {
 
-const std::string_view kPageBeforeData = R"page(@page@)page";
+const PageParts @name@{R"page(@page@)page"};
 
 } // namespace keyhole
 ]=])

@@ -26,6 +26,7 @@ void add_paths_command(CLI::App& app, Action& action);
 void add_experiment_command(CLI::App& app, Action& action);
 void add_info_command(CLI::App& app, Action& action);
 void add_chart_command(CLI::App& app, Action& action);
+void add_inspect_command(CLI::App& app, Action& action);
 void add_plan_command(CLI::App& app, Action& action);
 
 } // namespace keyhole

@@ -81,7 +81,7 @@ void add_info_command(CLI::App& app, Action& action) {
     };
     CLI::App* command = app.add_subcommand("info", "Print what a scene consists of");
     auto o = std::make_shared<Options>();
-    command->add_option("SCENE", o->scene, "scene file (YAML, or .pbrt)")->required();
+    command->add_option("SCENE", o->scene, "scene file (YAML, .pbrt, .gltf or .glb)")->required();
     command->add_flag("--json", o->json, "print one JSON object");
     command->callback([&action, o] {
         action = [o] {

@@ -126,7 +126,7 @@ void print_plan(const Json& plan) {
 void add_plan_command(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand("plan", "Print what a render of a scene would do, and what it would cost");
     auto o = std::make_shared<PlanCommand>();
-    command->add_option("SCENE", o->scene, "scene file (YAML, or .pbrt)")->required();
+    command->add_option("SCENE", o->scene, "scene file (YAML, .pbrt, .gltf or .glb)")->required();
     command->add_option("--resolution", o->resolution, "WIDTHxHEIGHT in pixels");
     command->add_option("-D", o->settings, "any setting of render, KEY=VALUE; may be repeated")
         ->allow_extra_args(false);

@@ -50,6 +50,7 @@ int run(int argc, char** argv, ProcessGroup* team) {
     add_experiment_command(app, action);
     add_info_command(app, action);
     add_chart_command(app, action);
+    add_inspect_command(app, action);
     add_plan_command(app, action);
     try {
         app.parse(argc, argv);

@@ -18,6 +18,7 @@
 #include "methods/choice/first_look.h"
 #include "methods/choice/render_in_time.h"
 #include "methods/method.h"
+#include "sampling/guidance/user_paths.h"
 #include "sampling/scene_hash.h"
 #include "scene/load/load.h"
 
@@ -39,7 +40,7 @@ namespace {
 struct RenderOptions {
     std::string command_line, scene, resolution, user_paths;
     Outputs outputs;
-    bool no_png = false, quiet = false, verbose = false, strict = false;
+    bool no_png = false, quiet = false, verbose = false, strict = false, skip_bad_paths = false;
     std::vector<std::string> overrides; ///< key=value, in the order of the command line
     std::string save_map, load_map;
     Checkpoints checkpoints;
@@ -117,12 +118,14 @@ void start_clock(const RenderOptions& options, StopToken& stop) {
     if (options.cpu_time) stop.set_cpu_limit(cpu_seconds() + *options.cpu_time);
 }
 
-RenderResult render_scene(LoadedScene& loaded, RenderOptions& options, StopToken& stop) {
+RenderResult render_scene(LoadedScene& loaded, RenderOptions& options, std::vector<std::string>& warnings,
+                          StopToken& stop) {
     RenderResult result;
     LiveView view(options.writes() ? options.display_server : "", options.outputs.exr,
                   [&](const Picture& picture) { write_unfinished(picture, options); });
     with_threads(options.threads, [&] {
         Scene scene(std::move(loaded.description));
+        if (options.skip_bad_paths) loaded.user_paths = usable_paths(scene, std::move(loaded.user_paths), warnings);
         const std::chrono::duration<double> wall = StopToken::Clock::now() - options.begun;
         const StageStats loading{&stages::loading, wall.count(), cpu_seconds(), 0};
         start_clock(options, stop);
@@ -190,7 +193,7 @@ int run(RenderOptions options) {
     options.outputs.exposure = loaded.settings.exposure.value;
     if (!options.user_paths.empty()) loaded.user_paths = load_user_paths(options.user_paths);
     if (!options.resolution.empty()) set_resolution(loaded.description.window, options.resolution);
-    RenderResult result = render_scene(loaded, options, stop);
+    RenderResult result = render_scene(loaded, options, load_warnings, stop);
     if (!options.writes()) return stop.requested() ? kInterrupted : kSuccess;
     result.stats.warnings.insert(result.stats.warnings.begin(), load_warnings.begin(), load_warnings.end());
     if (!options.quiet) print_warnings(result.stats);
@@ -237,7 +240,7 @@ void add_render_command(CLI::App& app, Action& action, const std::string& comman
     auto o = std::make_shared<RenderOptions>();
     o->command_line = command_line;
     o->team = team;
-    command->add_option("SCENE", o->scene, "scene file (YAML, or .pbrt)")->required();
+    command->add_option("SCENE", o->scene, "scene file (YAML, .pbrt, .gltf or .glb)")->required();
     command->add_option("-o,--output", o->outputs.exr,
                         "picture to write (.exr); default: the scene's name, in this folder");
     auto* png = command->add_option("--png", o->outputs.png, "tone-mapped picture; default: beside the EXR");
@@ -246,6 +249,8 @@ void add_render_command(CLI::App& app, Action& action, const std::string& comman
     command->add_option("--resolution", o->resolution, "WIDTHxHEIGHT in pixels");
     command->add_option("--user-paths", o->user_paths,
                         "user paths, instead of the scene's, for " + names_of(&Method::follows_user_paths));
+    command->add_flag("--skip-bad-paths", o->skip_bad_paths,
+                      "leave out user paths that don't work in the scene, with a warning");
     for (const char* key : {"method", "spp", "mutations", "photons", "passes", "seed"})
         command->add_option_function<std::string>(
             std::string("--") + key,

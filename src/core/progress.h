@@ -102,10 +102,14 @@ struct RunContext {
         if (in_overtime) return stop->requested();
         return stop->stopped() || (reserve > 0 && stop->seconds_left() < reserve);
     }
+    /// Of the time, as StopToken says; infinite where nothing stops this.
+    double seconds_left() const {
+        return stop != nullptr ? stop->seconds_left() : std::numeric_limits<double>::infinity();
+    }
     /// With so much of the time that is left for this in reserve besides.
     RunContext with_reserve(double share) const {
         RunContext c = *this;
-        const double left = stop != nullptr ? stop->seconds_left() - reserve : 0;
+        const double left = seconds_left() - reserve;
         if (std::isfinite(left)) c.reserve += share * std::max(0.0, left);
         return c;
     }

@@ -72,6 +72,13 @@ struct RenderStats {
     std::vector<std::string> remarks;     ///< choices that were made, in words
     std::vector<std::string> warnings;    ///< in words
     bool complete = true;                 ///< false after a stop
+
+    /// Adds what a stage before the render took, and what it found.
+    void begin_with(const RenderStats& before) {
+        stages.insert(stages.begin(), before.stages.begin(), before.stages.end());
+        values.insert(before.values.begin(), before.values.end());
+        remarks.insert(remarks.end(), before.remarks.begin(), before.remarks.end());
+    }
 };
 
 } // namespace keyhole

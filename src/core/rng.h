@@ -58,6 +58,10 @@ enum class StreamPurpose : std::uint64_t {
     proposal_tuning,
     learned_emission,
     learned_direct_light,
+    openings,
+    passages,
+    guidance_gain,
+    inspection,
 };
 
 /// PCG32 (O'Neill 2014). One for each chain and each pixel, never for each thread, so that a picture does not

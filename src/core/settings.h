@@ -64,6 +64,7 @@ struct Settings {
     PowerRule power = PowerRule::marginal;
     SampledPaths paths = SampledPaths::stored;
     bool equalise = false;
+    bool find_openings = true;
     std::int64_t passes = 1;
     double target_error = 0;
     std::string save_map, load_map; ///< files of photons; empty: none. Not in the table: they belong to a run
@@ -74,6 +75,7 @@ struct Settings {
     PathBuilderKind builder = PathBuilderKind::bidirectional;
     Failures failures = Failures::reject;
     AutoNumber p_large;
+    AutoNumber chain_share;
     bool large_step_mis = true;
     bool irradiance_cache = true;
     double cache_error = 0.3;
@@ -113,6 +115,8 @@ template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
           "bytes for photons, their index and importance maps");
     visit("power", s.power, "how mps takes the camera sub-path out of a photon's power");
     visit("paths", s.paths, "paths that mps samples: those that store a photon, or all");
+    visit("find_openings", s.find_openings,
+          "lead light through narrow openings that are found, where there are no user paths");
     visit("equalise", s.equalise, "photons for dark pixels as for bright ones: evens out relative errors");
     visit("passes", s.passes, I{0}, I{1} << 40, "passes of photons and gather; 0: until time or target_error is up");
     visit("target_error", s.target_error, 0.0, 1.0, "relative error at which passes end; 0: none");
@@ -123,6 +127,8 @@ template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
     visit("builder", s.builder, "how pssmlt makes paths");
     visit("failures", s.failures, "what pssmlt, mmlt and rjmlt do with proposals that make no path; exclude is biased");
     visit("p_large", s.p_large, 0.0, 1.0, "probability of large steps of pssmlt, mmlt, rjmlt and pss");
+    visit("chain_share", s.chain_share, 0.0, 1.0,
+          "of cps, what chains get of `mutations`; light paths get the rest of `light_paths`. auto: by trial");
     visit("large_step_mis", s.large_step_mis, "whether large steps deposit as samples on their own account");
     visit("irradiance_cache", s.irradiance_cache, "cache irradiance on diffuse surfaces");
     visit("cache_error", s.cache_error, 0.01, 1.0, "reach of a cached irradiance over the distance to surroundings");

@@ -143,13 +143,13 @@ IrradianceCache fill_cache(const GatherRays& rays, const CacheOptions& options, 
     const HotSpots spots(rays, spot_rays(options), options.seed, context);
     const RecordMaker maker(rays, spots, options);
     CacheFill fill(maker, options, cache);
-    const double start = context.stop != nullptr ? context.stop->seconds_left() : 0;
+    const double start = context.seconds_left();
     std::uint64_t level = 0;
     for (const int step : kSteps) {
         fill.fill_level(step, level++, context);
         context.advance(1);
     }
-    const double seconds = std::isfinite(start) && context.stop != nullptr ? start - context.stop->seconds_left() : 0;
+    const double seconds = std::isfinite(start) ? start - context.seconds_left() : 0;
     fill.refine(decide ? decide({cache, fill.first(), seconds}) : options.rays, context);
     context.advance(1);
     context.end();

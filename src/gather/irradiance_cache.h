@@ -55,6 +55,8 @@ class IrradianceCache {
 
     std::size_t size() const { return records_.size(); }
     std::size_t bytes() const;
+    const Vec3& position(std::size_t i) const { return records_[i].position; }
+    const Vec3& normal(std::size_t i) const { return records_[i].normal; }
     /// How far around record `i` there is no need of another one [m].
     float radius(std::size_t i) const { return records_[i].radius; }
     /// How far it is used [m].

@@ -42,7 +42,7 @@ PixelSample sample_pixel(const Scene& scene, const Vec2& image, int depth, MisHe
 }
 
 RenderResult render_bdpt(const RenderTask& task) {
-    const auto& [scene, settings, paths, context, share, findings] = task;
+    const auto& [scene, settings, paths, context, share, findings, observer] = task;
     RenderResult result;
     const ImageWindow& window = scene.camera().window();
     RunningStats luminance;

@@ -3,6 +3,7 @@
 
 #include "methods/photons/find_coverage.h"
 #include "methods/photons/plan.h"
+#include "methods/photons/work_shares.h"
 #include "photonmap/surface/surface_patches.h"
 
 #include <optional>
@@ -15,6 +16,8 @@ struct Findings {
     std::optional<SurfacePatches> patches;
     std::optional<RenderPlan> plan;        ///< of methods with photon maps, standard photon mapping apart
     std::optional<CoverageFound> coverage; ///< where there is no plan
+    std::optional<WorkShares> shares;      ///< of cps
+    double gain_by_openings = 1; ///< by how much fewer light paths do as well if they are led through what was found
 
     /// So that how far gather rays come is found out anew where it matters: trials spend few rays on it.
     void forget_coverage() {

@@ -27,8 +27,7 @@ DirectLightLearning learning(const Settings& settings, const ImageWindow& window
                           .max_scatterings = static_cast<int>(settings.max_depth),
                           .seed = static_cast<std::uint64_t>(settings.seed),
                           .most_bytes = static_cast<std::size_t>(settings.photon_memory / kMemoryShare)};
-    const double left =
-        context.stop != nullptr ? context.stop->seconds_left() : std::numeric_limits<double>::infinity();
+    const double left = context.seconds_left();
     if (std::isfinite(left)) {
         l.seconds = kTimeShare * left;
     } else {
@@ -55,12 +54,6 @@ LearnedDirectLightScope::LearnedDirectLightScope(Scene& scene, const Settings& s
                                        "second moment",
                                        learned->cells(), 1 / learned->second_moment_ratio()));
     scene.set_direct_light(learned);
-}
-
-void LearnedDirectLightScope::report(RenderStats& stats) const {
-    stats.stages.insert(stats.stages.begin(), own_.stages.begin(), own_.stages.end());
-    stats.values.insert(own_.values.begin(), own_.values.end());
-    stats.remarks.insert(stats.remarks.end(), own_.remarks.begin(), own_.remarks.end());
 }
 
 } // namespace keyhole

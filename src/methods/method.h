@@ -10,6 +10,7 @@
 
 namespace keyhole {
 
+class PassObserver;
 class PhotonSampler;
 struct SamplerContext;
 
@@ -21,6 +22,7 @@ struct RenderTask {
     const RunContext& context;
     const WorkPartition& share;
     Findings& findings;
+    PassObserver* observer = nullptr; ///< of methods that keep photons; null: nobody watches
 };
 
 /// When importance maps have to be there.
@@ -28,6 +30,7 @@ enum class ImportanceUse {
     none,   ///< never
     guide,  ///< before photons are stored; less than a third of it stays
     beside, ///< while photons are stored
+    both,   ///< beside, and to guide them
 };
 
 /// What the file of a method says of it.

@@ -96,7 +96,7 @@ bool draw_chains(const Scene& scene, const Settings& settings, const UserPaths& 
 }
 
 RenderResult render_mlt(const RenderTask& task) {
-    const auto& [scene, settings, paths, context, share, findings] = task;
+    const auto& [scene, settings, paths, context, share, findings, observer] = task;
     RenderResult result;
     RenderStats& stats = result.stats;
     const std::int64_t groups = chain_groups(settings);

@@ -12,7 +12,7 @@ namespace {
 constexpr Stage kPathTracing{"path tracing", &Settings::spp, 1};
 
 RenderResult render_path(const RenderTask& task) {
-    const auto& [scene, settings, paths, context, share, findings] = task;
+    const auto& [scene, settings, paths, context, share, findings, observer] = task;
     RenderResult result;
     RunningStats luminance;
     Work work(settings, scene.camera().window(), AccumulationBuffer::Parts::film, share, settings.spp,

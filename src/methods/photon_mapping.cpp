@@ -2,11 +2,12 @@
 #include "core/shared_work.h"
 #include "methods/method.h"
 #include "methods/photons/pass_gather.h"
+#include "methods/photons/pass_observer.h"
 #include "methods/photons/photon_file.h"
 #include "methods/photons/photon_report.h"
 #include "methods/photons/photon_sampler.h"
 #include "methods/photons/plan.h"
-#include "methods/photons/sampler_trial.h"
+#include "methods/photons/trials/sampler_trial.h"
 #include "methods/sample_report.h"
 #include "session/passes.h"
 #include "session/pixels.h"
@@ -47,8 +48,10 @@ std::unique_ptr<PhotonSampler> make_sampler(const SamplerContext& c, const Rende
                                             const RunContext& context) {
     if (!c.settings.load_map.empty()) return make_file_sampler(c);
     if (!plan.photons) return std::make_unique<NoPhotons>();
+    SamplerContext unwatched = c;
+    unwatched.observer = nullptr;
     const Method& method =
-        c.settings.method == &methods::automatic ? choose_method(c, stats, context) : *c.settings.method;
+        c.settings.method == &methods::automatic ? choose_method(unwatched, stats, context) : *c.settings.method;
     stats.method = method.name;
     return method.make_sampler(c);
 }
@@ -65,10 +68,10 @@ std::optional<ImageWeight> weigh_pixels(const SamplerContext& c, const RenderPla
 /// Renders one pass after the other.
 class Passes {
   public:
-    /// `for_gather`: as Share's.
-    Passes(const SamplerContext& c, const RenderPlan& plan, PhotonSampler& sampler, Work& work, double for_gather,
+    Passes(const SamplerContext& c, const RenderPlan& plan, PhotonSampler& sampler, Work& work, const RenderTask& task,
            RenderStats& stats)
-        : c_(c), plan_(plan), sampler_(sampler), work_(work), for_gather_(for_gather), stats_(stats) {}
+        : c_(c), plan_(plan), sampler_(sampler), work_(work), for_gather_(task.share.for_gather),
+          observer_(task.observer), stats_(stats) {}
 
     /// All passes that there are units of.
     /// @throws Interrupted if there is nothing to show.
@@ -106,11 +109,13 @@ class Passes {
         // The photons of a pass that was cut short are good for a first picture, not for one that is there.
         if (early.stopped() && (context.communicator != nullptr || !work_.is_first())) return false;
         report_photons(photons, stats_);
+        if (observer_ != nullptr) observer_->sampled(photons);
         std::optional<PassGather> gather;
         {
             const StageClock clock(stats_, stages::cache);
             gather.emplace(c_, plan_, pass, seed, std::move(photons), stats_, context);
         }
+        if (observer_ != nullptr) observer_->ready(*gather);
         if (context.communicator != nullptr && context.stopped()) return false;
         const bool whole = sample_rounds(*gather, pass, context.alone());
         {
@@ -150,7 +155,8 @@ class Passes {
     const RenderPlan& plan_;
     PhotonSampler& sampler_;
     Work& work_;
-    double for_gather_;
+    double for_gather_; // as WorkPartition's
+    PassObserver* observer_;
     RenderStats& stats_;
     RunningStats luminance_;
     bool saved_ = false;
@@ -166,7 +172,7 @@ void plan_photons(const Scene& scene, const Settings& settings, const UserPaths&
 }
 
 RenderResult render_photons(const RenderTask& task) {
-    const auto& [scene, settings, paths, context, share, findings] = task;
+    const auto& [scene, settings, paths, context, share, findings, observer] = task;
     RenderResult result;
     RenderStats& stats = result.stats;
     if (!findings.patches) findings.patches.emplace(scene);
@@ -189,10 +195,12 @@ RenderResult render_photons(const RenderTask& task) {
         stats.values["light beyond gather rays is stored"] = plan.coverage ? 1 : 0;
     const std::optional<ImageWeight> weight = weigh_pixels(c, plan, stats, deciding);
     c.weight = weight ? &*weight : nullptr;
+    c.shares = &findings.shares;
+    c.observer = observer;
     const auto sampler = make_sampler(c, plan, stats, deciding);
     Work work(settings, scene.camera().window(), AccumulationBuffer::Parts::film, share, settings.spp,
               Work::PassStart::costly);
-    Passes passes(c, plan, *sampler, work, share.for_gather, stats);
+    Passes passes(c, plan, *sampler, work, task, stats);
     if (work.communicator() == nullptr)
         passes.run(context);
     else

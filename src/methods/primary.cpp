@@ -131,7 +131,7 @@ bool draw(PrimaryChains& chains, const Scene& scene, const Settings& settings, W
 }
 
 template <StageOneOf start> RenderResult render_primary(const RenderTask& task) {
-    const auto& [scene, settings, paths, context, share, findings] = task;
+    const auto& [scene, settings, paths, context, share, findings, observer] = task;
     RenderResult result;
     RenderStats& stats = result.stats;
     const EmitterInverse inverses(scene);

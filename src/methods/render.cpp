@@ -6,6 +6,7 @@
 #include "methods/choice/method_trials.h"
 #include "methods/learned_direct_light_scope.h"
 #include "methods/method.h"
+#include "methods/render_paths.h"
 
 #include <algorithm>
 
@@ -49,14 +50,17 @@ RenderResult render(Scene& scene, const Settings& settings, const RunContext& co
     RunContext deciding = context.alone();
     if (share.communicator != nullptr) deciding.stop = nullptr;
     try {
-        const UserPaths paths = bind_user_paths(scene, user_paths);
         const LearnedDirectLightScope direct_light(scene, settings, deciding);
+        const RenderPaths found(scene, settings, user_paths, deciding);
+        const UserPaths& paths = found.paths();
+        findings.gain_by_openings = found.gain();
         std::string choice;
         const Settings chosen =
             may_choose(settings) ? choose({scene, settings, none, deciding, paths, findings}, choice) : settings;
         result = render_by_method({scene, chosen, paths, context, share, findings});
         result.settings = settings;
         direct_light.report(result.stats);
+        found.report(result.stats);
         if (!choice.empty()) result.stats.remarks.insert(result.stats.remarks.begin(), choice);
     } catch (const Interrupted&) { // before there was a picture
         result.settings = settings;

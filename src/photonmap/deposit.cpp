@@ -1,6 +1,6 @@
 #include "photonmap/deposit.h"
 
-#include "photonmap/camera_subpath.h"
+#include "photonmap/power/camera_subpath.h"
 
 #include <optional>
 #include <utility>
@@ -25,10 +25,15 @@ bool PathDepositor::Pending::holds(const Path& path, const StoragePoint& at, con
            to_light == direction(path.x[i].point, path.x[i - 1].point) && flux == its_flux;
 }
 
+void PathDepositor::Pending::watch(const Path& path) {
+    trail.clear();
+    for (const Vertex& v : path.x) trail.push_back({v.point.p, v.specular(), v.point.site == Site::infinite});
+    emitter = path.x[0].point.emitter;
+}
+
 void PathDepositor::deposit(const Path& path, double weight) {
     const StoragePoint at = path.storage;
     if (at.kind == PhotonKind::none || !(weight > 0)) return;
-    tally_.total += weight;
     const auto i = static_cast<std::size_t>(at.vertex);
     Rgb flux(1.0);
     for (std::size_t k = 0; k < i; ++k) flux *= path.x[k].value / luminance(path.x[k].value);
@@ -41,6 +46,10 @@ void PathDepositor::deposit(const Path& path, double weight) {
                        .to_light = direction(path.x[i].point, path.x[i - 1].point),
                        .flux = flux,
                        .scatterings = at.vertex};
+            if (options_.weights != nullptr)
+                recent_.share =
+                    options_.weights->of_chains(options_.weights->visible(*options_.scene, at.kind, path, at.vertex));
+            if (options_.observer != nullptr) recent_.watch(path);
             if (at.kind == PhotonKind::caustic && one_way())
                 recent_.seen = path.x[i].value * (path.x[i].pdf_from_eye * options_.set.weight_at(path.image));
         }
@@ -62,12 +71,18 @@ void PathDepositor::store(Pending& pending) {
     const PhotonKind kind = std::exchange(pending.kind, PhotonKind::none);
     const double given = std::exchange(pending.weight, 0);
     if (!(given > 0)) return;
-    store_by_roulette(*buffers_, kind, given, thresholds_, rng_, [&](double weight) -> std::optional<Photon> {
+    const double counted = given * pending.share;
+    tally_.total += counted;
+    store_by_roulette(*buffers_, kind, counted, thresholds_, rng_, [&](double weight) -> std::optional<Photon> {
         const Rgb power = options_.role == PhotonRole::pilot
                               ? Rgb(1.0)
                               : power_of(pending, kind == PhotonKind::global, given, weight);
         if (is_black(power)) return std::nullopt;
-        return Photon(pending.vertex.point.p, pending.vertex.point.ng, pending.to_light, power);
+        const Photon photon(pending.vertex.point.p, pending.vertex.point.ng, pending.to_light, power);
+        if (options_.observer != nullptr)
+            options_.observer->stored(
+                photon, {pending.trail, static_cast<std::size_t>(pending.scatterings), pending.emitter, false});
+        return photon;
     });
 }
 

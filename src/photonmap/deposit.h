@@ -5,7 +5,9 @@
 #include "core/statistics.h"
 #include "photonmap/importance/importance_map.h"
 #include "photonmap/map_stores.h"
-#include "photonmap/power.h"
+#include "photonmap/photons.h"
+#include "photonmap/power/power.h"
+#include "photonmap/power/technique_weights.h"
 #include "sampling/paths/path_set.h"
 #include "scene/scene.h"
 
@@ -22,6 +24,8 @@ struct DepositOptions {
     PathSet set{};                             ///< that the paths are of, evaluated for it
     int max_scatterings = 24;                  ///< of a whole path
     PhotonRole role = PhotonRole::main_photon; ///< a pilot photon's power is never asked for
+    const TechniqueWeights* weights = nullptr; ///< where light tracing makes photons of the same map; null: it doesn't
+    PhotonObserver* observer = nullptr;        ///< null: nobody watches
 };
 
 /// Collects the photons of one chain: under `marginal` power f_map / Y(f_map E) for each path, times its weight. Times
@@ -72,10 +76,14 @@ class PathDepositor {
         Rgb flux;            ///< f_map up to its scale, which cancels
         Rgb seen{0.0};       ///< E where the eye has but this way here; else 0
         int scatterings = 0; ///< of the stored sub-path, its end included
+        double share = 1;    ///< of chains, in photons here
         double weight = 0;
-        double literal = 0; ///< sum of weight times literal_factor()
-        double density = 0; ///< sum of weight times literal_factor() times camera_subpath_density()
+        double literal = 0;              ///< sum of weight times literal_factor()
+        double density = 0;              ///< sum of weight times literal_factor() times camera_subpath_density()
+        std::vector<TrailPoint> trail{}; ///< the path that it was first met on, where somebody watches
+        std::uint32_t emitter = SurfacePoint::kNone;
 
+        void watch(const Path& path);
         bool holds(const Path& path, const StoragePoint& at, const Rgb& its_flux) const;
     };
 

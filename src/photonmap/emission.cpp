@@ -2,7 +2,7 @@
 
 #include "core/shared_work.h"
 #include "photonmap/map_stores.h"
-#include "photonmap/power.h"
+#include "photonmap/power/power.h"
 #include "sampling/guidance/guided_light.h"
 
 #include <algorithm>
@@ -28,15 +28,34 @@ struct EmissionBlock {
 class Collector {
   public:
     Collector(const PhotonWeighing& weighing, const MapStores::Thresholds& pilots,
-              const MapStores::Thresholds& main_photons, const StorageRule& rule)
-        : weighing_(weighing), pilots_(pilots), main_photons_(main_photons), rule_(rule) {}
+              const MapStores::Thresholds& main_photons, const StorageRule& rule,
+              const TechniqueWeights* techniques = nullptr, PhotonObserver* observer = nullptr)
+        : weighing_(weighing), pilots_(pilots), main_photons_(main_photons), rule_(rule), techniques_(techniques),
+          observer_(observer) {}
 
     void begin(PhotonRole role, Rng& rng) {
         role_ = role;
         rng_ = &rng;
+        expected_ = 1;
+    }
+    /// Light sets out as `light`.
+    void emit(const Scene& scene, const EmittedLight& light) {
+        if (techniques_ != nullptr) expected_ = expected_over_emitted(scene, techniques_->sampling(), light);
+    }
+
+    void sets_out(const SurfacePoint& x0, bool guided) {
+        if (observer_ == nullptr) return;
+        trail_.assign(1, {x0.p, false, x0.site == Site::infinite});
+        emitter_ = x0.emitter;
+        guided_ = guided;
+    }
+    void passes(const Vertex& v) {
+        if (observer_ != nullptr) trail_.push_back({v.point.p, v.specular()});
     }
 
     bool arrival(Vertex& v, const Vec3& to_light, const Rgb& power, const LightPast& past) {
+        // Of a vertex with both a finite and a specular part nobody knows yet how light goes on.
+        if (observer_ != nullptr) trail_.push_back({v.point.p, !v.bsdf.traits().finite});
         if (!v.bsdf.traits().finite) return true;
         const StorageRule::Kinds kinds = rule_(v, to_light, past);
         if (kinds.global) store(PhotonKind::global, v, to_light, power);
@@ -50,20 +69,33 @@ class Collector {
     void store(PhotonKind kind, const Vertex& v, const Vec3& to_light, const Rgb& power) {
         if (!(luminance(power) > 0)) return;
         const PhotonWeighing::Weight weight = weighing_(kind, v, to_light, power);
+        const double share = techniques_ != nullptr ? techniques_->of_light_path(weight, expected_) : 1;
         ++block.arrivals;
         block.weights.add(kind, weight, luminance(power));
         const bool pilot = role_ == PhotonRole::pilot;
-        store_by_roulette(pilot ? block.pilots : block.main_photons, kind, weight.value,
-                          pilot ? pilots_ : main_photons_, *rng_, [&](double /*kept*/) {
-                              return Photon(v.point.p, v.point.ng, to_light, emitted_power(power, weight.value));
+        bool kept = false;
+        store_by_roulette(pilot ? block.pilots : block.main_photons, kind, share * weight.value,
+                          pilot ? pilots_ : main_photons_, *rng_, [&](double /*weight*/) {
+                              const Photon photon(v.point.p, v.point.ng, to_light, emitted_power(power, weight.value));
+                              kept = true;
+                              if (observer_ != nullptr)
+                                  observer_->stored(photon, {trail_, trail_.size() - 1, emitter_, guided_});
+                              return photon;
                           });
+        if (observer_ != nullptr && !kept) observer_->thrown_away(v.point.p);
     }
 
     PhotonWeighing weighing_;
     MapStores::Thresholds pilots_, main_photons_;
     StorageRule rule_;
+    const TechniqueWeights* techniques_;
+    double expected_ = 1; // power over that which was emitted
     PhotonRole role_ = PhotonRole::main_photon;
     Rng* rng_ = nullptr;
+    PhotonObserver* observer_;
+    std::vector<TrailPoint> trail_; // kept only where somebody watches
+    std::uint32_t emitter_ = SurfacePoint::kNone;
+    bool guided_ = false;
 };
 
 constexpr std::int64_t kPathsOfBlock = 64; // paths
@@ -71,10 +103,12 @@ constexpr std::int64_t kPilot = 8192;      // paths
 
 void trace_one(const Scene& scene, const EmissionOptions& options, Rng& rng, Collector& collector) {
     const int depth = options.rule.max_scatterings;
-    if (options.learned == nullptr || !options.user_paths.empty())
+    if (options.learned == nullptr || !options.user_paths.empty()) {
         trace_light_path(scene, options.user_paths, depth, rng, collector);
-    else if (const auto light = options.learned->sample(rng))
+    } else if (const auto light = options.learned->sample(rng)) {
+        collector.emit(scene, *light);
         trace_light_path(scene, *light, depth, rng, collector);
+    }
 }
 
 EmissionBlock trace_block(const Scene& scene, const EmissionOptions& options, Range paths, Collector collector) {
@@ -111,16 +145,10 @@ EmissionBlock learn_from_pilot(const Scene& scene, const EmissionGuide& guide, c
     return sum;
 }
 
-} // namespace
-
-EmittedPhotons emit_photons(const Scene& scene, const EmissionGuide& guide, const EmissionOptions& options,
-                            const RunContext& context) {
-    EmittedPhotons out;
-    if (scene.emitter_distribution().empty()) return out;
-    EmissionBlock learnt = learn_from_pilot(scene, guide, options, context);
-    const std::size_t for_caustic = options.rule.caustics ? learnt.weights.for_caustic(options.photons) : 0;
-    MapStores stores(options.photons - for_caustic, for_caustic, {}, options.seed);
-
+/// Traces and stores all light paths. `learnt`: of the first ones.
+Emission trace_and_store(const Scene& scene, const EmissionGuide& guide, const EmissionOptions& options,
+                         EmissionBlock learnt, MapStores& stores, const RunContext& context) {
+    Emission out;
     // In rounds, so that buffers stay small beside the stores, and thresholds follow what is stored.
     const std::int64_t round =
         std::clamp<std::int64_t>(static_cast<std::int64_t>(options.photons) / 32 / kPathsOfBlock, 4, 512) *
@@ -130,7 +158,8 @@ EmittedPhotons emit_photons(const Scene& scene, const EmissionGuide& guide, cons
         const Range range{out.paths, std::min(options.paths, out.paths + round)};
         const PhotonWeighing weighing{guide, learnt.weights.unknown_scale()};
         const Collector collector(weighing, stores.thresholds(PhotonRole::pilot),
-                                  stores.thresholds(PhotonRole::main_photon), options.rule);
+                                  stores.thresholds(PhotonRole::main_photon), options.rule, options.weights,
+                                  options.observer);
         for (EmissionBlock& b : trace_blocks(scene, options, range, collector, context)) {
             stores.absorb(PhotonRole::pilot, b.pilots);
             stores.absorb(PhotonRole::main_photon, b.main_photons);
@@ -141,11 +170,30 @@ EmittedPhotons emit_photons(const Scene& scene, const EmissionGuide& guide, cons
     }
     context.end();
     out.arrivals = learnt.arrivals;
-    const std::int64_t main_photons = out.paths - out.paths / kPilotEvery;
-    const double scale = emission_scale(main_photons);
-    out.bytes = stores.bytes();
-    static_cast<Photons&>(out) = stores.release(scale, scale);
     return out;
+}
+
+} // namespace
+
+double Emission::scale() const { return emission_scale(paths - paths / kPilotEvery); }
+
+EmittedPhotons emit_photons(const Scene& scene, const EmissionGuide& guide, const EmissionOptions& options,
+                            const RunContext& context) {
+    EmittedPhotons out;
+    if (scene.emitter_distribution().empty()) return out;
+    EmissionBlock learnt = learn_from_pilot(scene, guide, options, context);
+    const std::size_t for_caustic = options.rule.caustics ? learnt.weights.for_caustic(options.photons) : 0;
+    MapStores stores(options.photons - for_caustic, for_caustic, {}, options.seed);
+    static_cast<Emission&>(out) = trace_and_store(scene, guide, options, std::move(learnt), stores, context);
+    out.bytes = stores.bytes();
+    static_cast<Photons&>(out) = stores.release(out.scale(), out.scale());
+    return out;
+}
+
+Emission emit_photons(const Scene& scene, const EmissionGuide& guide, const EmissionOptions& options, MapStores& stores,
+                      const RunContext& context) {
+    if (scene.emitter_distribution().empty()) return {};
+    return trace_and_store(scene, guide, options, learn_from_pilot(scene, guide, options, context), stores, context);
 }
 
 } // namespace keyhole

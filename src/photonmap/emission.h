@@ -2,8 +2,10 @@
 #pragma once
 
 #include "core/progress.h"
+#include "photonmap/map_stores.h"
 #include "photonmap/photon_weighing.h"
 #include "photonmap/photons.h"
+#include "photonmap/power/technique_weights.h"
 #include "sampling/guidance/guided_subpath.h"
 #include "sampling/guidance/learned_emission.h"
 #include "scene/scene.h"
@@ -17,14 +19,22 @@ struct EmissionOptions {
     std::size_t photons; ///< ceiling for both maps together; they share it as they share the weight of what arrives
     StorageRule rule{};
     std::uint64_t seed;
-    LightGuides user_paths{};                 ///< that half of the light paths follow, where there are any
-    const LearnedEmission* learned = nullptr; ///< where light paths begin if there are no user paths; null: by power
+    LightGuides user_paths{};                  ///< that half of the light paths follow, where there are any
+    const LearnedEmission* learned = nullptr;  ///< where light paths begin if there are no user paths; null: by power
+    const TechniqueWeights* weights = nullptr; ///< where chains make photons of the same maps; null: they don't
+    PhotonObserver* observer = nullptr;        ///< null: nobody watches
 };
 
-struct EmittedPhotons : Photons {
+/// What light tracing has done.
+struct Emission {
     std::int64_t paths = 0;
     std::uint64_t arrivals = 0; ///< photons that could have been stored
-    std::size_t bytes = 0;      ///< of the stores
+
+    double scale() const; ///< of the weights that were stored
+};
+
+struct EmittedPhotons : Photons, Emission {
+    std::size_t bytes = 0; ///< of the stores
 };
 
 /// Traces light paths and stores a photon at every vertex where a map can be asked (see docs/photon-maps.md): in the
@@ -36,5 +46,9 @@ struct EmittedPhotons : Photons {
 /// Where E is unknown photons share a small part of the store by their power. Reproducible on any number of threads.
 EmittedPhotons emit_photons(const Scene& scene, const EmissionGuide& guide, const EmissionOptions& options,
                             const RunContext& context);
+
+/// The same into `stores`; nothing is said of how many photons these hold.
+Emission emit_photons(const Scene& scene, const EmissionGuide& guide, const EmissionOptions& options, MapStores& stores,
+                      const RunContext& context);
 
 } // namespace keyhole

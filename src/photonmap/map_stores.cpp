@@ -29,6 +29,13 @@ MapStores::Thresholds MapStores::thresholds(PhotonRole role) const {
     return {pair.global.threshold(), pair.caustic.threshold()};
 }
 
+void MapStores::settle(double global_scale, double caustic_scale, double next) {
+    for (Pair* pair : {&pilots_, &main_photons_}) {
+        pair->global.settle(global_scale, next);
+        pair->caustic.settle(caustic_scale, next);
+    }
+}
+
 Photons MapStores::release(double global_scale, double caustic_scale) {
     return {{pilots_.global.release(1), main_photons_.global.release(global_scale)},
             {pilots_.caustic.release(1), main_photons_.caustic.release(caustic_scale)}};

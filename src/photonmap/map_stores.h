@@ -43,6 +43,9 @@ class MapStores {
     /// Weights below these won't stay whole.
     Thresholds thresholds(PhotonRole role) const;
 
+    /// As PhotonStore's. Weights of pilot photons change units as the others' do.
+    void settle(double global_scale, double caustic_scale, double next);
+
     /// All photons, with power times weight times the map's scale. The stores are finished after that.
     Photons release(double global_scale, double caustic_scale);
 

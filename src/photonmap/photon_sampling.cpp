@@ -9,6 +9,7 @@
 #include <utility>
 
 namespace keyhole {
+
 ChainSeeds choose_chain_seeds(const Scene& scene, const StageOneSettings& settings, const StageOne& stage,
                               std::int64_t chains) {
     const Range all = stage.all_groups();
@@ -18,9 +19,21 @@ ChainSeeds choose_chain_seeds(const Scene& scene, const StageOneSettings& settin
             choose_seeds(scene, settings, stage, for_main, chains - pilots), stage.brightness_of(for_main)};
 }
 
-SampledPhotons sample_photons(const ChainSeeds& seeds, const Mixture<Path>& mixture, const DepositOptions& deposit,
-                              const PhotonSamplingOptions& options, const RunContext& context) {
-    SampledPhotons out;
+namespace {
+
+std::int64_t chains_of(const ChainSeeds& seeds) {
+    return static_cast<std::int64_t>(seeds.pilots.size() + seeds.main_photons.size());
+}
+
+std::int64_t steps_of_chain(const ChainSeeds& seeds, const PhotonSamplingOptions& options) {
+    return std::max<std::int64_t>(1, options.mutations / chains_of(seeds));
+}
+
+} // namespace
+
+PhotonChains run_photon_chains(const ChainSeeds& seeds, const Mixture<Path>& mixture, const DepositOptions& deposit,
+                               const PhotonSamplingOptions& options, MapStores& stores, const RunContext& context) {
+    PhotonChains out;
     if (seeds.main_photons.empty()) return out;
     std::vector<Path> all = seeds.pilots;
     all.insert(all.end(), seeds.main_photons.begin(), seeds.main_photons.end());
@@ -42,14 +55,8 @@ SampledPhotons sample_photons(const ChainSeeds& seeds, const Mixture<Path>& mixt
         depositors.emplace_back(one, Rng(options.seed, StreamPurpose::chain, 2 * at + 1), buffers[at]);
     }
 
-    // Stores are shared: chains differ in what they find, and thinning must treat all photons alike. The threshold that
-    // the run is expected to end with is there from the start.
-    const std::int64_t per_chain = std::max<std::int64_t>(1, options.mutations / chains);
-    const auto mutations = static_cast<double>(per_chain * chains);
+    const std::int64_t per_chain = steps_of_chain(seeds, options);
     const auto photons = static_cast<std::int64_t>(options.global_photons + options.caustic_photons);
-    const double threshold = std::max(0.2, 0.8 * mutations / static_cast<double>(std::max<std::int64_t>(1, photons)));
-    MapStores stores(options.global_photons, options.caustic_photons, {threshold, threshold}, options.seed);
-
     const std::int64_t round = round_length(photons, chains);
     context.begin("photons", static_cast<std::uint64_t>(per_chain * own.size()), "mutations");
     ChainRounds::of_length(per_chain, round).run(context, [&](std::int64_t n) {
@@ -65,16 +72,29 @@ SampledPhotons sample_photons(const ChainSeeds& seeds, const Mixture<Path>& mixt
 
     out.chains = set->summary();
     const double steps = static_cast<double>(set->steps()) * static_cast<double>(seeds.main_photons.size());
-    set.reset(); // its memory is needed below
     std::vector<PathDepositor::Tally> tallies(all.size());
     for (std::int64_t c = own.begin; c < own.end; ++c)
         tallies[static_cast<std::size_t>(c)] = depositors[static_cast<std::size_t>(c - own.begin)].tally();
     exchange_parts(tallies, context);
     for (std::size_t c = seeds.pilots.size(); c < tallies.size(); ++c) out.tally.merge(tallies[c]);
-    const double scale = path_chain_scale(seeds.brightness, steps);
+    out.caustic_scale = path_chain_scale(seeds.brightness, steps);
+    out.global_scale = literal_scale(out.caustic_scale, out.tally.visible_weight, out.tally.visible);
+    return out;
+}
+
+SampledPhotons sample_photons(const ChainSeeds& seeds, const Mixture<Path>& mixture, const DepositOptions& deposit,
+                              const PhotonSamplingOptions& options, const RunContext& context) {
+    SampledPhotons out;
+    if (seeds.main_photons.empty()) return out;
+    // Stores are shared: chains differ in what they find, and thinning must treat all photons alike. The threshold that
+    // the run is expected to end with is there from the start.
+    const auto mutations = static_cast<double>(steps_of_chain(seeds, options) * chains_of(seeds));
+    const auto photons = static_cast<double>(options.global_photons + options.caustic_photons);
+    const double threshold = std::max(0.2, 0.8 * mutations / std::max(1.0, photons));
+    MapStores stores(options.global_photons, options.caustic_photons, {threshold, threshold}, options.seed);
+    static_cast<PhotonChains&>(out) = run_photon_chains(seeds, mixture, deposit, options, stores, context);
     out.bytes = stores.bytes();
-    static_cast<Photons&>(out) =
-        stores.release(literal_scale(scale, out.tally.visible_weight, out.tally.visible), scale);
+    static_cast<Photons&>(out) = stores.release(out.global_scale, out.caustic_scale);
     return out;
 }
 

@@ -18,10 +18,15 @@ struct PhotonSamplingOptions {
     const Mixture<Path>* control = nullptr; ///< of the control chains, as in ChainSet
 };
 
-struct SampledPhotons : Photons {
+/// What chains have done.
+struct PhotonChains {
     ChainSummary chains;
-    std::size_t bytes = 0;      ///< of the stores
-    PathDepositor::Tally tally; ///< of all chains
+    PathDepositor::Tally tally;                 ///< of all chains
+    double global_scale = 0, caustic_scale = 0; ///< of the weights that they stored
+};
+
+struct SampledPhotons : Photons, PhotonChains {
+    std::size_t bytes = 0; ///< of the stores
 };
 
 /// Where chains start. Pilot photons and main photons come from different samples of stage one.
@@ -39,5 +44,9 @@ ChainSeeds choose_chain_seeds(const Scene& scene, const StageOneSettings& settin
 /// same number of steps.
 SampledPhotons sample_photons(const ChainSeeds& seeds, const Mixture<Path>& mixture, const DepositOptions& deposit,
                               const PhotonSamplingOptions& options, const RunContext& context);
+
+/// The same into `stores`; the ceilings among the options say only how often these are visited.
+PhotonChains run_photon_chains(const ChainSeeds& seeds, const Mixture<Path>& mixture, const DepositOptions& deposit,
+                               const PhotonSamplingOptions& options, MapStores& stores, const RunContext& context);
 
 } // namespace keyhole

@@ -46,20 +46,29 @@ void PhotonStore::raise_threshold() {
         (expected_survivors(middle) > wanted ? low : high) = middle;
     }
     threshold_ = high;
-    std::size_t kept = 0;
+    std::size_t kept = 0, settled = 0;
     for (std::size_t i = 0; i < photons_.size(); ++i) {
         const double weight = roulette(weights_[i], threshold_, rng_);
         if (weight == 0) continue;
         photons_[kept] = photons_[i];
         weights_[kept++] = static_cast<float>(weight);
+        if (i < settled_) settled = kept;
     }
     photons_.erase(photons_.begin() + static_cast<std::ptrdiff_t>(kept), photons_.end());
     weights_.resize(kept);
+    settled_ = settled;
+}
+
+void PhotonStore::settle(double scale, double next) {
+    for (float& w : weights_) w = static_cast<float>(w * (scale / next));
+    settled_ = photons_.size();
+    settled_scale_ = next;
+    threshold_ = 0;
 }
 
 std::vector<Photon> PhotonStore::release(double scale) {
     for (std::size_t i = 0; i < photons_.size(); ++i)
-        photons_[i].set_power(photons_[i].power() * (weights_[i] * scale));
+        photons_[i].set_power(photons_[i].power() * (weights_[i] * (i < settled_ ? settled_scale_ : scale)));
     std::vector<float>().swap(weights_);
     return std::exchange(photons_, {});
 }

@@ -47,8 +47,12 @@ class PhotonStore {
         weights_.push_back(static_cast<float>(weight));
     }
 
-    /// All photons, with power times weight times `scale`. The store gives its memory back or away and is finished
-    /// after that.
+    /// Ends a part whose photons get `scale` in the end; weights of what comes after it count in units of `next`, the
+    /// scale that it is expected to get.
+    void settle(double scale, double next);
+
+    /// All photons, with power times weight times `scale`, those of a settled part times theirs. The store gives its
+    /// memory back or away and is finished after that.
     std::vector<Photon> release(double scale);
 
     std::size_t size() const { return photons_.size(); }
@@ -70,6 +74,8 @@ class PhotonStore {
     std::vector<float> weights_; // of photons_
     std::size_t capacity_;
     double threshold_;
+    std::size_t settled_ = 0; // photons, the first ones
+    double settled_scale_ = 1;
     Rng rng_;
 };
 

@@ -1,9 +1,11 @@
-// What a sampler leaves: photons of two maps, each in two roles.
+// What a sampler leaves: photons of two maps, each in two roles; and who watches them being made.
 #pragma once
 
 #include "photonmap/photon.h"
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace keyhole {
@@ -30,6 +32,33 @@ struct PhotonSet {
 
 struct Photons {
     PhotonSet global, caustic;
+};
+
+/// A vertex of a light path, as far as it is drawn.
+struct TrailPoint {
+    Vec3 p;                ///< world space; of an infinite emitter the unit direction towards it
+    bool specular = false; ///< whether light is scattered here by a specular event
+    bool infinite = false;
+
+    bool operator==(const TrailPoint&) const = default;
+};
+
+/// How light came to a photon.
+struct PhotonOrigin {
+    std::span<const TrailPoint> trail; ///< from the emitter on; as far as the eye where the sampler has whole paths
+    std::size_t photon;                ///< which of them the photon lies at; light was scattered once less before
+    std::uint32_t emitter;
+    bool guided; ///< whether the path began along a user path
+};
+
+/// The functions are called by many threads at once, in no order.
+class PhotonObserver {
+  public:
+    virtual ~PhotonObserver() = default;
+    /// Waits for a store, which may thin it out later. Power is only told by the map.
+    virtual void stored(const Photon& photon, const PhotonOrigin& origin) = 0;
+    /// Light arrived at `p`, and did not survive the roulette of the stores.
+    virtual void thrown_away(const Vec3& p) = 0;
 };
 
 } // namespace keyhole

@@ -21,7 +21,7 @@ void add_geometry(const Shape& shape, Hash& hash) {
 void add_camera(const Camera& camera, Hash& hash) {
     const CameraParameters& c = camera.parameters();
     for (const Vec3& v : {c.origin, c.right, c.up, c.forward}) hash.add(v);
-    for (const float f : {c.fov_degrees, c.lens_radius, c.focus_distance}) hash.add(f);
+    for (const float f : {c.fov_degrees, c.lens_radius, c.focus_distance, c.near}) hash.add(f);
     for (const double d : {c.shift.x, c.shift.y}) hash.add(d);
 }
 

@@ -16,6 +16,15 @@ CameraParameters cropped(CameraParameters camera, const ImageWindow& film, const
     return camera;
 }
 
+CameraParameters orthographic(CameraParameters camera, double size) {
+    const double distance = kOrthographicDistance * size;
+    camera.origin += camera.forward * camera.near - camera.forward * static_cast<float>(distance);
+    camera.near = static_cast<float>(distance);
+    camera.fov_degrees = static_cast<float>(std::atan(0.5 / kOrthographicDistance) * 360 / kPi);
+    camera.lens_radius = 0;
+    return camera;
+}
+
 Camera::Camera(const CameraParameters& parameters, const ImageWindow& window)
     : parameters_(parameters), window_(window) {
     const double half = std::tan(static_cast<double>(parameters.fov_degrees) * kPi / 360);
@@ -30,6 +39,7 @@ SurfacePoint Camera::eye(double u0, double u1) const {
     e.site = Site::point;
     e.ng = e.ns = parameters_.forward;
     e.p = parameters_.origin;
+    e.offset = parameters_.near;
     if (has_lens()) {
         const Vec2 d = uniform_disc(u0, u1) * parameters_.lens_radius;
         e.p += parameters_.right * d.x + parameters_.up * d.y;

@@ -41,7 +41,16 @@ struct CameraParameters {
     float focus_distance = 1;                            ///< distance of the plane in focus, along `forward`
     /// Where the middle of the picture is off `forward`, to the right and up, over the film's shorter side.
     Imath::V2d shift{0, 0};
+    float near = 0; ///< distance from `origin` within which nothing is seen
 };
+
+/// Distance from which an orthographic camera looks, over the shorter side of what it sees.
+constexpr double kOrthographicDistance = 1000;
+
+/// The camera in the place of an orthographic one whose plane goes through the origin of `camera` and sees `size`
+/// metres along the film's shorter side: a pinhole so far behind the plane that lines of sight are parallel within
+/// 0.0005, and that sees nothing before the plane. Depths of as much as `size` change lengths by a thousandth.
+CameraParameters orthographic(CameraParameters camera, double size);
 
 /// Pixels of a film: columns [x0, x1) and rows [y0, y1), from the top.
 struct CropWindow {

@@ -97,6 +97,10 @@ struct PrincipledTextures {
     double eta = 1.5;
 };
 MaterialPtr make_principled(const PrincipledTextures& textures);
+/// Those of a white dielectric of index `eta` and a perceptual roughness, the root of alpha.
+PrincipledTextures principled_textures(double eta, const FloatTexture& roughness);
+/// The GGX alpha of a perceptual roughness.
+FloatTexture principled_alpha(const FloatTexture& roughness);
 
 /// At each place either `a` or `b`, chosen by a hash of the place; `amount` is the share of b.
 MaterialPtr make_mix(MaterialPtr a, MaterialPtr b, FloatTexture amount);

@@ -29,7 +29,9 @@ Rgb Media::transmittance(const SurfacePoint& a, const SurfacePoint& b) const {
     if (empty()) return Rgb(1.0);
     const SurfacePoint &from = a.site == Site::infinite ? b : a, &to = a.site == Site::infinite ? a : b;
     const Vec3 w = direction(from, to), origin = from.ray_origin(w);
-    const float end = to.site == Site::infinite ? std::numeric_limits<float>::infinity() : (to.p - origin).length();
+    const float end = to.site == Site::infinite
+                          ? std::numeric_limits<float>::infinity()
+                          : ((to.site == Site::point ? to.ray_origin(-w) : to.p) - origin).length();
 
     const bool on_boundary = from.site == Site::surface && bounds_media(shapes_[from.shape]);
     const Medium* behind = on_boundary ? medium_beside(from, w) : outermost_.get();

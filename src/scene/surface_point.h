@@ -27,7 +27,8 @@ struct SurfacePoint {
     Vec2 uv{0, 0};         ///< texture coordinates
     float dpdu = 1;        ///< length of dp/du in the tangent plane, along `tangent` [m]
     Vec2 dpdv{0, 1};       ///< dp/dv in the tangent plane, along `tangent` and ns x tangent [m]
-    float offset = 0;      ///< bound on the error of p along ng; ray origins move by this much
+    float offset = 0;      ///< bound on the error of p along ng; ray origins move by this much. Of a point in
+                           ///< space: how far from it rays start
     Site site = Site::surface;
     std::uint32_t shape = kNone;     ///< index of the shape in the scene
     std::uint32_t primitive = kNone; ///< triangle within the shape
@@ -53,7 +54,8 @@ struct SurfacePoint {
 
     /// Where a ray that leaves this point along `w` may start without meeting its own surface.
     Vec3 ray_origin(const Vec3& w) const {
-        return site == Site::surface ? p + ng * (w.dot(ng) < 0 ? -offset : offset) : p;
+        if (site == Site::surface) return p + ng * (w.dot(ng) < 0 ? -offset : offset);
+        return site == Site::point && offset > 0 ? p + w * offset : p;
     }
 };
 

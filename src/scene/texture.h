@@ -3,6 +3,7 @@
 
 #include "core/vec.h"
 #include "scene/surface_point.h"
+#include "scene/textures/mapping.h"
 
 #include <cstddef>
 #include <memory>
@@ -22,17 +23,6 @@ template <class T> class Texture {
 
 using ColorTexture = std::shared_ptr<const Texture<Rgb>>;
 using FloatTexture = std::shared_ptr<const Texture<double>>;
-
-/// Scales texture coordinates, then turns them about the origin, then shifts them.
-struct UvMapping {
-    double su = 1, sv = 1, du = 0, dv = 0;
-    double cosine = 1, sine = 0; ///< of the turn, anticlockwise where u is right and v is up
-
-    Imath::V2d operator()(const Vec2& uv) const {
-        const double u = su * uv.x, v = sv * uv.y;
-        return {cosine * u - sine * v + du, sine * u + cosine * v + dv};
-    }
-};
 
 ColorTexture constant_texture(const Rgb& value);
 FloatTexture constant_texture(double value);
@@ -57,11 +47,12 @@ struct ImageOptions {
     Filter filter = Filter::bilinear;
     double scale = 1;    ///< factor on the value
     bool invert = false; ///< 1 - value, after the scale
-    UvMapping mapping{};
+    int channel = -1;    ///< of three, the one that is the value; -1: their mean
+    TextureMapping mapping{};
 };
 
-/// A picture, its first row at v = 1. The mean of the channels where T is double. A file named several times is
-/// decoded and kept once: 1 byte a channel for 8-bit files, 2 for 16-bit ones, 4 for floats, alpha left out.
+/// A picture, its first row at v = 1. The mean of the channels, or one of them, where T is double. A file named several
+/// times is decoded and kept once: 1 byte a channel for 8-bit files, 2 for 16-bit ones, 4 for floats, alpha left out.
 /// @throws InputError for a file that can't be read.
 template <class T>
 std::shared_ptr<const Texture<T>> image_texture(const std::string& path, const ImageOptions& options);
@@ -78,7 +69,19 @@ std::shared_ptr<const Texture<T>> mix_texture(std::shared_ptr<const Texture<T>> 
 /// Unit squares of `a` (that at the origin) and `b` in turn.
 template <class T>
 std::shared_ptr<const Texture<T>> checkerboard_texture(std::shared_ptr<const Texture<T>> a,
-                                                       std::shared_ptr<const Texture<T>> b, const UvMapping& mapping);
+                                                       std::shared_ptr<const Texture<T>> b,
+                                                       const TextureMapping& mapping);
+
+/// Unit cubes of `a` (that at the origin) and `b` in turn, in the space that `from_world` leads to.
+template <class T>
+std::shared_ptr<const Texture<T>> solid_checkerboard_texture(std::shared_ptr<const Texture<T>> a,
+                                                             std::shared_ptr<const Texture<T>> b,
+                                                             const Imath::M44d& from_world);
+
+/// |cos| a + (1 - |cos|) b, of the angle between the geometric normal and the unit vector `axis`.
+template <class T>
+std::shared_ptr<const Texture<T>> direction_mix_texture(std::shared_ptr<const Texture<T>> a,
+                                                        std::shared_ptr<const Texture<T>> b, const Vec3& axis);
 
 /// An image in memory, for what a scene tells about itself.
 struct LoadedImage {

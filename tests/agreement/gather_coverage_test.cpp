@@ -10,24 +10,26 @@
 namespace keyhole {
 namespace {
 
+constexpr int kRuns = 8;
+
 TEST(Reach_AgreesWithBidirectionalTracing, BlockByBlock) {
     const auto scene = test::two_rooms(0.3f);
     Settings paths;
     paths.method = &methods::bdpt;
-    paths.spp = 128;
+    paths.spp = 32;
     paths.seed = 1000;
-    const test::Blocks reference = test::render_blocks(*scene, paths, 4);
+    const test::Blocks reference = test::render_blocks(*scene, paths, kRuns);
     Settings photons;
     photons.plan = Plan::all; // whether light outside gather coverage is worth it or not
-    photons.spp = 4;
-    photons.brightness_samples = 100'000;
-    photons.importons = 200'000;
-    photons.mutations = 120'000;
-    photons.light_paths = 120'000;
-    photons.photons = 60'000;
+    photons.spp = 2;
+    photons.brightness_samples = 40'000;
+    photons.importons = 60'000;
+    photons.mutations = 50'000;
+    photons.light_paths = 50'000;
+    photons.photons = 40'000;
     for (const char* method : {"mps", "ipm"}) {
         photons.method = &method_named(method);
-        const test::Disagreement d = test::compare(test::render_blocks(*scene, photons, 4), reference, 0.03);
+        const test::Disagreement d = test::compare(test::render_blocks(*scene, photons, kRuns), reference, 0.03);
         std::cout << method << ": ratio " << d.ratio << ", errors up to " << d.largest_error << "\n";
         EXPECT_EQ(d.rejected, 0) << d.report << "mean brightness ratio " << d.ratio;
         EXPECT_NEAR(d.ratio, 1, 0.08) << method;

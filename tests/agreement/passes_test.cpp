@@ -31,12 +31,12 @@ TEST_P(Passes, ConvergeToPathTracing) {
     const auto scene = test::diffuse_box();
     Settings path;
     path.method = &methods::path;
-    path.spp = 256;
+    path.spp = 64;
     path.seed = 1000;
     Settings passes = settings();
-    passes.passes = 12;
+    passes.passes = 6;
     const test::Disagreement d =
-        test::compare(test::render_blocks(*scene, passes, 4), test::render_blocks(*scene, path, 4), 0.01);
+        test::compare(test::render_blocks(*scene, passes, 8), test::render_blocks(*scene, path, 8), 0.01);
     EXPECT_EQ(d.rejected, 0) << d.report << "mean brightness ratio " << d.ratio;
 }
 
@@ -51,7 +51,7 @@ TEST_P(Passes, SayHowFarTheyAre) {
     EXPECT_GT(result.stats.values.at("relative error"), 0.15) << "passes were wasted";
     Settings path; // its error is a small part of what is to be told
     path.method = &methods::path;
-    path.spp = 1024;
+    path.spp = 512;
     path.seed = 77;
     const Picture reference = render(*scene, path, {}).picture;
     const double error = image_error(result.picture.layers.at("beauty"), reference.layers.at("beauty")).relmse;

@@ -33,7 +33,8 @@ TEST_P(Picture_IsTheSameOnAnyNumberOfThreads, BitForBit) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, Picture_IsTheSameOnAnyNumberOfThreads,
-                         testing::Values("mps", "ipm", "pm", "pss", "mlt", "path", "bdpt", "pssmlt", "mmlt", "rjmlt"),
+                         testing::Values("mps", "ipm", "pm", "pss", "cps", "mlt", "path", "bdpt", "pssmlt", "mmlt",
+                                         "rjmlt"),
                          [](const auto& info) { return std::string(info.param); });
 
 } // namespace

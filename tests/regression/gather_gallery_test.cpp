@@ -160,6 +160,7 @@ TEST(Gallery, GatherRaysThatHardlyFindLightSaySo) {
         const auto scene = m.build();
         Settings settings = small_settings();
         settings.gather_coverage = false;
+        settings.find_openings = false; // else gather rays of one seed in four seem to find enough
         settings.light_paths = 100'000;
         return warns(*scene, settings, "so few gather rays find light");
     };

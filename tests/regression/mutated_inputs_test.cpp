@@ -181,7 +181,7 @@ class Inputs {
 };
 
 /// In the child: runs the program and looks at the picture. Work that is asked
-/// for in earnest, by settings, is broken off by Ctrl-C after a second.
+/// for in earnest, by settings, is broken off by Ctrl-C after a quarter of a second.
 [[noreturn]] void run(std::vector<std::string> arguments, const ScratchDirectory& scratch) {
     const int err = open(scratch.path("err").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     dup2(err, STDERR_FILENO);
@@ -189,7 +189,7 @@ class Inputs {
     const rlimit seconds{kMostSeconds, kMostSeconds + 1};
     setrlimit(RLIMIT_CPU, &seconds);
     std::signal(SIGPROF, [](int) { std::raise(SIGINT); });
-    const itimerval timer{{}, {1, 0}};
+    const itimerval timer{{}, {0, 250'000}};
     setitimer(ITIMER_PROF, &timer, nullptr);
     std::vector<char*> argv;
     for (std::string& a : arguments) argv.push_back(a.data());

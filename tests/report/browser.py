@@ -15,7 +15,7 @@ def find():
 
 
 class Page:
-    """A page at `url`. Errors that its scripts throw are collected in `errors`."""
+    """A page at `url`. Errors that its scripts throw, and those in the console, are collected in `errors`."""
 
     def __init__(self, url, width=1180, height=900, dark=False):
         self.profile = tempfile.TemporaryDirectory(prefix="keyhole-browser-", ignore_cleanup_errors=True)
@@ -36,7 +36,7 @@ class Page:
         self.number, self.waiting, self.errors, self.session = 0, b"", [], None
         target = next(t for t in self.call("Target.getTargets")["targetInfos"] if t["type"] == "page")
         self.session = self.call("Target.attachToTarget", targetId=target["targetId"], flatten=True)["sessionId"]
-        for domain in ("Page", "Runtime"):
+        for domain in ("Page", "Runtime", "Log"):
             self.call(domain + ".enable")
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
         if dark:
@@ -58,6 +58,10 @@ class Page:
         if found.get("method") == "Runtime.exceptionThrown":
             details = found["params"]["exceptionDetails"]
             self.errors.append(details.get("exception", {}).get("description", details["text"]))
+        if found.get("method") == "Runtime.consoleAPICalled" and found["params"]["type"] == "error":
+            self.errors.append(str(found["params"]["args"]))
+        if found.get("method") == "Log.entryAdded" and found["params"]["entry"]["level"] == "error":
+            self.errors.append(found["params"]["entry"]["text"])
         return found
 
     def call(self, method, **parameters):

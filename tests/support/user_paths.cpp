@@ -1,5 +1,6 @@
 #include "support/user_paths.h"
 
+#include "sampling/guidance/found/find_openings.h"
 #include "sampling/guidance/light_ray.h"
 #include "sampling/guidance/nearest_emitter.h"
 #include "support/test_scenes.h"
@@ -100,6 +101,10 @@ std::span<const GuidedScene> guided_scenes() {
         {"Opening", [] { return two_rooms(kSlit); }, [](const Scene& scene) { return opening_paths(scene, kSlit); }},
         {"OpeningInAPlane", [] { return two_rooms(kNarrow, true); },
          [](const Scene& scene) { return opening_paths(scene, kNarrow, 6); }},
+        {"FoundOpening", [] { return two_rooms(kNarrow, true); },
+         [](const Scene& scene) {
+             return find_openings(scene, trace_transport_ends(scene, 2048, 1, {}), {.max_scatterings = 7}, {}).paths;
+         }},
     };
     return scenes;
 }

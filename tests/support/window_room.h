@@ -6,10 +6,9 @@
 
 namespace keyhole::test {
 
-/// A diffuse room of 3 x 2.5 x 3 m whose only opening is a window of 0.8 x 0.8 m in the wall at z = 0. Emitters, camera
+/// A room of 3 x 2.5 x 3 m whose only opening is a window of 0.8 x 0.8 m in the wall at z = 0. Emitters, camera
 /// and window of the picture are left to the caller.
-inline SceneMaker room_with_a_window() {
-    const auto wall = make_diffuse(Rgb(0.6));
+inline SceneMaker room_with_a_window(const MaterialPtr& wall = make_diffuse(Rgb(0.6))) {
     SceneMaker m;
     m.rectangle({0, 0, 0}, {0, 0, 3}, {3, 0, 0}, wall);
     m.rectangle({0, 2.5, 0}, {3, 0, 0}, {0, 0, 3}, wall);

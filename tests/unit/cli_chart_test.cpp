@@ -46,7 +46,8 @@ TEST_F(Program, CpuTimeSetsSamplesAndPhotons) {
     EXPECT_THAT(stats["remarks"].dump(), HasSubstr("set by the time:"));
     EXPECT_GT(stats["values"]["effort"], 0);
     EXPECT_EQ(stats["stages"][0]["name"], "loading");
-    EXPECT_EQ(stats["stages"][1]["name"], "trials");
+    EXPECT_EQ(stats["stages"][1]["name"], "openings");
+    EXPECT_EQ(stats["stages"][2]["name"], "trials");
     const std::string settings = read_exr(scratch.path("a.exr")).metadata.at("settings");
     EXPECT_THAT(settings, testing::Not(HasSubstr("light_paths=1000000 ")));
     // What the command line names stays.

@@ -141,6 +141,14 @@ TEST_F(ExportedScene, LampsShineAsTheirPictures) {
     EXPECT_THAT(error("type: black", "", "", ", emission: {radiance: 2, texture: -1}"), HasSubstr("s.yaml:2:"));
 }
 
+/// Just above the middle of the rectangle.
+SurfacePoint at_origin() {
+    SurfacePoint s;
+    s.site = Site::point;
+    s.p = {0, 0, 0.01f};
+    return s;
+}
+
 /// The pixel that a place is seen at; none outside the picture.
 std::optional<Vec2> pixel_of(const SceneDescription& scene, const Vec3& p) {
     const Camera camera(scene.camera, scene.window);
@@ -166,6 +174,41 @@ TEST_F(ExportedScene, CamerasShiftTheirPicture) {
     EXPECT_TRUE(pixel_of(shifted, {-1.9f, 0, 0}));
     EXPECT_THAT(error("type: diffuse", "", ", shift: 1"), HasSubstr("s.yaml:1:"));
     EXPECT_THAT(error("type: diffuse", "", ", shift: [1, 101]"), HasSubstr("expected a shift"));
+}
+
+TEST_F(ExportedScene, CamerasMaySeeAlongParallels) {
+    const std::string film = "film: {resolution: [80, 40]}\n", parallel = ", orthographic: 4";
+    const auto scene = load("type: diffuse", film, parallel).description;
+    for (const float z : {3.5f, 0.0f, -2.0f}) { // 10 pixels a metre at any depth
+        const auto at = pixel_of(scene, {1, -0.5f, z});
+        ASSERT_TRUE(at);
+        EXPECT_LT((*at - Vec2(50, 25)).length(), 0.02f) << z;
+    }
+    EXPECT_FALSE(pixel_of(scene, {0, 2.05f, 0}));
+    const auto moved = pixel_of(load("type: diffuse", film, parallel + ", shift: [0.5, 0]").description, {1, -0.5f, 0});
+    ASSERT_TRUE(moved);
+    EXPECT_LT((*moved - Vec2(30, 25)).length(), 0.02f);
+    const auto part =
+        pixel_of(load("type: diffuse", "film: {resolution: [80, 40], crop: [40, 10, 70, 35]}\n", parallel).description,
+                 {1, -0.5f, 0});
+    ASSERT_TRUE(part);
+    EXPECT_LT((*part - Vec2(10, 15)).length(), 0.02f);
+}
+
+TEST_F(ExportedScene, ParallelSightBeginsAtItsPlane) {
+    // A wall behind the plane of the camera, at z = 4, and one before it.
+    for (const float z : {5.0f, 3.0f}) {
+        Scene scene(load("type: diffuse", "", ", orthographic: 4",
+                         "}, {type: rectangle, material: {type: black}, transform: {translate: [0, 0, " +
+                             std::to_string(z) + "]}")
+                        .description);
+        const SurfacePoint eye = scene.camera().eye(0, 0);
+        const auto seen = scene.trace(eye, scene.camera().ray_direction(eye, {0.5f, 0.5f}));
+        ASSERT_TRUE(seen);
+        EXPECT_NEAR(seen->p.z, z < 4 ? z : 0, 1e-3f);
+        EXPECT_EQ(scene.visible(at_origin(), eye), z > 4);
+        EXPECT_EQ(scene.visible(eye, at_origin()), z > 4);
+    }
 }
 
 TEST_F(ExportedScene, CropsArePartsOfTheWholePicture) {

@@ -151,10 +151,15 @@ TEST(PbrtTextures, SayWhatIsWrong) {
     EXPECT_THAT(error_of("Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"no.png\" "),
                 HasSubstr("scene.pbrt:4:1: Texture \"imagemap\": "));
     EXPECT_THAT(error_of("Texture \"t\" \"spectrum\" \"imagemap\" "), HasSubstr("found no 'filename'"));
-    EXPECT_THAT(error_of("Texture \"t\" \"spectrum\" \"fbm\" "), HasSubstr("found the texture 'fbm'"));
+    EXPECT_THAT(error_of("Texture \"t\" \"spectrum\" \"dots\" "), HasSubstr("found the texture 'dots'"));
     EXPECT_THAT(error_of("Texture \"t\" \"integer\" \"constant\" "), HasSubstr("expected spectrum or float"));
-    EXPECT_THAT(error_of("Texture \"t\" \"float\" \"checkerboard\" \"string mapping\" \"planar\" "),
-                HasSubstr("found the mapping 'planar'"));
+    EXPECT_THAT(error_of("Texture \"t\" \"float\" \"checkerboard\" \"string mapping\" \"conical\" "),
+                HasSubstr("found the mapping 'conical'"));
+    EXPECT_THAT(error_of("Texture \"t\" \"float\" \"checkerboard\" \"integer dimension\" 4 "),
+                HasSubstr("found a checkerboard of 4 dimensions"));
+    EXPECT_THAT(error_of("Texture \"t\" \"float\" \"directionmix\" \"vector3 dir\" [ 0 0 0 ] "),
+                HasSubstr("found no direction as 'dir'"));
+    EXPECT_THAT(error_of("Texture \"t\" \"float\" \"fbm\" \"integer octaves\" 0 "), HasSubstr("'octaves'"));
 }
 
 Rgb light(const std::string& parameter) {
@@ -213,7 +218,10 @@ TEST(PbrtLights, PointSpotDistantInfinite) {
 }
 
 TEST(PbrtLights, SayWhatIsWrong) {
-    EXPECT_THAT(error_of("LightSource \"goniometric\" "), HasSubstr("found the light 'goniometric', expected one of"));
+    EXPECT_THAT(error_of("LightSource \"goniometric\" "), HasSubstr("found no 'filename'"));
+    EXPECT_THAT(error_of("LightSource \"projection\" \"string filename\" \"no.exr\" "),
+                HasSubstr("scene.pbrt:4:1: LightSource \"projection\": "));
+    EXPECT_THAT(error_of("LightSource \"laser\" "), HasSubstr("found the light 'laser', expected one of"));
     EXPECT_THAT(error_of("LightSource \"infinite\" \"string mapname\" \"a.exr\" "),
                 HasSubstr("longitude and latitude"));
     EXPECT_THAT(error_of("LightSource \"infinite\" \"string filename\" \"no.exr\" "),

@@ -80,7 +80,7 @@ TEST(PbrtCamera, MayBeMirroredAndScaled) {
     EXPECT_FLOAT_EQ(s.lens_radius, 0.2f);
     EXPECT_FLOAT_EQ(s.focus_distance, 6);
     EXPECT_THAT(error_of(kTriangle, "Scale 1 2 1 Camera \"perspective\""), HasSubstr("stretches the camera"));
-    EXPECT_THAT(error_of(kTriangle, "Camera \"orthographic\""), HasSubstr("expected perspective"));
+    EXPECT_THAT(error_of(kTriangle, "Camera \"spherical\""), HasSubstr("expected perspective or orthographic"));
 }
 
 TEST(PbrtCamera, ScreenWindowNarrowsTheView) {
@@ -97,6 +97,20 @@ Vec2 seen_at(const PbrtScene& s, const Vec3& direction) {
     const Camera camera(s.scene.description.camera, s.scene.description.window);
     const auto at = camera.image_point(camera.eye(0, 0), direction.normalized());
     return at ? s.scene.description.window.to_pixel(*at) : Vec2(-1, -1);
+}
+
+TEST(PbrtCamera, MaySeeAlongParallels) {
+    const PbrtScene s(kTriangle, "Scale 0.5 0.5 0.5 LookAt 0 0 3  0 0 0  0 1 0 Camera \"orthographic\" \"float "
+                                 "screenwindow\" [ -2 2 -1.5 1.5 ]");
+    const Camera camera(s.scene.description.camera, s.scene.description.window);
+    const SurfacePoint eye = camera.eye(0, 0);
+    for (const float z : {1.0f, 0.0f, -3.0f}) { // the window is 8 x 6 m, of 8 x 6 pixels
+        const auto at = camera.image_point(eye, (Vec3(2, -1, z) - eye.p).normalized());
+        ASSERT_TRUE(at);
+        const Vec2 pixel = s.scene.description.window.to_pixel(*at);
+        EXPECT_NEAR(pixel.x, 2, 0.01); // pbrt's camera space is left-handed
+        EXPECT_NEAR(pixel.y, 4, 0.01);
+    }
 }
 
 TEST(PbrtCamera, ScreenWindowShiftsTheView) {

@@ -1,140 +1,23 @@
 // Energy: the power that chains leave in the maps, by wall and by map, is that of plain light tracing.
-#include "core/parallel.h"
-#include "core/statistics.h"
+#include "photon_energy.h"
+
 #include "photonmap/emission.h"
-#include "photonmap/importance/importance_tracing.h"
 #include "photonmap/light_chains/light_chains.h"
 #include "photonmap/photon_sampling.h"
-#include "sampling/paths/light_tracer.h"
 #include "sampling/proposals/registry.h"
-#include "support/chance.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <map>
 
 namespace keyhole {
 namespace {
 
-constexpr std::size_t kRegions = 8; // six walls, the balls, the rest
+using namespace energy_test;
 
-/// The wall that a point lies on, by position alone, so that photons can be sorted too.
-std::size_t region(const Scene& scene, const Vec3& p) {
-    constexpr float tolerance = 1e-3f;
-    for (int k = 0; k < 3; ++k) {
-        if (std::abs(p[k] - scene.lower()[k]) < tolerance) return static_cast<std::size_t>(2 * k);
-        if (std::abs(p[k] - scene.upper()[k]) < tolerance) return static_cast<std::size_t>(2 * k + 1);
-    }
-    return p.y < 0.9f ? 6 : 7;
-}
-
-using Power = std::array<RunningStats, kRegions>;
-struct Energy {
-    Power global, caustic;
-    Power seen; ///< the part of `caustic` that the eye sees directly: chains store no other but through mirrors
-};
-
-/// Whether the eye sees `p` with nothing in between.
-bool in_view(const Scene& scene, const Vec3& p) {
-    Rng rng(1, StreamPurpose::test, 0);
-    const Vertex eye = sample_eye(scene, rng);
-    SurfacePoint at;
-    at.site = Site::point; // a little above the surface
-    at.p = p + (eye.point.p - p) * 1e-3f;
-    return scene.camera().image_point(eye.point, direction(eye.point, at)) && scene.visible(at, eye.point);
-}
-
-/// What is stored, by the rule in words: see by_light_tracing().
-struct Rule {
-    int depth;
-    const GatherCoverage* coverage = nullptr;
-    const ImageWeight* weight =
-        nullptr;  ///< of pixels, which changes how photons are shared out and not what they carry
-    int runs = 8; ///< of chains: more where their power has a long tail
-
-    bool reached(const Vec3& p, const Vec3& n) const { return coverage == nullptr || coverage->comes_to(p, n); }
-    StorageRule storage() const { return {.max_scatterings = depth, .coverage = coverage}; }
-};
-
-/// Light tracing. The global map of whole-path chains holds every sub-path that can be the one up to d2, which here is
-/// every arrival within reach after which at least one scattering is still allowed. The caustic map holds what
-/// arrives from outside gather coverage besides caustics.
-Energy by_light_tracing(const Scene& scene, const Rule& rule, std::int64_t paths) {
-    struct Sink {
-        const Scene& scene;
-        const Rule& rule;
-        std::array<double, kRegions> global{}, caustic{}, seen{};
-        int arrivals = 0;
-        bool arrival(const Vertex& v, const Vec3& to_light, const Rgb& power, const LightPast& past) {
-            const int depth = rule.depth;
-            const std::size_t r = region(scene, v.point.p);
-            // Black surfaces scatter nothing on: no path stores there.
-            if (!v.bsdf.traits().finite || is_black(v.bsdf.eval(v.point.ns, v.point.ns))) return ++arrivals < depth;
-            const bool straight = arrivals == 0; // direct light, which no map holds
-            const bool here = rule.reached(v.point.p, facing(v.point.ng, to_light));
-            if (!straight && arrivals < depth - 1 && here) global[r] += luminance(power);
-            if ((past.specular && !past.last) || (past.last && !rule.reached(past.last->p, past.last->n))) {
-                caustic[r] += luminance(power);
-                if (in_view(scene, v.point.p)) seen[r] += luminance(power);
-            }
-            return ++arrivals < depth;
-        }
-    };
-    Energy e;
-    for (std::int64_t i = 0; i < paths; ++i) {
-        Rng rng(3, StreamPurpose::test, static_cast<std::uint64_t>(i));
-        Sink sink{scene, rule};
-        trace_light_path(scene, rule.depth, rng, sink);
-        for (std::size_t r = 0; r < kRegions; ++r) {
-            e.global[r].add(sink.global[r]);
-            e.caustic[r].add(sink.caustic[r]);
-            e.seen[r].add(sink.seen[r]);
-        }
-    }
-    return e;
-}
-
-ImportanceMap importance_map(std::vector<Photon>&& importons, const SurfacePatches& patches) {
-    return {std::move(importons), {.k = 50, .max_radius = 0.5f, .patches = &patches}};
-}
-
-ImportanceGuide guide(const Scene& scene, std::vector<Photon>&& importons, const SurfacePatches& patches,
-                      float radius) {
-    return {PhotonMap(std::move(importons)), radius, patches, &scene, {}};
-}
-
-void add_run(const Scene& scene, const Photons& photons, Energy& e) {
-    std::array<double, kRegions> global{}, caustic{}, seen{};
-    for (const Photon& p : photons.global.main_photons) global[region(scene, p.position())] += luminance(p.power());
-    for (const Photon& p : photons.caustic.main_photons) {
-        const double power = luminance(p.power());
-        caustic[region(scene, p.position())] += power;
-        if (in_view(scene, p.position())) seen[region(scene, p.position())] += power;
-    }
-    for (std::size_t r = 0; r < kRegions; ++r) {
-        e.global[r].add(global[r]);
-        e.caustic[r].add(caustic[r]);
-        e.seen[r].add(seen[r]);
-    }
-}
-
-/// What a run's importons say.
-struct Guides {
-    ImportanceGuide at_d1, at_d2;
-    EmissionGuide both() const { return {&at_d2, &at_d1}; }
-};
-
-Guides make_guides(const Scene& scene, const Rule& rule, std::uint64_t seed, const SurfacePatches& patches,
-                   float radius = 0.5f) {
-    Importons importons = trace_importance(
-        scene, {.samples = 20'000, .max_scatterings = rule.depth, .seed = seed, .weight = rule.weight}, {});
-    return {guide(scene, std::move(importons.first), patches, radius),
-            guide(scene, std::move(importons.second), patches, radius)};
-}
-
-/// Several independent runs of emission, thinned to a ceiling well below what arrives.
+/// Several independent runs of emission, small ones: what Student's distribution makes of few runs costs more power
+/// than what each could do with more photons. Thinned to a ceiling well below what arrives.
 Energy by_emission(const Scene& scene, const Rule& rule, bool guided, int runs) {
     const SurfacePatches patches(scene);
     Energy e;
@@ -142,7 +25,7 @@ Energy by_emission(const Scene& scene, const Rule& rule, bool guided, int runs) 
         const auto seed = static_cast<std::uint64_t>(100 + run);
         const Guides guides = make_guides(scene, rule, seed, patches);
         const EmissionGuide both = guided ? guides.both() : EmissionGuide{};
-        const EmissionOptions options{.paths = 60'000, .photons = 25'000, .rule = rule.storage(), .seed = seed};
+        const EmissionOptions options{.paths = 12'000, .photons = 5'000, .rule = rule.storage(), .seed = seed};
         const EmittedPhotons photons = emit_photons(scene, both, options, {});
         EXPECT_LE(photons.global.size() + photons.caustic.size(), options.photons);
         add_run(scene, photons, e);
@@ -158,10 +41,10 @@ Energy by_light_chains(const Scene& scene, const Rule& rule, int runs, float gui
         const auto seed = static_cast<std::uint64_t>(100 + run);
         const Guides guides = make_guides(scene, rule, seed, patches, guide_radius);
         const EmissionGuide both = guides.both();
-        const LightChainOptions options{.samples = 60'000,
-                                        .chains = 400,
-                                        .mutations = 200'000,
-                                        .photons = 25'000,
+        const LightChainOptions options{.samples = 15'000,
+                                        .chains = 200,
+                                        .mutations = 40'000,
+                                        .photons = 5'000,
                                         .p_large = {},
                                         .rule = rule.storage(),
                                         .seed = seed};
@@ -184,11 +67,11 @@ EnergyByRule by_chains(const Scene& scene, const Rule& rule, int runs, const std
     EnergyByRule e;
     for (int run = 0; run < runs; ++run) {
         const auto seed = static_cast<std::uint64_t>(100 + run);
-        const StageOneSettings first{.set = set, .max_scatterings = depth, .samples = 60'000, .seed = seed};
+        const StageOneSettings first{.set = set, .max_scatterings = depth, .samples = 20'000, .seed = seed};
         const StageOne one = run_stage_one(scene, first, {});
-        const ChainSeeds seeds = choose_chain_seeds(scene, first, one, 2000);
+        const ChainSeeds seeds = choose_chain_seeds(scene, first, one, 1000);
         Importons importons = trace_importance(
-            scene, {.samples = 300'000, .max_scatterings = depth, .seed = seed, .weight = rule.weight}, {});
+            scene, {.samples = 100'000, .max_scatterings = depth, .seed = seed, .weight = rule.weight}, {});
         const ImportanceMap at_d1 = importance_map(std::move(importons.first), patches);
         const ImportanceMap at_d2 = importance_map(std::move(importons.second), patches);
         for (const PowerRule power : powers) {
@@ -200,27 +83,11 @@ EnergyByRule by_chains(const Scene& scene, const Rule& rule, int runs, const std
                  .scene = &scene,
                  .set = set,
                  .max_scatterings = depth},
-                {.mutations = 100'000, .global_photons = 100'000, .caustic_photons = 50'000, .seed = seed}, {});
+                {.mutations = 25'000, .global_photons = 25'000, .caustic_photons = 12'000, .seed = seed}, {});
             add_run(scene, photons, e[power]);
         }
     }
     return e;
-}
-
-/// The same up to chance, and beyond that within what density estimation of importance may be off.
-void expect_equal(const Power& chains, const Power& traced, const char* map, double tolerance,
-                  std::initializer_list<std::size_t> regions) {
-    const double most = test::most_errors(static_cast<int>(regions.size()), static_cast<double>(chains[0].count()));
-    int told = 0, untold = 0;
-    for (const std::size_t r : regions) {
-        const double a = chains[r].mean(), b = traced[r].mean();
-        if (!(b > 20 * traced[r].standard_error())) continue; // too little light to say
-        const double error = std::hypot(chains[r].standard_error(), traced[r].standard_error());
-        EXPECT_NEAR(a, b, most * error + tolerance * b)
-            << map << " map, region " << r << ", ratio " << a / b << " +- " << error / b;
-        ++(error < 0.2 * b ? told : untold);
-    }
-    EXPECT_GE(told, 2 * untold) << "the test says next to nothing of the " << map << " map";
 }
 
 void expect_chain_energy(const Scene& scene, const Rule& rule, const Energy& traced, bool caustics) {
@@ -236,7 +103,7 @@ void expect_chain_energy(const Scene& scene, const Rule& rule, const Energy& tra
 void expect_emission_energy(const Scene& scene, const Rule& rule, const Energy& traced) {
     for (const bool guided : {false, true}) {
         SCOPED_TRACE(guided ? "stored by importance" : "stored everywhere");
-        const Energy emitted = by_emission(scene, rule, guided, 8);
+        const Energy emitted = by_emission(scene, rule, guided, 16);
         expect_equal(emitted.global, traced.global, "global", 0, {0, 1, 2, 3, 4, 5, 6});
         expect_equal(emitted.caustic, traced.caustic, "caustic", 0, {0, 1, 2, 3, 4, 6});
         // The wall behind the eye gets few photons where they are stored by importance.
@@ -247,7 +114,7 @@ void expect_emission_energy(const Scene& scene, const Rule& rule, const Energy& 
 void expect_light_chain_energy(const Scene& scene, const Rule& rule, const Energy& traced, float guide_radius = 0.5f,
                                double tolerance = 0) {
     SCOPED_TRACE("chains of light sub-paths");
-    const Energy chains = by_light_chains(scene, rule, 8, guide_radius);
+    const Energy chains = by_light_chains(scene, rule, 16, guide_radius);
     expect_equal(chains.global, traced.global, "global", tolerance, {0, 1, 2, 3, 4, 5, 6});
     // Where the eye sees little of them they are few.
     expect_equal(chains.caustic, traced.caustic, "caustic", 0, {2, 4});
@@ -256,9 +123,9 @@ void expect_light_chain_energy(const Scene& scene, const Rule& rule, const Energ
 /// `depth`: most scatterings of a path. Light tracing can't know how many of them the camera sub-path will take; where
 /// it takes more than the one at d1, as behind glass, they must be so many that the last ones carry no power.
 void expect_energy(const Scene& scene, bool caustics, int depth = 8, const GatherCoverage* coverage = nullptr,
-                   int runs = 8) {
+                   int runs = 16) {
     const Rule rule{depth, coverage, nullptr, runs};
-    const Energy traced = by_light_tracing(scene, rule, 400'000);
+    const Energy traced = by_light_tracing(scene, rule, 200'000);
     expect_emission_energy(scene, rule, traced);
     expect_chain_energy(scene, rule, traced, caustics);
     expect_light_chain_energy(scene, rule, traced);
@@ -268,7 +135,7 @@ TEST(PhotonEnergy_EqualsLightTracing, DiffuseBox) { expect_energy(*test::diffuse
 TEST(PhotonEnergy_EqualsLightTracing, TwoRooms) { expect_energy(*test::two_rooms(0.5f), false); }
 TEST(PhotonEnergy_EqualsLightTracing, MirrorGlassBox) { expect_energy(*test::mirror_glass_box(), true, 40); }
 TEST(PhotonEnergy_EqualsLightTracing, PointLight) { expect_energy(*test::point_light_box(), true); }
-TEST(PhotonEnergy_EqualsLightTracing, GlassWall) { expect_energy(*test::glass_wall_box(), false, 60, nullptr, 14); }
+TEST(PhotonEnergy_EqualsLightTracing, GlassWall) { expect_energy(*test::glass_wall_box(), false, 60, nullptr, 28); }
 
 TEST(PhotonEnergy_EqualsLightTracing, OutsideGatherCoverage) {
     const auto scene = test::two_rooms(0.5f);
@@ -289,7 +156,7 @@ TEST(PhotonEnergy_EqualsLightTracing, WherePixelsHaveWeights) {
     const auto scene = test::diffuse_box();
     const Rule rule{8, nullptr, &weight};
     const Energy traced = by_light_tracing(*scene, rule, 200'000);
-    for (const auto& [power, chains] : by_chains(*scene, rule, 6, {PowerRule::marginal, PowerRule::reciprocal}))
+    for (const auto& [power, chains] : by_chains(*scene, rule, 12, {PowerRule::marginal, PowerRule::reciprocal}))
         expect_equal(chains.global, traced.global, power == PowerRule::marginal ? "marginal" : "reciprocal",
                      power == PowerRule::marginal ? 0.02 : 0, {0, 1, 2, 3, 4, 5, 6});
 }
@@ -300,7 +167,7 @@ TEST(PhotonEnergy_OfTheLiteralRule, IsWrongFromWallToWall) {
     const auto scene = test::diffuse_box();
     const Rule rule{8};
     const Energy traced = by_light_tracing(*scene, rule, 200'000);
-    constexpr int kRuns = 8;
+    constexpr int kRuns = 16;
     const Energy literal = by_chains(*scene, rule, kRuns, {PowerRule::literal}).at(PowerRule::literal);
     double worst = 0, least = 1, most = 1;
     for (std::size_t r = 0; r < 6; ++r) {
@@ -321,7 +188,7 @@ TEST(PhotonEnergy_EqualsLightTracing, WhereChainsOfLightPathsKnowNoImportance) {
     const Rule rule{8};
     // Where importance is known it is noise, and the target with it: its mean, which weights divide by, is known
     // poorly, and the reciprocal is biased by some percent.
-    expect_light_chain_energy(*scene, rule, by_light_tracing(*scene, rule, 400'000), 0.01f, 0.05);
+    expect_light_chain_energy(*scene, rule, by_light_tracing(*scene, rule, 200'000), 0.01f, 0.05);
 }
 
 } // namespace

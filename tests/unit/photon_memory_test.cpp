@@ -17,6 +17,7 @@ Settings settings_for(const char* method, std::int64_t memory) {
     s.mutations = 60'000;
     s.light_paths = 60'000;
     s.importons = 100'000;
+    s.chain_share.value = 0.5;
     return s;
 }
 
@@ -40,7 +41,7 @@ TEST_P(PhotonMemory_StaysUnderItsCeiling, AtEverySize) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, PhotonMemory_StaysUnderItsCeiling, testing::Values("mps", "ipm", "pm", "pss"),
+INSTANTIATE_TEST_SUITE_P(Methods, PhotonMemory_StaysUnderItsCeiling, testing::Values("mps", "ipm", "pm", "pss", "cps"),
                          [](const auto& info) { return std::string(info.param); });
 
 } // namespace

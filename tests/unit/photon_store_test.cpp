@@ -87,5 +87,26 @@ TEST(PhotonStore, DependsOnDepositsAndSeedAlone) {
     EXPECT_NE(photons[0], photons[2]);
 }
 
+/// Two parts of unlike scales, the first of which is settled before it is known what becomes of the second.
+TEST(PhotonStore, KeepsTheExpectationOfBothParts) {
+    constexpr double first = 2e-3, next = 5e-4, second = 7e-4;
+    std::array<RunningStats, kRegions> power;
+    std::array<double, kRegions> expected{};
+    for (std::uint64_t seed = 0; seed < 800; ++seed) {
+        PhotonStore store(100, 0, make_rng(100 + seed));
+        const std::array<double, kRegions> of_first = fill(store, 2000);
+        store.settle(first, next);
+        const std::array<double, kRegions> of_second = fill(store, 5000);
+        std::array<double, kRegions> sum{};
+        for (const Photon& p : store.release(second)) sum[static_cast<std::size_t>(p.position().x)] += p.power().x;
+        for (std::size_t i = 0; i < kRegions; ++i) {
+            power[i].add(sum[i]);
+            expected[i] = of_first[i] * first + of_second[i] * second;
+        }
+    }
+    for (std::size_t i = 0; i < kRegions; ++i)
+        EXPECT_TRUE(test::has_mean(power[i], expected[i], kRegions)) << "region " << i;
+}
+
 } // namespace
 } // namespace keyhole

@@ -68,7 +68,7 @@ TEST(ImageTexture_Options, MapScaleAndInvert) {
     const ScratchDirectory scratch;
     const std::string file = scratch.write("a.pfm", small_pfm());
     ImageOptions options{.filter = Filter::nearest, .scale = 0.25, .invert = true};
-    options.mapping = {.su = 2, .sv = 2, .du = 0.5, .dv = 0};
+    options.mapping.uv = {.su = 2, .sv = 2, .du = 0.5, .dv = 0};
     EXPECT_EQ(image_texture<double>(file, options)->value(at(0, 0.1f)), 1 - 2 * 0.25);
 }
 
@@ -111,7 +111,8 @@ TEST(ImageTexture_Files, ThatAreBrokenSaySo) {
 }
 
 TEST(Checkerboard_Squares, AlternateThroughTheOrigin) {
-    const auto t = checkerboard_texture<double>(constant_texture(1.0), constant_texture(2.0), {.su = 4, .sv = 4});
+    const auto t =
+        checkerboard_texture<double>(constant_texture(1.0), constant_texture(2.0), {.uv = {.su = 4, .sv = 4}});
     EXPECT_EQ(t->value(at(0.1f, 0.1f)), 1);
     EXPECT_EQ(t->value(at(0.3f, 0.1f)), 2);
     EXPECT_EQ(t->value(at(0.3f, 0.3f)), 1);
@@ -237,7 +238,7 @@ TEST(Materials, TellWhetherTheyReadAParametrisation) {
     const auto zero = constant_texture(0.0), rough = constant_texture(0.2);
     const auto slope = std::make_shared<Slope>();
     const auto grey = constant_texture(Rgb(0.5)),
-               tiles = checkerboard_texture(grey, constant_texture(Rgb(0.1)), UvMapping{});
+               tiles = checkerboard_texture(grey, constant_texture(Rgb(0.1)), TextureMapping{});
     EXPECT_FALSE(make_diffuse(grey)->reads_parametrisation());
     EXPECT_TRUE(make_diffuse(tiles)->reads_parametrisation());
     EXPECT_FALSE(make_glass(1.5)->reads_parametrisation());

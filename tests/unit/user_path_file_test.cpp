@@ -229,6 +229,20 @@ TEST(UserPathFile, ARangeOfBouncesBecomesAPathForEachNumber) {
     EXPECT_EQ(bind_user_path(*scene, file.paths[1]).signature(), "L * * D");
 }
 
+TEST(UserPaths, ThoseThatFailTheirCheckCanBeLeftOut) {
+    const auto scene = test::diffuse_box();
+    UserPathFile file = test::diffuse_box_paths(*scene);
+    file.paths.insert(file.paths.begin() + 1,
+                      test::user_path("into the air", {{0, 1.95f, 0}, {0.4f, 0.5f, 0.3f}}, 0.9));
+    std::vector<std::string> warnings;
+    const UserPathFile usable = usable_paths(*scene, file, warnings);
+    ASSERT_EQ(usable.paths.size(), 3u);
+    EXPECT_EQ(usable.paths[1].name, file.paths[2].name);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_THAT(warnings[0], testing::HasSubstr("'into the air'"));
+    EXPECT_THAT(warnings[0], testing::EndsWith("the path is left out"));
+}
+
 TEST(UserPaths, EventsAtSpecularVerticesFollowFromThePointAfter) {
     const auto scene = test::mirror_glass_box();
     const UserPaths paths = bind_user_paths(*scene, test::mirror_glass_box_paths(*scene));

@@ -1,8 +1,8 @@
 // The page of a chart: its data as JSON, put into the page's parts.
 #include "cli/beauty.h"
 #include "cli/chart/outputs.h"
-#include "cli/chart/page_parts.h"
 #include "cli/chart/page_pictures.h"
+#include "cli/page/page_parts.h"
 #include "film/files/atomic_file.h"
 
 #include <nlohmann/json.hpp>
@@ -102,15 +102,12 @@ void write_page(const std::string& folder, const std::vector<SceneChart>& charts
     Json scenes = Json::array();
     const int shrink = shrink_of(charts, options);
     for (const SceneChart& chart : charts) scenes.push_back(scene_json(chart, options, shrink));
-    std::string data = Json{
+    const std::string data = Json{
         {"program", "keyhole " KEYHOLE_VERSION},
         {"repeats", options.repeats},
         {"methods", options.methods},
         {"scenes", scenes}}.dump();
-    // A script element ends at the first "</".
-    for (std::size_t at = 0; (at = data.find("</", at)) != std::string::npos;) data.replace(at, 2, "<\\/");
-    const std::string page = std::string(kPageBeforeData) + data + std::string(kPageAfterData);
-    write_file_atomically(folder + "/index.html", page);
+    write_file_atomically(folder + "/index.html", kChartPage.with(data));
 }
 
 } // namespace keyhole

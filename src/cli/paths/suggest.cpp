@@ -4,12 +4,15 @@
 #include "core/error.h"
 #include "film/files/atomic_file.h"
 #include "methods/render.h"
-#include "sampling/guidance/suggest_paths.h"
+#include "sampling/guidance/found/find_openings.h"
+#include "sampling/guidance/found/suggest_paths.h"
 
 #include <fmt/format.h>
 
 namespace keyhole {
 namespace {
+
+constexpr std::int64_t kPathsFromEitherEnd = 8192;
 
 struct SuggestCommand {
     std::string scene, output;
@@ -23,7 +26,11 @@ int suggest(const SuggestCommand& o) {
     const StageOneSettings first{.max_scatterings = static_cast<int>(loaded.settings.max_depth),
                                  .samples = loaded.settings.brightness_samples,
                                  .seed = static_cast<std::uint64_t>(loaded.settings.seed)};
-    const UserPathFile file = suggest_user_paths(scene, first, o.options);
+    const TransportEnds ends = trace_transport_ends(scene, kPathsFromEitherEnd, first.seed, {});
+    UserPathFile file =
+        find_openings(scene, ends, {.max_scatterings = first.max_scatterings, .seed = first.seed}, {}).paths;
+    // An opening says all that is to be said of light that has to pass it.
+    if (file.paths.empty()) file = suggest_user_paths(scene, first, o.options);
     if (file.paths.empty())
         throw InputError(o.scene + ": found no path that carries light to the eye; try -D brightness_samples=...");
     const std::string text =

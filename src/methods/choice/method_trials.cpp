@@ -92,18 +92,18 @@ struct TrialRender {
 /// A render of the scene's window; none if it leaves holes. @throws Interrupted
 std::optional<TrialRender> render_trial(const TrialContext& c, Settings settings, double effort,
                                         const RunContext& context) {
-    const auto left = [&] { return context.stop != nullptr ? context.stop->seconds_left() : 0; };
-    const bool in_time = std::isfinite(left()) && context.stop != nullptr;
-    const double start = left(), pixels = c.scene.camera().window().size();
+    const double start = context.seconds_left();
+    const bool in_time = std::isfinite(start);
+    const double pixels = c.scene.camera().window().size();
     const RenderResult r = render_by_method({c.scene, settings, c.user_paths, context, {}, c.findings});
     if (!has_picture(r) || empty_pixels(r) > 0) return std::nullopt;
     settings.spp = std::max<std::int64_t>(1, static_cast<std::int64_t>(r.stats.samples));
-    const Experience cost = in_time ? Experience(settings, effort, pixels, r.stats, start - left())
+    const Experience cost = in_time ? Experience(settings, effort, pixels, r.stats, start - context.seconds_left())
                                     : Experience::in_rays(settings, effort, pixels, r.stats);
     return TrialRender{luminance_of(r.picture),
                        luminance_of(r.picture, "direct"),
                        {.cost = cost,
-                        .taken = in_time ? start - left() : cost.total(),
+                        .taken = in_time ? start - context.seconds_left() : cost.total(),
                         .samples = r.stats.samples,
                         .balance = in_time ? rebalance({}, r.stats) : StageBalance(),
                         .noise = in_time ? r.stats.photon_quality.noise : std::nullopt}};
@@ -194,8 +194,8 @@ std::optional<TriedMethod> try_method(const TrialContext& c, const Method& metho
     });
 }
 
-/// The squared error in the time that is left, told from that of a trial.
-double predict(const TriedMethod& t, const TrialContext& c, double left) {
+/// The squared error in the time that is left as a trial shows it.
+double predict_by_trial(const TriedMethod& t, const TrialContext& c, double left) {
     const double pixels = c.scene.camera().window().size();
     const double time = t.of.taken / left, size = pixels / t.of.cost.pixels;
     const TrialError& e = t.error;
@@ -214,6 +214,13 @@ double predict(const TriedMethod& t, const TrialContext& c, double left) {
     const double growth = effort / t.of.cost.effort;
     return t.method->trial.doubt * (e.grain * (t.by_samples / samples + (1 - t.by_samples) / growth) +
                                     (e.blotches + e.missing) * std::pow(growth, -kSlope));
+}
+
+/// The squared error in the time that is left, told from that of a trial. What isn't led through the openings that were
+/// found misses most of the light in a short one: its picture is dark and quiet, and its error larger than it seems.
+double predict(const TriedMethod& t, const TrialContext& c, double left) {
+    const double hidden = t.method->follows_user_paths ? 1 : std::sqrt(c.findings.gain_by_openings);
+    return hidden * predict_by_trial(t, c, left);
 }
 
 /// Rays that light tracing by importance would take with the settings, or else the first of the methods.

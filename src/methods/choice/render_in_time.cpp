@@ -8,6 +8,7 @@
 #include "methods/choice/method_trials.h"
 #include "methods/learned_direct_light_scope.h"
 #include "methods/method.h"
+#include "methods/render_paths.h"
 #include "session/passes.h"
 #include "session/stage_clock.h"
 
@@ -59,14 +60,16 @@ class RenderInTime {
   public:
     RenderInTime(Scene& scene, const Settings& settings, const std::set<std::string>& given, const RunContext& context,
                  const UserPathFile& user_paths, const WorkPartition& share)
-        : scene_(scene), settings_(settings), given_(given), context_(context),
-          user_paths_(bind_user_paths(scene, user_paths)), share_(share), start_(left()) {
+        : scene_(scene), settings_(settings), given_(given), context_(context), given_paths_(user_paths), share_(share),
+          start_(left()) {
         pixels_ = scene.camera().window().size();
     }
 
     RenderResult run() {
         try {
             direct_light_.emplace(scene_, settings_, context_);
+            paths_.emplace(scene_, settings_, given_paths_, context_);
+            findings_.gain_by_openings = paths_->gain();
             choose();
             if (is_close()) spend_in_parts();
             while (mean_.empty() || (left() > kLeast * start_ && !used_up_)) {
@@ -82,7 +85,7 @@ class RenderInTime {
 
   private:
     double left() const { return context_.stop->seconds_left(); }
-    TrialContext trial_context() { return {scene_, settings_, given_, context_, user_paths_, findings_}; }
+    TrialContext trial_context() { return {scene_, settings_, given_, context_, paths_->paths(), findings_}; }
     /// Whether two methods are so close that a longer look is worth its time. Several small photon maps are worse than
     /// a large one, and what they show of it is little.
     bool is_close() const {
@@ -210,7 +213,7 @@ class RenderInTime {
         }
         chosen.seed = seed_of_render(settings_, renders_++);
         if (renders_ > 1) chosen.save_map.clear();
-        RenderResult result = render_by_method({scene_, chosen, user_paths_, limited, share, findings_});
+        RenderResult result = render_by_method({scene_, chosen, paths_->paths(), limited, share, findings_});
         used_up_ = last && method_->samples_pixels && given_.contains("spp");
         const bool holes = empty_pixels(result) > 0;
         if (!has_picture(result) || (holes && (!last || !mean_.empty()))) {
@@ -255,6 +258,7 @@ class RenderInTime {
         result.settings.seed = settings_.seed;
         result.stats.stages.insert(result.stats.stages.begin(), trials_.stages.begin(), trials_.stages.end());
         if (direct_light_) direct_light_->report(result.stats);
+        if (paths_) paths_->report(result.stats);
         return result;
     }
 
@@ -269,11 +273,12 @@ class RenderInTime {
     const Settings& settings_;
     const std::set<std::string>& given_;
     const RunContext& context_;
-    const UserPaths user_paths_;
+    const UserPathFile& given_paths_;
     const WorkPartition& share_;
     const double start_; // of time, in the beginning [s]
     double pixels_ = 0;
     std::optional<LearnedDirectLightScope> direct_light_;
+    std::optional<RenderPaths> paths_;
     Findings findings_;
     const Method* method_ = nullptr;
     std::optional<TrialCost> cost_;  // of the method; none for those that sample pixels

@@ -2,6 +2,7 @@
 // for.
 #include "methods/method.h"
 #include "methods/photons/guides.h"
+#include "methods/photons/learn_emission.h"
 #include "methods/photons/memory_plan.h"
 #include "methods/photons/photon_sampler.h"
 #include "photonmap/emission.h"
@@ -21,7 +22,7 @@ class EmissionSampler final : public PhotonSampler {
             plan_memory(c_.settings, by_importance_ ? ImportanceUse::guide : ImportanceUse::none, c_.caustics ? 2 : 1);
         Guides guides;
         if (by_importance_) guides = make_guides(c_, seed, plan.importons, stats, context);
-        if (by_importance_ && !learned_) learn(stats, context);
+        if (by_importance_ && !learned_) learned_ = learn_emission(c_, stats, context);
 
         const StageClock clock(stats, stages::photons_of_light_paths);
         EmittedPhotons photons =
@@ -31,7 +32,8 @@ class EmissionSampler final : public PhotonSampler {
                           .rule = c_.storage(),
                           .seed = seed,
                           .user_paths = by_importance_ ? LightGuides(c_.scene, c_.user_paths) : LightGuides(),
-                          .learned = learned_ ? &*learned_ : nullptr},
+                          .learned = learned_ ? &*learned_ : nullptr,
+                          .observer = c_.observer},
                          context);
         stats.values["light paths"] += static_cast<double>(photons.paths);
         stats.values["photons before storing"] += static_cast<double>(photons.arrivals);
@@ -40,25 +42,6 @@ class EmissionSampler final : public PhotonSampler {
     }
 
   private:
-    /// Where light paths begin, once for all passes: whoever makes one of them makes the same photons.
-    void learn(RenderStats& stats, const RunContext& context) {
-        if (!LearnedEmission::can_learn(c_.scene)) return;
-        const StageClock clock(stats, stages::emission);
-        learned_.emplace(
-            c_.scene,
-            EmissionLearning{.paths = std::clamp(c_.settings.light_paths / kPathsOfLearning, kLeastPaths, kMostPaths),
-                             .max_scatterings = static_cast<int>(c_.settings.max_depth),
-                             .set = c_.path_set(),
-                             .seed = static_cast<std::uint64_t>(c_.settings.seed),
-                             .most_bytes = static_cast<std::size_t>(c_.settings.photon_memory) / kMemoryOfLearning},
-            context);
-        stats.values["emitters that matter"] = learned_->effective_emitters();
-    }
-
-    /// Light paths for each path that learns where they are to begin, and the bounds of these.
-    static constexpr std::int64_t kPathsOfLearning = 16, kLeastPaths = 2048, kMostPaths = 1 << 16;
-    static constexpr std::size_t kMemoryOfLearning = 10;
-
     SamplerContext c_;
     bool by_importance_;
     std::optional<LearnedEmission> learned_;

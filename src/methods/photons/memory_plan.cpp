@@ -23,13 +23,15 @@ constexpr double kInStageTwo = PhotonStore::bytes_per_photon() * 1.0625; // buff
 
 MemoryPlan plan_memory(const Settings& settings, ImportanceUse use, int maps) {
     const double memory = std::max(static_cast<double>(settings.photon_memory) - kFixed, kFixed);
+    const bool stays = use == ImportanceUse::beside || use == ImportanceUse::both;
     // Importance that stays beside the photons decides how good their power is: half of what is left for it.
-    double photons = memory / (use == ImportanceUse::beside ? 2 * kInStageThree : kInStageThree);
+    double photons = memory / (stays ? 2 * kInStageThree : kInStageThree);
     if (settings.photons > 0) photons = std::min(photons, static_cast<double>(settings.photons));
     double importons = 0;
-    if (use == ImportanceUse::beside) importons = (memory - photons * kInStageTwo) / (kIndexed * maps);
-    // All importons, and the index and the places of one map; later the places of all, beside the stores.
     const double places = (kPilotPhoton + kEstimate) / kPilotEvery;
+    const double each = kIndexed + (use == ImportanceUse::both ? places : 0);
+    if (stays) importons = (memory - photons * kInStageTwo) / (each * maps);
+    // All importons, and the index and the places of one map; later the places of all, beside the stores.
     if (use == ImportanceUse::guide)
         importons = std::min(memory / (sizeof(Photon) * (maps - 1) + kIndexed + kList + places),
                              (memory - photons * kInStageTwo) / (places * maps));

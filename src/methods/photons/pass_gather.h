@@ -29,6 +29,11 @@ class PassGather {
     /// A sample of what is seen at a point of the window.
     PixelSample sample(const Vec2& image, SampleSource& source) const { return gather_->sample(image, source); }
 
+    /// What it asks. The maps may be without photons; where there is no cache, or no irradiance known beforehand: null.
+    const GatherRays& rays() const { return *rays_; }
+    const IrradianceCache* cache() const { return cache_ ? &*cache_ : nullptr; }
+    const IrradianceMap* irradiance() const { return irradiance_ ? &*irradiance_ : nullptr; }
+
     /// Says what the samples have shown of the cache, how noisy they are, and looks for spots that are not there.
     void report(RenderStats& stats) const;
 

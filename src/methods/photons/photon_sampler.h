@@ -4,6 +4,7 @@
 #include "core/progress.h"
 #include "core/render_stats.h"
 #include "core/settings.h"
+#include "methods/photons/work_shares.h"
 #include "photonmap/photon_weighing.h"
 #include "photonmap/photons.h"
 #include "photonmap/surface/surface_patches.h"
@@ -12,6 +13,7 @@
 #include "scene/scene.h"
 
 #include <memory>
+#include <optional>
 
 namespace keyhole {
 
@@ -32,10 +34,12 @@ struct SamplerContext {
     const Scene& scene;
     const Settings& settings;
     const SurfacePatches& patches;
-    const UserPaths& user_paths;              ///< for chains, and for emission by importance
-    bool caustics = true;                     ///< whether there is to be a caustic map
-    const GatherCoverage* coverage = nullptr; ///< of gather rays; null: they come everywhere
-    const ImageWeight* weight = nullptr;      ///< of pixels; null: photons follow the light
+    const UserPaths& user_paths;                 ///< for chains, and for emission by importance
+    bool caustics = true;                        ///< whether there is to be a caustic map
+    const GatherCoverage* coverage = nullptr;    ///< of gather rays; null: they come everywhere
+    const ImageWeight* weight = nullptr;         ///< of pixels; null: photons follow the light
+    std::optional<WorkShares>* shares = nullptr; ///< of cps, found by trial for this render and those that follow
+    PhotonObserver* observer = nullptr;          ///< of the photons that a render is made from; null: nobody watches
 
     /// The paths that chains sample.
     PathSet path_set() const { return {settings.paths == SampledPaths::all, coverage, weight}; }

@@ -3,7 +3,7 @@
 #include "core/percent.h"
 #include "methods/method.h"
 #include "methods/photons/find_coverage.h"
-#include "methods/photons/sampler_trial.h"
+#include "methods/photons/trials/sampler_trial.h"
 
 #include <algorithm>
 #include <cmath>

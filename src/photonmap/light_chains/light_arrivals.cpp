@@ -1,6 +1,6 @@
 #include "photonmap/light_chains/light_arrivals.h"
 
-#include "photonmap/power.h"
+#include "photonmap/power/power.h"
 #include "sampling/paths/bidirectional_tracer.h"
 
 #include <cmath>

@@ -3,7 +3,7 @@
 #include "core/shared_work.h"
 #include "photonmap/light_chains/light_arrivals.h"
 #include "photonmap/map_stores.h"
-#include "photonmap/power.h"
+#include "photonmap/power/power.h"
 #include "sampling/primary/primary_chain.h"
 #include "sampling/primary/primary_start.h"
 #include "sampling/primary/primary_state.h"

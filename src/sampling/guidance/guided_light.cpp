@@ -13,7 +13,7 @@ Path& scratch() {
 } // namespace
 
 GuidedLightWalk::GuidedLightWalk(const Scene& scene, const LightGuides& guides)
-    : scene_(&scene), guides_(&guides), path_(&scratch()) {}
+    : scene_(&scene), guides_(&guides), path_(&scratch()), density_(guides.empty() ? 1 : 1 - kGuided) {}
 
 bool GuidedLightWalk::emit(const Vertex& x0, const Vec3& w) {
     path_->x.push_back(x0);
@@ -36,13 +36,14 @@ void GuidedLightWalk::arrive(const Vertex& v) {
     here.pdf_from_light = solid_angle_to_area(next_pdf_, from, here.point);
     product_ *= here.pdf_from_light;
     power_ *= scene_->transmittance(from, here.point);
+    past_.density = density_;
     if (!(product_ > 0) || !here.bsdf.traits().finite) return;
     double guided = 0;
     guides_->for_each([&](const GuidedSubPath& guide, double probability) {
         if (guide.vertices() == vertices()) guided += probability * guide.density(*path_) / product_;
     });
     if (!(guided > 0)) return;
-    density_ += kGuided * guided;
+    past_.density = density_ += kGuided * guided;
     reference_ = luminance(power());
     guided_ = true;
 }

@@ -26,6 +26,8 @@ class GuidedLightWalk {
     /// The same for light that is scattered by `event` into `w` (unit).
     double leave(Event event, const Vec3& w);
 
+    /// What it has met so far, of which the emitter's point is the first.
+    const Path& path() const { return *path_; }
     Vertex& last() { return path_->x.back(); }
     const Vertex& last() const { return path_->x.back(); }
     int vertices() const { return path_->vertices(); }
@@ -42,23 +44,24 @@ class GuidedLightWalk {
 
     const Scene* scene_;
     const LightGuides* guides_;
-    Path* path_;                   ///< its events and pdf_from_light only
-    Rgb power_{0.0};               ///< contribution over density of a free walk without roulette
-    double product_ = 1;           ///< density of the vertices so far, of such a walk
-    double density_ = 1 - kGuided; ///< of the mixture, over that. What the free walks of it survive is part of it:
-                                   ///< else those that come where guided ones do would bring their emitted power
-    double reference_ = 0;         ///< luminance of power() that roulette keeps [W]
+    Path* path_;           ///< its events and pdf_from_light only
+    Rgb power_{0.0};       ///< contribution over density of a free walk without roulette
+    double product_ = 1;   ///< density of the vertices so far, of such a walk
+    double density_;       ///< of the mixture, over that. What the free walks of it survive is part of it:
+                           ///< else those that come where guided ones do would bring their emitted power
+    double reference_ = 0; ///< luminance of power() that roulette keeps [W]
     double next_pdf_ = 0;
     bool guided_ = false;
     LightPast past_;
 };
 
 /// As trace_light_path(), which it equals in expectation. There must be a guide. What a guided walk meets before its
-/// user path ends is left to the free ones; `past` tells the sink of it.
+/// user path ends is left to the free ones; `past` tells the sink of it, and sink.passes(vertex), where it has that.
 template <class Sink>
 void trace_guided_light_path(const Scene& scene, const LightGuides& guides, int max_scatterings, Rng& rng, Sink& sink) {
     GuidedLightWalk walk(scene, guides);
-    if (rng.next() < GuidedLightWalk::kGuided) {
+    const bool along_user_path = rng.next() < GuidedLightWalk::kGuided;
+    if (along_user_path) {
         SubPath light;
         Failure why{};
         if (!guides.choose(rng).trace(light, rng, why)) return;
@@ -76,6 +79,10 @@ void trace_guided_light_path(const Scene& scene, const LightGuides& guides, int 
         const auto hit = next_vertex(scene, ray.origin, ray.w);
         if (!hit || hit->point.site == Site::infinite) return;
         walk.arrive(*hit);
+    }
+    if constexpr (requires { sink.sets_out(walk.path().x[0].point, along_user_path); }) {
+        sink.sets_out(walk.path().x[0].point, along_user_path);
+        for (int i = 1; i + 1 < walk.vertices(); ++i) sink.passes(walk.path().x[static_cast<std::size_t>(i)]);
     }
     while (sink.arrival(walk.last(), walk.to_light(), walk.power(), walk.past()) &&
            walk.vertices() <= max_scatterings) {

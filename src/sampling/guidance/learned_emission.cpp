@@ -167,6 +167,7 @@ void LearnedEmission::learn_sky(std::uint32_t i, std::span<const SeenLight> foun
     }
     const std::vector<double> light = sky.side == 1 ? std::vector<double>{1.0} : light_by_cell(emitter, sky.side);
     sky.beams.resize(cells);
+    double mean = 0;
     for (std::size_t b = 0; b < cells; ++b) {
         Beam& beam = sky.beams[b];
         double own = 0;
@@ -174,12 +175,14 @@ void LearnedEmission::learn_sky(std::uint32_t i, std::span<const SeenLight> foun
         // Where the emitter seemed dark, some of its light may come all the same.
         const double of_all = std::max(light[b], 1.0 / (kDirectionsOfCell * static_cast<double>(cells)));
         beam.weight = kPlain + (1 - kPlain) * own / sum / of_all;
+        mean += light[b] * beam.weight;
         beam.w = -(sky.side == 1 ? found.front().towards : middle_of(sky.side, static_cast<int>(b)));
         if (by_cell[b].size() >= kLeastPaths || sky.side == 1)
             learn_beam(beam, by_cell[b]);
         else
             learn_beam(beam, around(by_cell, sky.side, static_cast<int>(b)));
     }
+    sky.mean_weight = mean;
 }
 
 void LearnedEmission::learn_beam(Beam& beam, std::span<const SeenLight> found) const {
@@ -235,6 +238,12 @@ std::optional<EmittedLight> LearnedEmission::sample_sky(const Sky& sky, const Em
     return emit_along(*scene_, point_on(i, candidates[k].point), probability * pdf, ray);
 }
 
+PlaneHistogram::Place LearnedEmission::place_on(const Beam& beam, const Vec3& w, const Vec3& p) {
+    const Vec3 from = p - beam.center;
+    const Vec3 local = Frame(beam.w).to_local(from - w * (from.dot(beam.w) / w.dot(beam.w)));
+    return {{local.x, local.y}};
+}
+
 EmitterRay LearnedEmission::sample_place(const Beam& beam, const Emitter& emitter, const SurfacePoint& point,
                                          SampleSource& source) const {
     const bool plain = beam.places.empty() || source.next() < kPlain;
@@ -246,9 +255,7 @@ EmitterRay LearnedEmission::sample_place(const Beam& beam, const Emitter& emitte
     PlaneHistogram::Place place{};
     bool in_beam = true; // whether the plain choice could have made it
     if (plain) {
-        const Vec3 from = ray.origin.p - beam.center;
-        const Vec3 local = frame.to_local(from - ray.w * static_cast<float>(from.dot(beam.w) / cosine));
-        place = {{local.x, local.y}};
+        place = place_on(beam, ray.w, ray.origin.p);
     } else {
         const double u0 = source.next();
         place = beam.places.sample(u0, source.next());
@@ -260,6 +267,20 @@ EmitterRay LearnedEmission::sample_place(const Beam& beam, const Emitter& emitte
     }
     ray.pdf = (in_beam ? kPlain * plain_pdf : 0) + (1 - kPlain) * beam.places.pdf(place) / cosine;
     return ray;
+}
+
+double LearnedEmission::density_ratio(const SurfacePoint& x0, const Vec3& w, const Vec3& p) const {
+    const std::uint32_t i = x0.emitter;
+    const double by_power = scene_->emitter_distribution().probability(i);
+    const double ratio = by_power > 0 ? choice_.probability(i) / by_power : 0.0;
+    const Sky& sky = skies_[i];
+    if (sky.beams.empty()) return ratio;
+    const Beam& beam = beam_of(sky, x0.p);
+    const double of_beam = sky.side == 1 ? 1 : beam.weight / sky.mean_weight;
+    if (beam.places.empty()) return ratio * of_beam;
+    const PlaneHistogram::Place place = place_on(beam, w, p);
+    const double plain = scene_->emitter(i).ray_pdf(x0, w), cosine = w.dot(beam.w);
+    return ratio * of_beam * (kPlain + (1 - kPlain) * beam.places.pdf(place) / (cosine * plain));
 }
 
 double LearnedEmission::effective_emitters() const {

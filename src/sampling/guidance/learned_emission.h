@@ -40,6 +40,10 @@ class LearnedEmission {
     /// The first edge of a light path, its density that of all choices together; none where nothing emits.
     std::optional<EmittedLight> sample(SampleSource& source) const;
 
+    /// Density of the first edge of a light path, from `x0` along `w` through `p`, over that of emission by power, all
+    /// choices together: what sample() has but where it resamples directions; there the limit of many candidates.
+    double density_ratio(const SurfacePoint& x0, const Vec3& w, const Vec3& p) const;
+
     /// How many emitters would do: the reciprocal of the sum of their squared shares.
     double effective_emitters() const;
     std::size_t bytes() const;
@@ -54,7 +58,8 @@ class LearnedEmission {
     };
     /// Of one emitter at infinity.
     struct Sky {
-        int side = 1; ///< beams lie on an octahedral map of side * side cells; 1 for a single direction
+        int side = 1;           ///< beams lie on an octahedral map of side * side cells; 1 for a single direction
+        double mean_weight = 1; ///< of beams, by the light that the emitter sends from each
         std::vector<Beam> beams;
     };
 
@@ -65,6 +70,8 @@ class LearnedEmission {
                                            SampleSource& source) const;
     EmitterRay sample_place(const Beam& beam, const Emitter& emitter, const SurfacePoint& point,
                             SampleSource& source) const;
+    /// Where light along `w` through `p` crosses the beam's plane.
+    static PlaneHistogram::Place place_on(const Beam& beam, const Vec3& w, const Vec3& p);
     const Beam& beam_of(const Sky& sky, const Vec3& towards) const;
 
     const Scene* scene_;

@@ -119,13 +119,11 @@ struct Memory {
 /// Time that has been used, by the clock that the stop goes by [s]; 0 where there is none.
 class Spent {
   public:
-    explicit Spent(const RunContext& context) : stop_(context.stop), start_(left()) {}
-    double seconds() const { return std::isfinite(start_) ? start_ - left() : 0; }
+    explicit Spent(const RunContext& context) : context_(context), start_(context.seconds_left()) {}
+    double seconds() const { return std::isfinite(start_) ? start_ - context_.seconds_left() : 0; }
 
   private:
-    double left() const { return stop_ != nullptr ? stop_->seconds_left() : std::numeric_limits<double>::infinity(); }
-
-    const StopToken* stop_;
+    const RunContext& context_;
     double start_;
 };
 

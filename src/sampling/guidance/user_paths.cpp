@@ -74,7 +74,7 @@ void Binder::stand_in(std::size_t i) {
     const auto opening = std::find_if(spec_.points.begin() + static_cast<std::ptrdiff_t>(i), spec_.points.end(),
                                       [](const UserPathPoint& p) { return p.through.has_value(); });
     Vertex v;
-    v.point.p = Vec3(opening->through->corner + (opening->through->u + opening->through->v) / 2);
+    v.point.p = Vec3(opening->through->centre());
     v.point.site = Site::point;
     found_.push_back(v);
 }
@@ -184,10 +184,32 @@ std::string UserPath::signature() const {
 
 UserPath bind_user_path(const Scene& scene, const UserPathSpec& spec) { return Binder(scene, spec).bind(); }
 
+bool binds(const Scene& scene, const UserPathSpec& spec) {
+    try {
+        bind_user_path(scene, spec);
+        return true;
+    } catch (const InputError&) {
+        return false; // a grazing segment, or rounding along a chain of mirrors
+    }
+}
+
 UserPaths bind_user_paths(const Scene& scene, const UserPathFile& file) {
     UserPaths paths;
     for (const UserPathSpec& spec : file.paths) paths.push_back(bind_user_path(scene, spec));
     return paths;
+}
+
+UserPathFile usable_paths(const Scene& scene, UserPathFile file, std::vector<std::string>& warnings) {
+    std::erase_if(file.paths, [&](const UserPathSpec& spec) {
+        try {
+            bind_user_path(scene, spec);
+            return false;
+        } catch (const InputError& e) {
+            warnings.push_back(fmt::format("{}: the path is left out", e.what()));
+            return true;
+        }
+    });
+    return file;
 }
 
 } // namespace keyhole

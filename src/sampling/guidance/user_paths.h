@@ -73,7 +73,13 @@ using UserPaths = std::vector<UserPath>;
 /// last vertex that is specular.
 UserPath bind_user_path(const Scene& scene, const UserPathSpec& spec);
 
+/// Whether it can be bound.
+bool binds(const Scene& scene, const UserPathSpec& spec);
+
 /// All paths of a file. @throws InputError as bind_user_path().
 UserPaths bind_user_paths(const Scene& scene, const UserPathFile& file);
+
+/// The paths that bind_user_path() takes. @param warnings receives why it refuses the others, one line each
+UserPathFile usable_paths(const Scene& scene, UserPathFile file, std::vector<std::string>& warnings);
 
 } // namespace keyhole

@@ -17,6 +17,7 @@ struct LightPast {
     std::optional<Place> last; ///< where it was last scattered by a vertex that isn't specular; none: nowhere
     bool specular = false;     ///< whether there was a specular one
     int scatterings = 0;       ///< how many vertices scattered it
+    double density = 1;        ///< of the walks that may have led there, over that of a free one without roulette
 
     /// Light that comes from `to_light` goes on from `v` by its event.
     void meet(const Vertex& v, const Vec3& to_light) {
@@ -56,11 +57,13 @@ template <class Sink> struct LightTracing : WalkHooks {
 /// Tells `sink`:
 ///   sink.arrival(vertex, to_light, power, past): light of RGB `power` [W] arrived at `vertex`, which lies on
 ///     a surface, from direction `to_light` (unit); `past`: a LightPast. False ends the path.
+///   sink.sets_out(x0, guided), where it has that: light leaves emitter point x0; `guided`: along a user path.
 /// The expected sum of power over the arrivals in a region is the flux that arrives there.
 template <class Sink>
 void trace_light_path(const Scene& scene, const EmittedLight& light, int max_scatterings, SampleSource& source,
                       Sink& sink) {
     if (is_black(light.power)) return;
+    if constexpr (requires { sink.sets_out(light.x0, false); }) sink.sets_out(light.x0, false);
     LightTracing<Sink> tracing{{}, sink, luminance(light.power)};
     random_walk(scene, From::light, {&light.ray.origin, &light.x0, light.ray.w, light.power}, max_scatterings, source,
                 tracing);

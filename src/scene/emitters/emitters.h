@@ -74,4 +74,22 @@ EnvironmentImage read_environment_image(const std::string& path, SphereLayout la
 /// @throws InputError for a picture that is black or of the wrong shape, and for other transforms.
 std::unique_ptr<Emitter> make_image_environment(EnvironmentImage image, const Rgb& scale, const Imath::M33d& to_world);
 
+/// Where a light with a picture stands, and which way the picture lies.
+struct PictureFrame {
+    Vec3 position{0, 0, 0};
+    Imath::M33d to_world{}; ///< a rotation, mirrored or not, for row vectors
+};
+
+/// Light from one point with the intensity [W/sr] that `image` times `scale` has in each direction: a luminaire as it
+/// was measured. Directions are drawn in proportion to it.
+/// @throws InputError for a picture that is black or of the wrong shape, and for other transforms.
+std::unique_ptr<Emitter> make_goniometric_emitter(EnvironmentImage image, const PictureFrame& frame, const Rgb& scale);
+
+/// A projector: light from one point with the intensity [W/sr] that `image` times `scale` has where a direction meets
+/// its plane, before the light along +z. The first row is up, +y; nothing is cast outside.
+/// @param fov_degrees full angle along the picture's shorter side, below 180.
+/// @throws InputError as make_goniometric_emitter().
+std::unique_ptr<Emitter> make_projection_emitter(EnvironmentImage image, double fov_degrees, const PictureFrame& frame,
+                                                 const Rgb& scale);
+
 } // namespace keyhole

@@ -82,11 +82,6 @@ class ImageEnvironment final : public InfiniteEmitter {
     double flux_ = 0; // luminance over the sphere [W/m^2]
 };
 
-bool is_rotation(const Imath::M33d& m) {
-    const Imath::M33d product = m * m.transposed();
-    return product.equalWithAbsError(Imath::M33d(), 1e-4);
-}
-
 } // namespace
 
 EnvironmentImage read_environment_image(const std::string& path, SphereLayout layout) {

@@ -4,6 +4,7 @@
 #define KEYHOLE_EMITTER_FILES(FILE)                                                                                    \
     FILE(distant)                                                                                                      \
     FILE(environment)                                                                                                  \
+    FILE(picture)                                                                                                      \
     FILE(point)                                                                                                        \
     FILE(spot)
 

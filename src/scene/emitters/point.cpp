@@ -1,26 +1,18 @@
 #include "scene/emitters/emitters.h"
 
+#include "scene/emitters/at_a_point.h"
+
 #include "scene/load/properties.h"
 #include "scene/warp.h"
 
 namespace keyhole {
 namespace {
 
-class PointEmitter final : public Emitter {
+class PointEmitter final : public EmitterAtAPoint {
   public:
-    PointEmitter(const Vec3& position, const Rgb& intensity) : position_(position), intensity_(intensity) {}
+    PointEmitter(const Vec3& position, const Rgb& intensity) : EmitterAtAPoint(position), intensity_(intensity) {}
 
-    Site site() const override { return Site::point; }
-    bool is_delta() const override { return true; }
     double power() const override { return 4 * kPi * luminance(intensity_); }
-
-    EmitterPoint sample_point(SampleSource& /*source*/) const override {
-        SurfacePoint point;
-        point.p = position_;
-        point.site = Site::point;
-        return {point, 1.0};
-    }
-    double point_pdf(const SurfacePoint& /*point*/) const override { return 1; }
 
     EmitterRay sample_ray(const SurfacePoint& point, SampleSource& source) const override {
         const double u0 = source.next(), u1 = source.next();
@@ -31,12 +23,11 @@ class PointEmitter final : public Emitter {
 
     Rgb radiance(const SurfacePoint& /*point*/, const Vec3& /*w*/) const override { return intensity_; }
     std::optional<EmitterBounds> bounds() const override {
-        return EmitterBounds{.lower = position_, .upper = position_, .intensity = luminance(intensity_)};
+        return EmitterBounds{.lower = position(), .upper = position(), .intensity = luminance(intensity_)};
     }
     const char* kind() const override { return "point"; }
 
   private:
-    Vec3 position_;
     Rgb intensity_;
 };
 

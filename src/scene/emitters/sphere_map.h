@@ -3,6 +3,8 @@
 
 #include "core/vec.h"
 
+#include <Imath/ImathMatrix.h>
+
 namespace keyhole {
 
 enum class SphereLayout {
@@ -18,5 +20,8 @@ Vec3 sphere_direction(SphereLayout layout, const Vec2d& place);
 
 /// The place of a unit direction.
 Vec2d sphere_place(SphereLayout layout, const Vec3& w);
+
+/// Whether `m` turns a picture and no more; it may mirror it.
+inline bool is_rotation(const Imath::M33d& m) { return (m * m.transposed()).equalWithAbsError(Imath::M33d(), 1e-4); }
 
 } // namespace keyhole

@@ -1,5 +1,7 @@
 #include "scene/emitters/emitters.h"
 
+#include "scene/emitters/at_a_point.h"
+
 #include "core/error.h"
 #include "scene/load/properties.h"
 #include "scene/warp.h"
@@ -17,26 +19,16 @@ double inverse_smoothstep_integral(double u) {
     return (low + high) / 2;
 }
 
-class SpotEmitter final : public Emitter {
+class SpotEmitter final : public EmitterAtAPoint {
   public:
     explicit SpotEmitter(const SpotParameters& p)
-        : parameters_(p), frame_(p.axis), cos_full_(std::cos(p.full_degrees * kPi / 180)),
+        : EmitterAtAPoint(p.position), parameters_(p), frame_(p.axis), cos_full_(std::cos(p.full_degrees * kPi / 180)),
           cos_edge_(std::cos(p.edge_degrees * kPi / 180)) {
         solid_angle_ = spot_solid_angle(p);
         full_share_ = 2 * kPi * (1 - cos_full_) / solid_angle_;
     }
 
-    Site site() const override { return Site::point; }
-    bool is_delta() const override { return true; }
     double power() const override { return luminance(parameters_.intensity) * solid_angle_; }
-
-    EmitterPoint sample_point(SampleSource& /*source*/) const override {
-        SurfacePoint point;
-        point.p = parameters_.position;
-        point.site = Site::point;
-        return {point, 1.0};
-    }
-    double point_pdf(const SurfacePoint& /*point*/) const override { return 1; }
 
     EmitterRay sample_ray(const SurfacePoint& point, SampleSource& source) const override {
         const double u0 = source.next(), u1 = source.next();

@@ -8,7 +8,7 @@
 
 namespace keyhole {
 
-/// Reads a scene: pbrt's format where the path ends in .pbrt, else YAML.
+/// Reads a scene: pbrt's format where the path ends in .pbrt, glTF where in .gltf or .glb, else YAML.
 /// @param overrides `key=value` settings, applied in order after those of the file.
 /// @param warnings receives what isn't read as it is meant, one line each; may be null.
 /// @throws InputErrors with "file:line:column: what was found, what was expected" for every mistake in the files, as

@@ -6,6 +6,7 @@
 #include <Imath/ImathMatrix.h>
 
 #include <string>
+#include <vector>
 
 namespace keyhole {
 
@@ -30,6 +31,16 @@ constexpr std::size_t kMaxTriangles = std::size_t{1} << 27;
 /// @throws InputError "path: ..." for a missing, unknown, broken or empty file, positions that are not finite or beyond
 /// 1e12, indices out of range, and more than kMaxMeshTriangles triangles.
 TriangleMesh import_mesh(const std::string& path);
+
+/// A part of a file where that places it, with its number of a material.
+struct MeshPart {
+    TriangleMesh mesh;
+    std::size_t material = 0;
+};
+
+/// Reads the parts of an OBJ, glTF or GLB file one by one, as import_mesh() does.
+/// @throws InputError as import_mesh().
+std::vector<MeshPart> import_parts(const std::string& path);
 
 /// Reads the mesh of a PLY file (Turk 1994) in one pass over its bytes, text or binary of either byte order, packed
 /// with gzip or not: positions `x y z`; normals `nx ny nz`; texture coordinates `u v`, `s t`, `texture_u texture_v` or

@@ -99,7 +99,10 @@ class Properties {
         else
             return number_texture(key, operand_range(), otherwise);
     }
-    virtual UvMapping mapping() = 0;
+    virtual TextureMapping mapping() = 0;
+    /// From the world to the space of a texture, which `to_world` places there in our files, and in pbrt's the current
+    /// transform.
+    virtual Imath::M44d texture_space(Key to_world) = 0;
     /// Whether a texture that is read stands for directions, as kNormal says: integers are linear then.
     bool is_normal() const { return operand_range().what == kNormal.what; }
 
@@ -113,6 +116,8 @@ class Properties {
     virtual Vec3 position(Key key) = 0;
     /// Unit direction in world space, given as such, or by two places.
     virtual Vec3 direction(Key along, Key from, Key to) = 0;
+    /// Unit vector in world space.
+    virtual Vec3 axis(Key key, const Vec3& otherwise) = 0;
     /// Turns directions of a picture into the world's.
     virtual Imath::M33d rotation(Key key) = 0;
     /// An amount of light, as such or by a total that is `per_unit` times that, as power is 4 pi times the intensity of

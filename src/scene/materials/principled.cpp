@@ -139,6 +139,17 @@ MaterialPtr read_plastic(Properties& p) {
 
 } // namespace
 
+FloatTexture principled_alpha(const FloatTexture& roughness) {
+    return alpha_of(roughness, constant_texture(0.0), true);
+}
+
+PrincipledTextures principled_textures(double eta, const FloatTexture& roughness) {
+    PrincipledTextures t = plain_textures(eta);
+    t.base_color = constant_texture(Rgb(1.0));
+    t.alpha_x = t.alpha_y = principled_alpha(roughness);
+    return t;
+}
+
 MaterialPtr make_principled(const PrincipledTextures& t) {
     const FloatTexture one = constant_texture(1.0), none = constant_texture(0.0);
     // Metal is never glass.

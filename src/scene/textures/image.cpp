@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -61,18 +60,13 @@ template <class T, class Texels> class ImageTexture final : public Texture<T> {
         : image_(std::move(image)), texels_(std::get<Texels>(image_->texels)), options_(options), decoder_(options) {}
 
     T value(const SurfacePoint& point) const override {
-        const auto [u, v] = mapped(point.uv);
+        const Imath::V2d place = options_.mapping(point);
         // Texture coordinates past all use, or not numbers, must not become indices.
-        if (!(std::abs(u) < 1e6) || !(std::abs(v) < 1e6)) return T(0);
-        return finish(filtered(u * image_->width, (1 - v) * image_->height));
+        if (!(std::abs(place.x) < 1e6) || !(std::abs(place.y) < 1e6)) return T(0);
+        return finish(filtered(place.x * image_->width, (1 - place.y) * image_->height));
     }
 
   private:
-    std::array<double, 2> mapped(const Vec2& uv) const {
-        const Imath::V2d p = options_.mapping(uv);
-        return {p.x, p.y};
-    }
-
     T filtered(double x, double y) const {
         if (options_.filter == Filter::nearest)
             return texel(static_cast<std::int64_t>(std::floor(x)), static_cast<std::int64_t>(std::floor(y)));
@@ -95,7 +89,7 @@ template <class T, class Texels> class ImageTexture final : public Texture<T> {
         if constexpr (std::is_same_v<T, Rgb>)
             return c;
         else
-            return (c.x + c.y + c.z) / 3;
+            return options_.channel < 0 ? (c.x + c.y + c.z) / 3 : c[options_.channel];
     }
 
     T finish(T x) const {
@@ -162,7 +156,8 @@ template <class T> std::shared_ptr<const Texture<T>> read_image(Properties& p) {
 template <class T> TextureKinds<T> image_kinds() {
     return {{{"image", "imagemap"},
              "an image",
-             {"file", "encoding", "gamma", "wrap", "filter", "scale", "invert", "repeat", "rotate", "shift"},
+             {"file", "encoding", "gamma", "wrap", "filter", "scale", "invert", "mapping", "transform", "repeat",
+              "rotate", "shift"},
              read_image<T>}};
 }
 template TextureKinds<Rgb> image_kinds();

@@ -3,6 +3,7 @@
 
 #define KEYHOLE_TEXTURE_FILES(FILE)                                                                                    \
     FILE(image)                                                                                                        \
+    FILE(noise)                                                                                                        \
     FILE(simple)
 
 namespace keyhole {

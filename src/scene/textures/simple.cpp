@@ -2,6 +2,8 @@
 #include "scene/load/properties.h"
 #include "scene/texture.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -51,17 +53,49 @@ template <class T> class MixTexture final : public Texture<T> {
 template <class T> class CheckerboardTexture final : public Texture<T> {
   public:
     using Ptr = std::shared_ptr<const Texture<T>>;
-    CheckerboardTexture(Ptr a, Ptr b, const UvMapping& mapping)
+    CheckerboardTexture(Ptr a, Ptr b, const TextureMapping& mapping)
         : a_(std::move(a)), b_(std::move(b)), mapping_(mapping) {}
     T value(const SurfacePoint& point) const override {
-        const Imath::V2d place = mapping_(point.uv);
+        const Imath::V2d place = mapping_(point);
         const double squares = std::floor(place.x) + std::floor(place.y);
         return (std::fmod(squares, 2) == 0 ? a_ : b_)->value(point);
     }
 
   private:
     Ptr a_, b_;
-    UvMapping mapping_;
+    TextureMapping mapping_;
+};
+
+template <class T> class SolidCheckerboardTexture final : public Texture<T> {
+  public:
+    using Ptr = std::shared_ptr<const Texture<T>>;
+    SolidCheckerboardTexture(Ptr a, Ptr b, const Imath::M44d& from_world)
+        : a_(std::move(a)), b_(std::move(b)), from_world_(from_world) {}
+    T value(const SurfacePoint& point) const override {
+        const Imath::V3d place = Imath::V3d(point.p) * from_world_;
+        const double cubes = std::floor(place.x) + std::floor(place.y) + std::floor(place.z);
+        return (std::fmod(cubes, 2) == 0 ? a_ : b_)->value(point);
+    }
+
+  private:
+    Ptr a_, b_;
+    Imath::M44d from_world_;
+};
+
+template <class T> class DirectionMixTexture final : public Texture<T> {
+  public:
+    using Ptr = std::shared_ptr<const Texture<T>>;
+    DirectionMixTexture(Ptr a, Ptr b, const Vec3& axis) : a_(std::move(a)), b_(std::move(b)), axis_(axis) {}
+    T value(const SurfacePoint& point) const override {
+        const double t = std::min(1.0, std::abs(static_cast<double>(point.ng.dot(axis_))));
+        if (t == 0) return b_->value(point);
+        if (t == 1) return a_->value(point);
+        return a_->value(point) * t + b_->value(point) * (1 - t);
+    }
+
+  private:
+    Ptr a_, b_;
+    Vec3 axis_;
 };
 
 /// pbrt-v3 has 'tex2' for v4's 'scale', and 'tex1' for 'tex'.
@@ -79,10 +113,23 @@ template <class T> std::shared_ptr<const Texture<T>> read_mix(Properties& p) {
 }
 
 template <class T> std::shared_ptr<const Texture<T>> read_checkerboard(Properties& p) {
-    if (p.number({"", "dimension"}, {}, 2) != 2) p.fail("found a checkerboard of 3 dimensions, expected 2");
+    const double dimension = p.number("dimension", {}, 2);
+    if (dimension != 2 && dimension != 3)
+        p.fail_at("dimension", fmt::format("found a checkerboard of {} dimensions, expected 2 or 3", dimension));
     p.ignore({"aamode"});
     auto a = p.operand<T>({"a", "tex1"}, 1), b = p.operand<T>({"b", "tex2"}, 0);
+    if (dimension == 3) {
+        for (const char* key : {"mapping", "repeat", "rotate", "shift"})
+            if (p.has({key, ""}))
+                p.fail_at(key, fmt::format("found '{}' beside 3 dimensions, expected 'transform'", key));
+        return solid_checkerboard_texture<T>(std::move(a), std::move(b), p.texture_space("transform"));
+    }
     return checkerboard_texture<T>(std::move(a), std::move(b), p.mapping());
+}
+
+template <class T> std::shared_ptr<const Texture<T>> read_direction_mix(Properties& p) {
+    auto a = p.operand<T>({"a", "tex1"}, 0), b = p.operand<T>({"b", "tex2"}, 1);
+    return direction_mix_texture<T>(std::move(a), std::move(b), p.axis({"direction", "dir"}, {0, 1, 0}));
 }
 
 /// The finaliser of MurmurHash3.
@@ -102,7 +149,11 @@ std::uint64_t cell(float x) { return std::bit_cast<std::uint64_t>(std::floor(sta
 template <class T> TextureKinds<T> simple_kinds() {
     return {{"scale", "a scaled texture", {"texture", "factor"}, read_scale<T>},
             {"mix", "a mix of textures", {"a", "b", "amount"}, read_mix<T>},
-            {"checkerboard", "a checkerboard", {"a", "b", "repeat", "rotate", "shift"}, read_checkerboard<T>},
+            {"checkerboard",
+             "a checkerboard",
+             {"a", "b", "dimension", "mapping", "transform", "repeat", "rotate", "shift"},
+             read_checkerboard<T>},
+            {{"direction_mix", "directionmix"}, "a mix by direction", {"a", "b", "direction"}, read_direction_mix<T>},
             {{"", "constant"}, "", {}, [](Properties& p) {
                  return p.operand<T>({"", "value"}, 1);
              }}};
@@ -126,7 +177,8 @@ std::shared_ptr<const Texture<T>> mix_texture(std::shared_ptr<const Texture<T>> 
 
 template <class T>
 std::shared_ptr<const Texture<T>> checkerboard_texture(std::shared_ptr<const Texture<T>> a,
-                                                       std::shared_ptr<const Texture<T>> b, const UvMapping& mapping) {
+                                                       std::shared_ptr<const Texture<T>> b,
+                                                       const TextureMapping& mapping) {
     return std::make_shared<CheckerboardTexture<T>>(std::move(a), std::move(b), mapping);
 }
 
@@ -134,8 +186,25 @@ template ColorTexture scale_texture<Rgb>(ColorTexture, FloatTexture);
 template FloatTexture scale_texture<double>(FloatTexture, FloatTexture);
 template ColorTexture mix_texture<Rgb>(ColorTexture, ColorTexture, FloatTexture);
 template FloatTexture mix_texture<double>(FloatTexture, FloatTexture, FloatTexture);
-template ColorTexture checkerboard_texture<Rgb>(ColorTexture, ColorTexture, const UvMapping&);
-template FloatTexture checkerboard_texture<double>(FloatTexture, FloatTexture, const UvMapping&);
+template <class T>
+std::shared_ptr<const Texture<T>> solid_checkerboard_texture(std::shared_ptr<const Texture<T>> a,
+                                                             std::shared_ptr<const Texture<T>> b,
+                                                             const Imath::M44d& from_world) {
+    return std::make_shared<SolidCheckerboardTexture<T>>(std::move(a), std::move(b), from_world);
+}
+
+template <class T>
+std::shared_ptr<const Texture<T>> direction_mix_texture(std::shared_ptr<const Texture<T>> a,
+                                                        std::shared_ptr<const Texture<T>> b, const Vec3& axis) {
+    return std::make_shared<DirectionMixTexture<T>>(std::move(a), std::move(b), axis);
+}
+
+template ColorTexture solid_checkerboard_texture<Rgb>(ColorTexture, ColorTexture, const Imath::M44d&);
+template FloatTexture solid_checkerboard_texture<double>(FloatTexture, FloatTexture, const Imath::M44d&);
+template ColorTexture direction_mix_texture<Rgb>(ColorTexture, ColorTexture, const Vec3&);
+template FloatTexture direction_mix_texture<double>(FloatTexture, FloatTexture, const Vec3&);
+template ColorTexture checkerboard_texture<Rgb>(ColorTexture, ColorTexture, const TextureMapping&);
+template FloatTexture checkerboard_texture<double>(FloatTexture, FloatTexture, const TextureMapping&);
 
 double place_hash(const SurfacePoint& point, std::uint32_t salt) {
     const std::uint64_t surface = (static_cast<std::uint64_t>(point.shape) << 32) | point.primitive;

@@ -95,10 +95,10 @@ class Collector {
   public:
     Collector(const aiScene& scene, const std::string& path) : scene_(scene), path_(path) {}
 
-    TriangleMesh collect() {
+    std::vector<MeshPart> collect() {
         visit(*scene_.mRootNode, Transform(), 0);
         if (!any_) fail(path_, "found no triangles, expected at least one");
-        return std::move(all_);
+        return std::move(parts_);
     }
 
   private:
@@ -110,8 +110,9 @@ class Collector {
     }
 
     void place(const aiMesh& source, const Transform& to_world) {
-        if (all_.triangles.size() + source.mNumFaces > kMaxMeshTriangles ||
-            all_.positions.size() + source.mNumVertices > 3 * kMaxMeshTriangles)
+        triangles_ += source.mNumFaces;
+        positions_ += source.mNumVertices;
+        if (triangles_ > kMaxMeshTriangles || positions_ > 3 * kMaxMeshTriangles)
             fail(path_, fmt::format("found more than {} triangles, expected fewer", kMaxMeshTriangles));
         TriangleMesh part = convert(source);
         if (!(regularity(to_world) > 1e-12))
@@ -120,12 +121,13 @@ class Collector {
         transform_mesh(part, to_world);
         mend_mesh(part, path_);
         if (part.triangles.empty()) return;
-        append(all_, std::move(part));
+        parts_.push_back({std::move(part), source.mMaterialIndex});
     }
 
     const aiScene& scene_;
     const std::string& path_;
-    TriangleMesh all_;
+    std::vector<MeshPart> parts_;
+    std::size_t triangles_ = 0, positions_ = 0;
     bool any_ = false; ///< triangles, with an area or without
 };
 
@@ -141,11 +143,7 @@ void keep_readers_of(const std::string& extension, Assimp::Importer& importer) {
     }
 }
 
-} // namespace
-
-TriangleMesh import_mesh(const std::string& path) {
-    const std::string extension = check_file(path);
-    if (extension == ".ply" || extension == ".ply.gz") return read_ply(path);
+std::vector<MeshPart> read_parts(const std::string& path, const std::string& extension) {
     Assimp::Importer importer;
     keep_readers_of(extension, importer);
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
@@ -159,6 +157,18 @@ TriangleMesh import_mesh(const std::string& path) {
         importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType));
     if (scene->mRootNode == nullptr) fail(path, "found no triangles, expected at least one");
     return Collector(*scene, path).collect();
+}
+
+} // namespace
+
+std::vector<MeshPart> import_parts(const std::string& path) { return read_parts(path, check_file(path)); }
+
+TriangleMesh import_mesh(const std::string& path) {
+    const std::string extension = check_file(path);
+    if (extension == ".ply" || extension == ".ply.gz") return read_ply(path);
+    TriangleMesh all;
+    for (MeshPart& part : read_parts(path, extension)) append(all, std::move(part.mesh));
+    return all;
 }
 
 } // namespace keyhole

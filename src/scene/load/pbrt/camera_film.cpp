@@ -98,8 +98,9 @@ void read_film(Parameters& p, View& view) {
 }
 
 void read_camera(Parameters& p, const Transform& camera_to_world, View& view) {
-    if (p.directive().words[0] != "perspective")
-        p.fail(fmt::format("found the camera '{}', expected perspective", p.directive().words[0]));
+    const bool parallel = p.directive().words[0] == "orthographic";
+    if (!parallel && p.directive().words[0] != "perspective")
+        p.fail(fmt::format("found the camera '{}', expected perspective or orthographic", p.directive().words[0]));
     const double fov = p.has("halffov") ? 2 * p.number("halffov", 45, {5e-4, 89.5}) : p.number("fov", 90, {1e-3, 179});
     const ScreenWindow window = read_window(p, view.window);
     const double half = std::tan(fov * kPi / 360) * window.half;
@@ -126,6 +127,8 @@ void read_camera(Parameters& p, const Transform& camera_to_world, View& view) {
     camera.shift = window.middle / (2 * window.half);
     camera.lens_radius = static_cast<float>(p.number("lensradius", 0, {0, 1e12}) * scale);
     camera.focus_distance = static_cast<float>(p.number("focaldistance", 1e6, kPositive) * scale);
+    if (parallel && camera.lens_radius > 0) p.warn("orthographic lens", "everything is in focus");
+    if (parallel) camera = orthographic(camera, 2 * window.half * scale);
     const double open = p.number("shutteropen", 0), close = p.number("shutterclose", 1);
     if (!(close > open)) p.fail(fmt::format("found the shutter open from {} to {}, expected some time", open, close));
     view.exposure *= close - open;

@@ -24,7 +24,7 @@ void Importer::place_object(const Directive& d) {
 
 void Importer::define_texture(const Directive& d) {
     Parameters p = parameters(d, "texture");
-    pbrt::define_texture(p, library_);
+    pbrt::define_texture(p, library_, state_.to_world);
 }
 
 void Importer::define_material(const Directive& d) {

@@ -75,10 +75,19 @@ class PbrtProperties final : public Properties {
             return constant_texture(p_.spectrum(key.pbrt, Rgb(0.0), ColorUse::reflectance));
         return p_.directive().look_up(library_.colors, "spectrum texture", parameter->strings.front(), *parameter);
     }
-    UvMapping mapping() override {
-        choice({"", "mapping"}, "", {"uv"});
-        return {p_.number("uscale", 1), p_.number("vscale", 1), p_.number("udelta", 0), p_.number("vdelta", 0)};
+    TextureMapping mapping() override {
+        const std::string word = choice({"", "mapping"}, "", {"uv", "planar", "spherical", "cylindrical"});
+        const double du = p_.number("udelta", 0), dv = p_.number("vdelta", 0);
+        if (word == "uv") return {{p_.number("uscale", 1), p_.number("vscale", 1), du, dv}};
+        const Imath::M44d from_world = texture_space("");
+        if (word == "cylindrical") return {{}, Projection::cylindrical, from_world};
+        // The angle from the pole comes first: mirrored and turned by a right angle.
+        if (word == "spherical") return {{1, -1, 0, 0, 0, 1}, Projection::spherical, from_world};
+        const Imath::V3d v1 = p_.point("v1", {1, 0, 0}), v2 = p_.point("v2", {0, 1, 0});
+        const Imath::M44d along(v1.x, v2.x, 0, 0, v1.y, v2.y, 0, 0, v1.z, v2.z, 0, 0, 0, 0, 0, 1);
+        return {{1, 1, du, dv}, Projection::planar, from_world * along};
     }
+    Imath::M44d texture_space(Key /*to_world*/) override { return to_world_.inverse(); }
 
     double refractive_index(Key key) override {
         const Parameter* eta = p_.find(key.pbrt, {"float", "integer", "spectrum", "rgb"});
@@ -117,6 +126,12 @@ class PbrtProperties final : public Properties {
         Imath::V3d w;
         to_world_.multDirMatrix(p_.point(to.pbrt, Imath::V3d(0, 0, 1)) - p_.point(from.pbrt, Imath::V3d(0.0)), w);
         if (!(w.length() > 0)) fail("found 'from' and 'to' at one place, expected two");
+        return Vec3(w.normalized());
+    }
+    Vec3 axis(Key key, const Vec3& otherwise) override {
+        Imath::V3d w;
+        to_world_.multDirMatrix(p_.point(key.pbrt, Imath::V3d(otherwise)), w);
+        if (!(w.length() > 0)) fail(fmt::format("found no direction as '{}', expected one with a length", key.pbrt));
         return Vec3(w.normalized());
     }
     /// Without its scale, as directions have none.
@@ -172,20 +187,21 @@ Made read_kind(Parameters& p, std::string_view what, const std::string& name, co
     }
 }
 
-template <class T> std::shared_ptr<const Texture<T>> read_texture(Parameters& p, const Library& library) {
-    PbrtProperties properties(p, library);
+template <class T>
+std::shared_ptr<const Texture<T>> read_texture(Parameters& p, const Library& library, const Transform& to_world) {
+    PbrtProperties properties(p, library, to_world);
     return read_kind(p, "texture", p.directive().words[2], texture_kinds<T>(),
                      [&](const auto& kind) { return kind.read(properties); });
 }
 
 } // namespace
 
-void define_texture(Parameters& p, Library& library) {
+void define_texture(Parameters& p, Library& library, const Transform& to_world) {
     const auto& words = p.directive().words;
     if (words[1] == "float")
-        library.numbers[words[0]] = read_texture<double>(p, library);
+        library.numbers[words[0]] = read_texture<double>(p, library, to_world);
     else if (words[1] == "spectrum" || words[1] == "color") // v3
-        library.colors[words[0]] = read_texture<Rgb>(p, library);
+        library.colors[words[0]] = read_texture<Rgb>(p, library, to_world);
     else
         p.fail(fmt::format("found the type '{}' of a texture, expected spectrum or float", words[1]));
     p.warn_of_the_rest();

@@ -36,7 +36,7 @@ struct Library {
 // reads are warned of.
 
 /// A `Texture` directive.
-void define_texture(Parameters& parameters, Library& library);
+void define_texture(Parameters& parameters, Library& library, const Transform& to_world);
 /// A `MakeNamedMaterial` directive, whose type is a parameter.
 void define_material(Parameters& parameters, Library& library);
 /// A `MakeNamedMedium` directive.

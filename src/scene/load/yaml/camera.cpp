@@ -39,7 +39,8 @@ ImageWindow CameraReader::window() const {
 void CameraReader::read_camera(const YamlNode& section) {
     constexpr NumberRange kFov{"a field of view in degrees", 0.001, 179};
     constexpr NumberRange kLens{"a radius", 0, 1e12};
-    const MapReader map(section, "a camera", {"from", "to", "up", "fov", "shift", "lens_radius", "focus_distance"});
+    const MapReader map(section, "a camera",
+                        {"from", "to", "up", "fov", "orthographic", "shift", "lens_radius", "focus_distance"});
     if (const YamlNode* from = map.find("from")) from_ = read_vec3(*from, kCoordinate);
     if (const YamlNode* to = map.find("to")) to_ = read_vec3(*(to_node_ = to), kCoordinate);
     if (const YamlNode* up = map.find("up")) {
@@ -47,6 +48,16 @@ void CameraReader::read_camera(const YamlNode& section) {
         if (!(up_.length() > 0)) fail(*up, "found the direction [0, 0, 0], expected one with a length");
     }
     if (const YamlNode* fov = map.find("fov")) fov_ = read_number(*fov, kFov);
+    if (const YamlNode* size = map.find("orthographic")) {
+        for (const char* key : {"fov", "lens_radius"})
+            if (const YamlNode* other = map.find(key))
+                fail(*other, fmt::format("found '{}' beside 'orthographic', expected one of them", key));
+        orthographic_ = read_number(*size, {"a length", 1e-9, 1e9});
+        fov_.reset();
+        lens_radius_.reset();
+    } else if (fov_ && map.find("fov") != nullptr) {
+        orthographic_.reset();
+    }
     if (const YamlNode* shift = map.find("shift")) {
         const auto xy = read_numbers(*shift, 2, {"a shift", -100, 100});
         shift_ = Imath::V2d(xy[0], xy[1]);
@@ -61,6 +72,7 @@ void CameraReader::set_base(const CameraParameters& camera, const ImageWindow& w
     from_.reset();
     to_.reset();
     fov_.reset();
+    orthographic_.reset();
     lens_radius_.reset();
     focus_distance_.reset();
     shift_.reset();
@@ -79,11 +91,16 @@ CameraParameters CameraReader::camera(const YamlNode& scene) const {
 
 CameraParameters CameraReader::uncropped(const YamlNode& scene) const {
     CameraParameters camera = base_.value_or(CameraParameters{});
+    std::optional<double> size = orthographic_;
+    if (!size && !fov_ && camera.near > 0) size = static_cast<double>(camera.near) / kOrthographicDistance;
+    camera.origin += camera.forward * camera.near;
+    camera.near = 0;
+    const auto finished = [&] { return size ? orthographic(camera, *size) : camera; };
     if (fov_) camera.fov_degrees = static_cast<float>(*fov_);
     if (lens_radius_) camera.lens_radius = static_cast<float>(*lens_radius_);
     if (focus_distance_) camera.focus_distance = static_cast<float>(*focus_distance_);
     if (shift_) camera.shift = *shift_;
-    if (base_ && !from_ && !to_) return camera;
+    if (base_ && !from_ && !to_) return finished();
     if (!from_ || !to_)
         fail(scene, fmt::format("found no '{}' of the camera, expected camera: {{from: [x, y, z], to: [x, y, z]}}",
                                 from_ ? "to" : "from"));
@@ -98,7 +115,7 @@ CameraParameters CameraReader::uncropped(const YamlNode& scene) const {
     camera.right = Vec3(right.normalized());
     camera.up = Vec3(right.normalized().cross(forward));
     if (!focus_distance_) camera.focus_distance = static_cast<float>(view.length());
-    return camera;
+    return finished();
 }
 
 } // namespace keyhole

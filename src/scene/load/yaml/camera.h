@@ -38,7 +38,7 @@ class CameraReader {
     Imath::V3d up_{0, 1, 0};
     const YamlNode* to_node_ = nullptr; ///< for messages, as the next
     const YamlNode* up_node_ = nullptr;
-    std::optional<double> fov_, lens_radius_, focus_distance_;
+    std::optional<double> fov_, orthographic_, lens_radius_, focus_distance_;
     std::optional<Imath::V2d> shift_;
     std::optional<CropWindow> crop_;
     const YamlNode* crop_node_ = nullptr;

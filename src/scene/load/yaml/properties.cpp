@@ -7,7 +7,7 @@
 namespace keyhole {
 namespace {
 
-constexpr NumberRange kIor{"a refractive index", 0.01, 100};
+constexpr NumberRange kIor{"a refractive index", 0.01, 1e4}; // the most reflects 99.96 % at least
 constexpr NumberRange kAlpha{"a roughness", 0, 1};
 
 template <class T> std::shared_ptr<const Texture<T>> read_texture(const YamlNode& node, const NumberRange& range);
@@ -59,14 +59,28 @@ class YamlProperties final : public Properties {
         const YamlNode* node = find(key);
         return node != nullptr ? read_texture<Rgb>(*node, range) : nullptr;
     }
-    UvMapping mapping() override {
+    TextureMapping mapping() override {
         const auto pair = [&](std::string_view key, double otherwise) {
             const YamlNode* node = map_.find(key);
             return node != nullptr ? read_numbers(*node, 2, kFactor) : std::vector<double>(2, otherwise);
         };
         const auto repeat = pair("repeat", 1), shift = pair("shift", 0);
         const double turn = number("rotate", {"an angle in degrees", -1e6, 1e6}, 0) * kPi / 180;
-        return {repeat[0], repeat[1], shift[0], shift[1], std::cos(turn), std::sin(turn)};
+        const UvMapping coordinates{repeat[0], repeat[1], shift[0], shift[1], std::cos(turn), std::sin(turn)};
+        using enum Projection;
+        const std::string word = choice("mapping", "a mapping", {"uv", "planar", "spherical", "cylindrical"});
+        if (word == "uv" && has("transform"))
+            fail_at("transform", "found 'transform' without 'mapping', expected both");
+        if (word == "uv") return {coordinates};
+        return {coordinates,
+                word == "planar"      ? planar
+                : word == "spherical" ? spherical
+                                      : cylindrical,
+                texture_space("transform")};
+    }
+    Imath::M44d texture_space(Key to_world) override {
+        const YamlNode* node = find(to_world);
+        return node != nullptr ? read_transform(*node).inverse() : Imath::M44d();
     }
 
     double refractive_index(Key key) override { return number(key, kIor, 1.5); }
@@ -90,6 +104,13 @@ class YamlProperties final : public Properties {
         if (!(w.length() > 0))
             keyhole::fail(aim, by_places ? fmt::format("found 'to' at the {}, expected another point", from.yaml)
                                          : "found the direction [0, 0, 0], expected one that leads somewhere");
+        return Vec3(w.normalized());
+    }
+    Vec3 axis(Key key, const Vec3& otherwise) override {
+        const YamlNode* node = find(key);
+        if (node == nullptr) return otherwise;
+        const Imath::V3d w = read_vec3(*node, kCoordinate);
+        if (!(w.length() > 0)) keyhole::fail(*node, "found the direction [0, 0, 0], expected one with a length");
         return Vec3(w.normalized());
     }
     Imath::M33d rotation(Key key) override {

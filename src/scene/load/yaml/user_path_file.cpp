@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <span>
+#include <string_view>
 
 namespace keyhole {
 namespace {
@@ -107,6 +109,9 @@ UserPathSpec with_bounces(UserPathSpec path, std::int64_t count) {
     return path;
 }
 
+/// What tells the paths of one entry apart.
+std::string bounces_text(std::int64_t count) { return fmt::format(", {} bounces", count); }
+
 /// One path, or one for each number of bounces.
 std::vector<UserPathSpec> read_paths(const YamlNode& node, std::size_t number, const Defaults& defaults) {
     const MapReader map(node, "a user path", {"name", "weight", "points", "beta", "patch", "tolerance"});
@@ -125,17 +130,33 @@ std::vector<UserPathSpec> read_paths(const YamlNode& node, std::size_t number, c
     path.patch = read_length(map, "patch", defaults.patch);
     path.tolerance = read_length(map, "tolerance", defaults.tolerance);
     if (!list.bounces) return {path};
-    // As the light grows weaker from one to the next.
-    constexpr double kNext = 0.85;
     const Bounces range = *list.bounces;
-    const double total = (1 - std::pow(kNext, range.most - range.least + 1)) / (1 - kNext);
+    const double total = (1 - std::pow(kNextBounce, range.most - range.least + 1)) / (1 - kNextBounce);
     std::vector<UserPathSpec> paths;
     for (std::int64_t n = range.least; n <= range.most; ++n) {
         paths.push_back(with_bounces(path, n));
-        paths.back().weight *= std::pow(kNext, n - range.least) / total;
-        if (range.most > range.least) paths.back().name += fmt::format(", {} bounces", n);
+        paths.back().weight *= std::pow(kNextBounce, n - range.least) / total;
+        if (range.most > range.least) paths.back().name += bounces_text(n);
     }
     return paths;
+}
+
+std::int64_t bounces_of(const UserPathSpec& path) {
+    return std::ranges::count_if(path.points, [](const UserPathPoint& p) { return p.bounce; });
+}
+
+/// The name without its number of bounces.
+std::string_view entry_name(const UserPathSpec& path) {
+    const std::string bounces = bounces_text(bounces_of(path));
+    std::string_view name = path.name;
+    if (name.ends_with(bounces)) name.remove_suffix(bounces.size());
+    return name;
+}
+
+/// Whether two paths are of one entry: the second has one bounce more.
+bool follows(const UserPathSpec& path, const UserPathSpec& next) {
+    return bounces_of(path) > 0 && bounces_of(next) == bounces_of(path) + 1 && entry_name(path) != path.name &&
+           entry_name(path) == entry_name(next);
 }
 
 /// A word in YAML's single quotes.
@@ -143,6 +164,34 @@ std::string quoted(const std::string& word) {
     std::string s = "'";
     for (const char c : word) s += c == '\'' ? std::string("''") : std::string(1, c);
     return s + "'";
+}
+
+/// Paths of one entry.
+std::string entry_text(std::span<const UserPathSpec> paths) {
+    const UserPathSpec& path = paths.front();
+    const std::int64_t bounces = bounces_of(path);
+    double weight = 0;
+    for (const UserPathSpec& p : paths) weight += p.weight;
+    std::string text = fmt::format("  - name: {}\n    weight: {:.4g}\n    beta: [",
+                                   quoted(paths.size() > 1 ? std::string(entry_name(path)) : path.name), weight);
+    for (auto i = static_cast<std::size_t>(bounces); i < path.beta.size(); ++i)
+        text += fmt::format("{}{:.3g}", i > static_cast<std::size_t>(bounces) ? ", " : "", path.beta[i] * 180 / kPi);
+    text += "]\n";
+    if (path.patch) text += fmt::format("    patch: {:.4g}\n", *path.patch);
+    if (path.tolerance) text += fmt::format("    tolerance: {:.4g}\n", *path.tolerance);
+    text += "    points:\n";
+    const auto list = [](const Imath::V3d& p) { return fmt::format("[{:.7g}, {:.7g}, {:.7g}]", p.x, p.y, p.z); };
+    for (const UserPathPoint& p : path.points) {
+        if (p.bounce) continue;
+        if (const auto& o = p.through)
+            text +=
+                fmt::format("      - through: {{corner: {}, u: {}, v: {}}}\n", list(o->corner), list(o->u), list(o->v));
+        text += fmt::format("      - {}\n", list(p.p));
+        if (&p != path.points.data() || bounces == 0) continue;
+        text += paths.size() > 1 ? fmt::format("      - bounces: [{}, {}]\n", bounces, bounces_of(paths.back()))
+                                 : fmt::format("      - bounces: {}\n", bounces);
+    }
+    return text;
 }
 
 } // namespace
@@ -176,26 +225,11 @@ std::string user_paths_text(const UserPathFile& file, const std::string& comment
         at = end + 1;
     }
     text += "paths:\n";
-    const auto degrees = [](double radians) { return radians * 180 / kPi; };
-    for (const UserPathSpec& path : file.paths) {
-        text += fmt::format("  - name: {}\n    weight: {:.4g}\n    beta: [", quoted(path.name), path.weight);
-        const auto is_bounce = [](const UserPathPoint& p) { return p.bounce; };
-        const auto bounces = std::count_if(path.points.begin(), path.points.end(), is_bounce);
-        for (std::size_t i = static_cast<std::size_t>(bounces); i < path.beta.size(); ++i)
-            text += fmt::format("{}{:.3g}", i > static_cast<std::size_t>(bounces) ? ", " : "", degrees(path.beta[i]));
-        text += "]\n";
-        if (path.patch) text += fmt::format("    patch: {:.4g}\n", *path.patch);
-        if (path.tolerance) text += fmt::format("    tolerance: {:.4g}\n", *path.tolerance);
-        text += "    points:\n";
-        const auto list = [](const Imath::V3d& p) { return fmt::format("[{:.7g}, {:.7g}, {:.7g}]", p.x, p.y, p.z); };
-        for (const UserPathPoint& p : path.points) {
-            if (p.bounce) continue;
-            if (const auto& o = p.through)
-                text += fmt::format("      - through: {{corner: {}, u: {}, v: {}}}\n", list(o->corner), list(o->u),
-                                    list(o->v));
-            text += fmt::format("      - {}\n", list(p.p));
-            if (&p == path.points.data() && bounces > 0) text += fmt::format("      - bounces: {}\n", bounces);
-        }
+    for (auto path = file.paths.begin(); path != file.paths.end();) {
+        auto end = path + 1;
+        while (end != file.paths.end() && follows(*(end - 1), *end)) ++end;
+        text += entry_text({path, end});
+        path = end;
     }
     return text;
 }

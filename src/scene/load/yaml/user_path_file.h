@@ -13,6 +13,8 @@ namespace keyhole {
 /// A parallelogram in the air, world space [m].
 struct Opening {
     Imath::V3d corner, u, v; ///< a corner, and the edges that leave it
+
+    Imath::V3d centre() const { return corner + (u + v) / 2; }
 };
 
 /// A point of a user path as it is given.
@@ -41,6 +43,8 @@ struct UserPathFile {
 
 /// Half-angle where a file gives none [rad].
 constexpr double kDefaultBeta = 5 * kPi / 180;
+/// How the weights of an entry's paths fall from one number of bounces to the next, as the light grows weaker.
+constexpr double kNextBounce = 0.85;
 /// Most points of a path; more are taken for a mistake in the file.
 constexpr std::size_t kMostUserPoints = 31;
 

@@ -1,8 +1,9 @@
-#include "methods/photons/sampler_trial.h"
+#include "methods/photons/trials/sampler_trial.h"
 
 #include "core/shared_work.h"
 #include "core/statistics.h"
 #include "methods/photons/radii.h"
+#include "methods/photons/trials/trial_measures.h"
 #include "photonmap/importance/importance_guide.h"
 #include "photonmap/importance/importance_tracing.h"
 #include "sampling/brightness.h"
@@ -37,25 +38,6 @@ struct Extent {
     }
 };
 
-/// What a mutation does besides tracing rays, measuring paths in the main, costs as much as several rays of light
-/// tracing.
-constexpr double kMutationRay = 3;
-
-constexpr int kCells = 4; // along each axis
-constexpr std::size_t kPartsOfTrial = std::size_t{kCells} * kCells * kCells;
-using Shares = std::array<double, kPartsOfTrial>;
-
-/// The part of the scene that a point lies in: equal cells of its bounding box.
-std::size_t part(const Scene& scene, const Vec3& p) {
-    std::size_t index = 0;
-    for (int k = 0; k < 3; ++k) {
-        const float extent = scene.upper()[k] - scene.lower()[k];
-        const float x = extent > 0 ? (p[k] - scene.lower()[k]) / extent : 0.0f;
-        index = index * kCells + static_cast<std::size_t>(std::clamp(static_cast<int>(x * kCells), 0, kCells - 1));
-    }
-    return index;
-}
-
 /// Variance of the parts' shares from one sample to the next, summed, over the square of the total.
 double relative_variance(const std::vector<Shares>& samples) {
     std::array<RunningStats, kPartsOfTrial> parts;
@@ -82,7 +64,7 @@ struct VisiblePower {
         const StorageRule::Kinds kinds = rule(v, to_light, past);
         double visible = kinds.global ? global.visible_power(v, to_light, power).value_or(0) : 0;
         if (kinds.caustic) visible += caustic.visible_power(v, to_light, power).value_or(0);
-        shares[part(scene, v.point.p)] += visible;
+        shares[part_of_scene(scene, v.point.p)] += visible;
         return true;
     }
 };
@@ -140,7 +122,7 @@ double try_metropolis(const SamplerContext& c, const RunContext& run) {
             chain.step([&](const Path& path, double weight) {
                 if (path.storage.kind == PhotonKind::none) return;
                 const Vertex& stored = path.x[static_cast<std::size_t>(path.storage.vertex)];
-                samples[k][part(c.scene, stored.point.p)] += weight / kSteps;
+                samples[k][part_of_scene(c.scene, stored.point.p)] += weight / kSteps;
             });
     });
     // A chain is one sample, of kSteps times the work of a step.

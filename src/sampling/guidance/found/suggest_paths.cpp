@@ -1,6 +1,5 @@
-#include "sampling/guidance/suggest_paths.h"
+#include "sampling/guidance/found/suggest_paths.h"
 
-#include "core/error.h"
 #include "core/parallel.h"
 #include "sampling/guidance/user_paths.h"
 #include "sampling/proposals/edit.h"
@@ -80,15 +79,6 @@ UserPathSpec spec_of(const Candidate& middle, const std::vector<const Candidate*
     return spec;
 }
 
-bool works(const Scene& scene, const UserPathSpec& spec) {
-    try {
-        bind_user_path(scene, spec);
-        return true;
-    } catch (const InputError&) {
-        return false; // a grazing segment, or rounding along a chain of mirrors
-    }
-}
-
 /// Names, and weights with a mean of about 1.
 void finish(UserPathFile& file) {
     double total = 0;
@@ -118,7 +108,7 @@ UserPathFile suggest_user_paths(const Scene& scene, const StageOneSettings& firs
         std::vector<const Candidate*> cluster;
         for (const Candidate& c : left)
             if (alike(middle, c, radius)) cluster.push_back(&c);
-        if (UserPathSpec spec = spec_of(middle, cluster); works(scene, spec)) {
+        if (UserPathSpec spec = spec_of(middle, cluster); binds(scene, spec)) {
             file.paths.push_back(std::move(spec));
             std::erase_if(left, [&](const Candidate& c) { return alike(middle, c, radius); });
         } else {

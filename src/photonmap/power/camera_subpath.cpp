@@ -1,4 +1,4 @@
-#include "photonmap/camera_subpath.h"
+#include "photonmap/power/camera_subpath.h"
 
 #include "sampling/paths/measure.h"
 #include "sampling/paths/random_walk.h"

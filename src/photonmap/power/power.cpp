@@ -1,4 +1,4 @@
-#include "photonmap/power.h"
+#include "photonmap/power/power.h"
 
 #include <cmath>
 

@@ -1,0 +1,112 @@
+// keyhole inspect: a page that shows where the light goes.
+#include "cli/command.h"
+#include "cli/inspect/page_data.h"
+#include "cli/inspect/user_path_entries.h"
+#include "cli/page/page_parts.h"
+#include "cli/progress/interrupt.h"
+#include "cli/resolution.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "film/files/atomic_file.h"
+#include "methods/choice/effort.h"
+#include "methods/method.h"
+#include "scene/load/load.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+namespace keyhole {
+namespace {
+
+struct InspectOptions {
+    std::string scene, output, user_paths, resolution, save_map;
+    std::vector<std::string> overrides;
+    InspectionLimits limits;
+    int threads = 0;
+};
+
+/// A picture of about so many pixels: what a page can hold of each.
+constexpr double kPixels = 22'000, kMostPixels = 100'000;
+
+void choose_resolution(ImageWindow& window, const std::string& given) {
+    if (!given.empty()) {
+        set_resolution(window, given);
+        if (window.size() > kMostPixels)
+            throw InputError(fmt::format("found --resolution {}, expected at most {:.0f} pixels: the page holds what "
+                                         "each of them sees",
+                                         given, kMostPixels));
+        return;
+    }
+    const double shrink = std::min(1.0, std::sqrt(kPixels / window.size()));
+    window.width = std::max(1, static_cast<int>(std::lround(window.width * shrink)));
+    window.height = std::max(1, static_cast<int>(std::lround(window.height * shrink)));
+}
+
+/// A draft, by photons: what a scene asks for, with what the user says on top.
+Settings preview_settings(const Settings& settings, const std::vector<std::string>& overrides) {
+    std::set<std::string> named{"passes"};
+    for (const std::string& o : overrides) named.insert(o.substr(0, o.find('=')));
+    Settings s = with_quality(settings, Quality::draft, named);
+    if (!named.contains("spp")) s.spp = std::max<std::int64_t>(1, s.spp / 2); // there are two renders
+    s.passes = 1;
+    s.target_error = 0;
+    if (!s.method->keeps_photons && !named.contains("method")) s.method = &methods::ipm;
+    if (s.method == &methods::automatic) s.method = &methods::ipm;
+    return s;
+}
+
+int run(InspectOptions o) {
+    const std::string name = std::filesystem::path(o.scene).stem().string();
+    if (o.output.empty()) o.output = name + ".html";
+    check_writable(o.output);
+    LoadedScene loaded = load(o.scene, o.overrides);
+    if (!o.user_paths.empty()) loaded.user_paths = load_user_paths(o.user_paths);
+    choose_resolution(loaded.description.window, o.resolution);
+    Settings settings = preview_settings(loaded.settings, o.overrides);
+    settings.save_map = o.save_map;
+    StopToken stop;
+    const InterruptHandler interrupts(stop);
+    RunContext context;
+    context.stop = &stop;
+    std::string page;
+    with_threads(o.threads, [&] {
+        Scene scene(std::move(loaded.description));
+        const UserPaths paths = bind_user_paths(scene, working_paths(loaded.user_paths, scene));
+        const auto start = std::chrono::steady_clock::now();
+        const Inspection inspection = inspect_scene(scene, settings, paths, o.limits, context);
+        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+        page = kInspectionPage.with(page_data(scene, inspection, {name, took.count(), loaded.user_paths}).dump());
+    });
+    if (stop.requested()) return kInterrupted;
+    write_file_atomically(o.output, page);
+    fmt::print(stderr, "{}: {:.1f} MB\n", o.output, 1e-6 * static_cast<double>(page.size()));
+    return kSuccess;
+}
+
+} // namespace
+
+void add_inspect_command(CLI::App& app, Action& action) {
+    CLI::App* command = app.add_subcommand("inspect", "Show where the light goes, on a page in 3-D");
+    auto o = std::make_shared<InspectOptions>();
+    command->add_option("SCENE", o->scene, "scene file (YAML, or .pbrt)")->required();
+    command->add_option("-o,--output", o->output, "page to write (.html); default: the scene's name, in this folder");
+    command->add_option("--user-paths", o->user_paths, "user paths, instead of the scene's");
+    command->add_option("--resolution", o->resolution, "WIDTHxHEIGHT in pixels; default: about 22,000 of them");
+    command->add_option("-D", o->overrides, "any setting of the preview, KEY=VALUE; by default method=ipm")
+        ->allow_extra_args(false);
+    command->add_option("--photons", o->limits.photons, "most photons on the page")
+        ->capture_default_str()
+        ->check(CLI::Range(1000, 200'000));
+    command->add_option("--triangles", o->limits.triangles, "most triangles on the page; meshes are simplified")
+        ->capture_default_str()
+        ->check(CLI::Range(1000, 1'000'000));
+    command->add_option("--save-map", o->save_map, "write the photons of the preview to this file");
+    command->add_option("-t,--threads", o->threads, "threads; 0: one for each core")->check(CLI::Range(0, 4096));
+    command->callback([&action, o] { action = [o] { return run(*o); }; });
+}
+
+} // namespace keyhole

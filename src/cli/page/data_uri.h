@@ -1,0 +1,15 @@
+// Files inside of pages.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace keyhole {
+
+std::string base64(const std::string& bytes);
+
+/// A PNG, of pixels with 3 channels (sRGB) or 1 (grey).
+std::string png_uri(int width, int height, int channels, const std::vector<std::uint8_t>& pixels);
+
+} // namespace keyhole

@@ -1,0 +1,18 @@
+// Pages, each from the files of its folder page/, which the build puts into the program.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace keyhole {
+
+/// HTML with all styles and scripts in it, up to where the data stand, and from there on.
+struct PageParts {
+    std::string_view before_data, after_data;
+
+    /// The page with these data, JSON.
+    std::string with(std::string data) const;
+};
+extern const PageParts kChartPage, kInspectionPage;
+
+} // namespace keyhole

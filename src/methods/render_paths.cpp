@@ -1,0 +1,76 @@
+#include "methods/render_paths.h"
+
+#include "methods/method.h"
+#include "sampling/guidance/found/find_openings.h"
+#include "sampling/guidance/found/guidance_gain.h"
+#include "sampling/guidance/found/passages.h"
+#include "session/stage_clock.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace keyhole {
+namespace {
+
+constexpr Stage kOpenings{"openings"};
+
+/// Of the time, and pairs of places for each light path where there is no limit to the time.
+constexpr std::int64_t kPaths = 1024; // from either end
+constexpr double kTimeOfLooking = 0.02;
+constexpr std::int64_t kLightPathsOfPair = 8, kMostPairs = std::int64_t{1} << 20, kLeastPairs = 4096;
+
+bool has_emitters_with_a_place(const Scene& scene) {
+    return std::ranges::any_of(scene.emitters(), [](const auto& e) { return e->site() != Site::infinite; });
+}
+
+bool has_openings(const UserPaths& paths) {
+    return std::ranges::any_of(paths, [](const UserPath& path) {
+        return std::ranges::any_of(path.vertices, [](const UserVertex& v) { return v.portal.has_value(); });
+    });
+}
+
+OpeningSearch search_of(const Settings& settings, const RunContext& context) {
+    OpeningSearch search{.pairs = kMostPairs,
+                         .max_scatterings = static_cast<int>(settings.max_depth),
+                         .seed = static_cast<std::uint64_t>(settings.seed)};
+    const double left = context.seconds_left();
+    if (std::isfinite(left))
+        search.seconds = kTimeOfLooking * left;
+    else
+        search.pairs = std::clamp(settings.light_paths / kLightPathsOfPair, kLeastPairs, kMostPairs);
+    return search;
+}
+
+} // namespace
+
+RenderPaths::RenderPaths(const Scene& scene, const Settings& settings, const UserPathFile& given,
+                         const RunContext& context)
+    : paths_(bind_user_paths(scene, given)) {
+    if (!settings.find_openings || !settings.method->follows_user_paths || !settings.load_map.empty() ||
+        !has_emitters_with_a_place(scene) || (!paths_.empty() && !has_openings(paths_)))
+        return;
+    const StageClock clock(own_, kOpenings);
+    const OpeningSearch search = search_of(settings, context);
+    const TransportEnds ends = trace_transport_ends(scene, kPaths, search.seed, context);
+    if (light_finds_its_way(scene, ends, search.seed, context)) return;
+    if (!paths_.empty()) {
+        const LightGuides guides(scene, paths_);
+        own_.values["gain by openings"] = gain_ =
+            std::max(1.0, gain_by_guides(scene, guides, ends.eye, search.seed, context));
+        return;
+    }
+    const OpeningsFound found = find_openings(scene, ends, search, context);
+    if (found.paths.paths.empty()) return;
+    paths_ = bind_user_paths(scene, found.paths);
+    own_.values["openings found"] = found.openings;
+    own_.values["gain by openings"] = gain_ = found.gain;
+    own_.remarks.push_back(fmt::format("light is led through {}: {:.2g} times fewer light paths do as well",
+                                       found.openings == 1 ? "an opening that was found"
+                                                           : fmt::format("{} openings that were found", found.openings),
+                                       found.gain));
+}
+
+} // namespace keyhole

@@ -1,0 +1,31 @@
+// The user paths that a render follows: those that it is given, or those that it finds.
+#pragma once
+
+#include "core/progress.h"
+#include "core/render_stats.h"
+#include "core/settings.h"
+#include "sampling/guidance/user_paths.h"
+
+namespace keyhole {
+
+class RenderPaths {
+  public:
+    /// Binds what `given` says, and where that has openings finds out what they bring. Where that is nothing, and the
+    /// method that the settings name follows user paths, looks for openings that light has to pass, for a small share
+    /// of the time if that is limited.
+    /// @throws InputError as bind_user_paths(), and Interrupted
+    RenderPaths(const Scene& scene, const Settings& settings, const UserPathFile& given, const RunContext& context);
+
+    const UserPaths& paths() const { return paths_; }
+    /// By how much fewer light paths do as well with them where they lead through openings; else 1.
+    double gain() const { return gain_; }
+    /// Adds what looking took, and what it found.
+    void report(RenderStats& stats) const { stats.begin_with(own_); }
+
+  private:
+    UserPaths paths_;
+    double gain_ = 1;
+    RenderStats own_;
+};
+
+} // namespace keyhole

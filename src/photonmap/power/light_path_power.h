@@ -1,0 +1,32 @@
+// The density with which light tracing makes a given light sub-path, as the power that it carries along it.
+#pragma once
+
+#include "sampling/guidance/guided_subpath.h"
+#include "sampling/guidance/learned_emission.h"
+#include "scene/scene.h"
+
+#include <optional>
+
+namespace keyhole {
+
+/// How light tracing makes light paths. What they point to must outlive this.
+struct LightPathSampling {
+    const LightGuides* user_paths = nullptr;  ///< that half of the light paths follow, where there are any
+    const LearnedEmission* learned = nullptr; ///< where light paths begin if there are no user paths; null: by power
+
+    bool guided() const { return user_paths != nullptr && !user_paths->empty(); }
+    /// The learned emission that is in force, if there is any.
+    const LearnedEmission* emission() const { return guided() ? nullptr : learned; }
+};
+
+/// F(X) / p(X) [W] of light sub-path X, vertices 0 to `last` of `path`: flux over the density of light tracing, every
+/// way to make X summed: choice of emitter, place and direction, scattering, walks along user paths, survival of
+/// roulette. That is the power with which light tracing arrives there; under a learned emission that resamples
+/// directions, the power that it would have by the density of infinitely many candidates. None where light tracing
+/// never makes X. Reads points, BSDFs and events of the vertices only.
+std::optional<Rgb> light_path_power(const Scene& scene, const LightPathSampling& sampling, const Path& path, int last);
+
+/// The power of light_path_power() over that which `light` was emitted with: 1 but where directions are resampled.
+double expected_over_emitted(const Scene& scene, const LightPathSampling& sampling, const EmittedLight& light);
+
+} // namespace keyhole

@@ -1,0 +1,49 @@
+// The balance heuristic (Veach 1997, section 9.2) between the two techniques that make photons: chains over whole paths
+// and independent light paths. docs/photon-maps.md derives it.
+#pragma once
+
+#include "photonmap/photon_weighing.h"
+#include "photonmap/power/light_path_power.h"
+
+#include <limits>
+
+namespace keyhole {
+
+/// N_c steps of chains visit light sub-path X with density C(X) / B, where C = Y(F E) is its visible power, N_i light
+/// paths make it with density p(X). Over both, the share of chains is N_c C / B / (N_c C / B + N_i p), which depends on
+/// the visible power V = Y(F E) / p of light tracing's photon alone. Weights add up to one whatever estimate of V they
+/// are computed from, as long as it is a function of X for both techniques.
+class TechniqueWeights {
+  public:
+    /// `odds`: N_c / (N_i B), the number of steps for each light path over the brightness [(m^2 sr)/W]. What `guide`
+    /// and `sampling` refer to must outlive this.
+    TechniqueWeights(const EmissionGuide& guide, const LightPathSampling& sampling, double odds)
+        : weighing_{guide}, sampling_(sampling), odds_(odds) {}
+
+    /// Share of chains in photons that light tracing would make with visible power V. Where importance is unknown it
+    /// stores everything that it can make.
+    double of_chains(const PhotonWeighing::Weight& visible) const {
+        return visible.known ? 1 / (1 + 1 / (odds_ * visible.value)) : 0.0;
+    }
+    /// That of light tracing, of one with weight `visible` where `scale` times that is V.
+    double of_light_path(PhotonWeighing::Weight visible, double scale) const {
+        visible.value *= scale;
+        return 1 - of_chains(visible);
+    }
+    /// V of the photon of `kind` at vertex `at` of `path`; infinite where light tracing never makes it.
+    PhotonWeighing::Weight visible(const Scene& scene, PhotonKind kind, const Path& path, int at) const {
+        const auto power = light_path_power(scene, sampling_, path, at);
+        if (!power) return {std::numeric_limits<double>::infinity(), true};
+        const auto i = static_cast<std::size_t>(at);
+        return weighing_(kind, path.x[i], direction(path.x[i].point, path.x[i - 1].point), *power);
+    }
+
+    const LightPathSampling& sampling() const { return sampling_; }
+
+  private:
+    PhotonWeighing weighing_;
+    LightPathSampling sampling_;
+    double odds_;
+};
+
+} // namespace keyhole

@@ -1,0 +1,169 @@
+#include "scene/load/gltf/document.h"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+namespace keyhole::gltf {
+namespace {
+
+constexpr std::uint32_t kMagic = 0x46546C67, kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
+
+std::uint32_t word_at(const std::string& bytes, std::size_t at) {
+    std::uint32_t word = 0;
+    std::memcpy(&word, bytes.data() + at, sizeof word);
+    return word;
+}
+
+std::string read_bytes(const std::string& path) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error))
+        throw InputError({path, 0, 0}, "found no such file, expected one that glTF names");
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream text;
+    text << file.rdbuf();
+    if (!file) throw InputError({path, 0, 0}, "found a file that can't be read, expected a readable one");
+    return text.str();
+}
+
+/// Characters that are none, line ends for example, are passed over.
+std::string from_base64(std::string_view text) {
+    constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string bytes;
+    std::uint32_t bits = 0;
+    int count = 0;
+    for (const char c : text) {
+        const auto digit = kDigits.find(c);
+        if (digit == std::string_view::npos) continue;
+        bits = bits << 6 | static_cast<std::uint32_t>(digit);
+        if ((count += 6) < 8) continue;
+        bytes += static_cast<char>(bits >> (count -= 8) & 0xFF);
+    }
+    return bytes;
+}
+
+/// An URI's %20 and the like.
+std::string unescaped(const std::string& uri) {
+    std::string text;
+    for (std::size_t i = 0; i < uri.size(); ++i) {
+        const bool escaped = uri[i] == '%' && i + 2 < uri.size() &&
+                             std::isxdigit(static_cast<unsigned char>(uri[i + 1])) != 0 &&
+                             std::isxdigit(static_cast<unsigned char>(uri[i + 2])) != 0;
+        text += escaped ? static_cast<char>(std::stoi(uri.substr(i + 1, 2), nullptr, 16)) : uri[i];
+        if (escaped) i += 2;
+    }
+    return text;
+}
+
+bool is_data(const std::string& uri) { return uri.starts_with("data:"); }
+
+/// The ending that tells readers what a picture is.
+std::string ending_of(const std::string& bytes) { return bytes.starts_with("\x89PNG") ? ".png" : ".jpg"; }
+
+} // namespace
+
+Document::Document(const std::string& path, Warnings& warnings) : path_(path), warnings_(warnings) {
+    std::string text = read_bytes(path);
+    if (text.size() >= 20 && word_at(text, 0) == kMagic) {
+        const std::size_t json = word_at(text, 12);
+        if (word_at(text, 16) != kJsonChunk || json > text.size() - 20) fail("found a broken GLB file");
+        const std::size_t second = 20 + json;
+        if (second + 8 <= text.size() && word_at(text, second + 4) == kBinaryChunk)
+            binary_ = text.substr(second + 8, word_at(text, second));
+        text = text.substr(20, json);
+    }
+    try {
+        root_ = Json::parse(text);
+    } catch (const Json::exception& e) {
+        fail(fmt::format("found broken JSON ({}), expected a glTF file", e.what()));
+    }
+    const std::string version = root_.is_object() ? member(root_, "asset").value("version", "") : "";
+    if (!version.starts_with("2.")) fail(fmt::format("found the glTF version '{}', expected 2.0", version));
+}
+
+Document::~Document() {
+    std::error_code ignored;
+    if (!scratch_.empty()) std::filesystem::remove_all(scratch_, ignored);
+}
+
+const Json& Document::entry(const char* list, std::size_t index) const {
+    const auto found = root_.find(list);
+    if (found == root_.end() || !found->is_array() || index >= found->size())
+        fail(fmt::format("found no entry {} of '{}', which is referred to", index, list));
+    return (*found)[index];
+}
+
+Rgb Document::checked_light(const Rgb& light) const {
+    for (const double x : {light.x, light.y, light.z})
+        if (!(x >= 0 && x <= 1e30))
+            fail(fmt::format("found {} as an amount of light, expected at least 0 and at most 1e+30", x));
+    return light;
+}
+
+std::string Document::uri_path(const std::string& uri) const {
+    return (std::filesystem::path(path_).parent_path() / unescaped(uri)).string();
+}
+
+std::string Document::uri_bytes(const std::string& uri) const {
+    if (!is_data(uri)) return read_bytes(uri_path(uri));
+    const auto comma = uri.find(',');
+    if (comma == std::string::npos) fail("found a data URI without data");
+    return from_base64(std::string_view(uri).substr(comma + 1));
+}
+
+std::string Document::buffer_bytes(std::size_t index) const {
+    const Json& buffer = entry("buffers", index);
+    return buffer.contains("uri") ? uri_bytes(buffer["uri"].get<std::string>()) : binary_;
+}
+
+std::string Document::view_bytes(std::size_t index) {
+    const Json& view = entry("bufferViews", index);
+    const std::string bytes = buffer_bytes(view.at("buffer").get<std::size_t>());
+    const auto offset = value_or<std::size_t>(view, "byteOffset", 0), length = view.at("byteLength").get<std::size_t>();
+    if (offset > bytes.size() || length > bytes.size() - offset)
+        fail(fmt::format("found buffer view {} beyond its buffer of {} bytes", index, bytes.size()));
+    return bytes.substr(offset, length);
+}
+
+std::string Document::image_file(std::size_t index) {
+    if (const auto known = written_.find(index); known != written_.end()) return known->second;
+    const Json& image = entry("images", index);
+    const auto uri = value_or<std::string>(image, "uri", "");
+    if (!uri.empty() && !is_data(uri)) return uri_path(uri);
+    const std::string bytes = uri.empty() ? view_bytes(image.at("bufferView").get<std::size_t>()) : uri_bytes(uri);
+    if (scratch_.empty()) {
+        std::string name = (std::filesystem::temp_directory_path() / "keyhole-gltf-XXXXXX").string();
+        if (mkdtemp(name.data()) == nullptr) fail("found no room for the images in the file");
+        scratch_ = name;
+    }
+    const std::string file = (scratch_ / ("image-" + std::to_string(index) + ending_of(bytes))).string();
+    if (!std::ofstream(file, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size())))
+        fail("found no room for the images in the file");
+    return written_[index] = file;
+}
+
+const Json& member(const Json& object, const char* key) {
+    static const Json empty = Json::object();
+    const auto found = object.find(key);
+    return found == object.end() ? empty : *found;
+}
+
+const Json* extension(const Json& object, const char* name) {
+    const Json& all = member(object, "extensions");
+    const auto found = all.find(name);
+    return found == all.end() ? nullptr : &*found;
+}
+
+Rgb color_or(const Json& object, const char* key, const Rgb& otherwise) {
+    const auto found = object.find(key);
+    if (found == object.end()) return otherwise;
+    const auto list = found->get<std::vector<double>>();
+    if (list.size() < 3) throw InputError(fmt::format("found {} numbers in '{}', expected three", list.size(), key));
+    return {list[0], list[1], list[2]};
+}
+
+} // namespace keyhole::gltf

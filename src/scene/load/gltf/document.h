@@ -1,0 +1,68 @@
+// The JSON of a glTF file and the bytes that belong to it.
+#pragma once
+
+#include "scene/load/input.h"
+#include "scene/texture.h"
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+namespace keyhole::gltf {
+
+using Json = nlohmann::json;
+
+class Document {
+  public:
+    /// Reads a .gltf file, or both parts of a .glb one. @throws InputError
+    Document(const std::string& path, Warnings& warnings);
+    ~Document();
+    Document(const Document&) = delete;
+    Document& operator=(const Document&) = delete;
+
+    const Json& root() const { return root_; }
+    /// Entry `index` of one of the lists at the top. @throws InputError where there is none.
+    const Json& entry(const char* list, std::size_t index) const;
+
+    /// The path of a file with an image: its own, or one that lasts as long as this object.
+    std::string image_file(std::size_t index);
+
+    /// An amount of light. @throws InputError where it can't be one.
+    Rgb checked_light(const Rgb& light) const;
+
+    [[noreturn]] void fail(const std::string& message) const { throw InputError({path_, 0, 0}, message); }
+    /// Once for each message.
+    void warn(const std::string& message) const { warnings_.add({path_, 0, 0}, message, message); }
+
+  private:
+    std::string view_bytes(std::size_t index);
+    std::string buffer_bytes(std::size_t index) const;
+    std::string uri_bytes(const std::string& uri) const;
+    std::string uri_path(const std::string& uri) const;
+
+    std::string path_;
+    Warnings& warnings_;
+    Json root_;
+    std::string binary_; ///< second part of a .glb
+    std::filesystem::path scratch_;
+    std::map<std::size_t, std::string> written_; ///< images
+};
+
+/// The value of a key that may be missing. nlohmann's own reports a value of another type.
+template <class T> T value_or(const Json& object, const char* key, const T& otherwise) {
+    const auto found = object.find(key);
+    return found == object.end() ? otherwise : found->get<T>();
+}
+
+/// The object under a key; an empty one where there is none.
+const Json& member(const Json& object, const char* key);
+
+/// Whether an object has an extension, and what that says.
+const Json* extension(const Json& object, const char* name);
+
+/// A colour, or what stands for it if it is not given.
+Rgb color_or(const Json& object, const char* key, const Rgb& otherwise);
+
+} // namespace keyhole::gltf

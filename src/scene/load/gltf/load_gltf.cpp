@@ -1,0 +1,113 @@
+#include "scene/load/load_gltf.h"
+
+#include "scene/emitters/emitters.h"
+#include "scene/load/gltf/materials.h"
+#include "scene/load/gltf/nodes.h"
+#include "scene/load/load_mesh.h"
+#include "scene/material.h"
+
+#include <Imath/ImathBox.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+namespace keyhole {
+namespace {
+
+using gltf::Document;
+using gltf::Json;
+using gltf::Look;
+
+/// Looks at everything from above one corner.
+gltf::View view_of_all(const std::vector<Shape>& shapes) {
+    Imath::Box3d box;
+    for (const Shape& shape : shapes)
+        for (const Vec3& p : std::get<TriangleMesh>(shape.geometry).positions) box.extendBy(Imath::V3d(p));
+    gltf::View view;
+    view.window.width = 640;
+    view.window.height = 480;
+    const Vec3 back = Vec3(0.6F, 0.5F, 1).normalized();
+    const double distance = box.size().length() / 2 / std::sin(view.camera.fov_degrees / 2 * kPi / 180);
+    view.camera.origin = Vec3(box.center()) + back * static_cast<float>(distance);
+    view.camera.forward = -back;
+    view.camera.right = view.camera.forward.cross(Vec3(0, 1, 0)).normalized();
+    view.camera.up = view.camera.right.cross(view.camera.forward);
+    return view;
+}
+
+class SceneBuilder {
+  public:
+    SceneBuilder(const std::string& path, std::vector<std::string>* warnings)
+        : path_(path), warnings_(warnings), document_(path, warnings_) {}
+
+    LoadedScene build() {
+        LoadedScene scene;
+        scene.description.shapes = shapes();
+        gltf::Things things = gltf::read_nodes(document_);
+        scene.description.emitters = std::move(things.emitters);
+        light_up(scene.description);
+        if (!things.view) {
+            document_.warn("found no camera: one sees everything");
+            things.view = view_of_all(scene.description.shapes);
+        }
+        scene.description.camera = things.view->camera;
+        scene.description.window = things.view->window;
+        if (document_.root().contains("animations")) document_.warn("animations are left out");
+        return scene;
+    }
+
+  private:
+    std::vector<Shape> shapes() {
+        std::vector<Shape> shapes;
+        for (MeshPart& part : import_parts(path_)) {
+            const Look& look = look_of(part.material);
+            Shape shape;
+            shape.geometry = std::move(part.mesh);
+            shape.material = look.material;
+            shape.alpha = look.alpha;
+            if (!is_black(look.emission.radiance)) shape.emission = std::make_unique<SurfaceEmission>(look.emission);
+            shapes.push_back(std::move(shape));
+        }
+        return shapes;
+    }
+
+    /// The importer numbers materials as the file does; what lies beyond is its own for meshes that name none.
+    const Look& look_of(std::size_t material) {
+        const auto [known, fresh] = looks_.try_emplace(material);
+        if (!fresh) return known->second;
+        const Json& all = gltf::member(document_.root(), "materials");
+        known->second = gltf::read_look(document_, material < all.size() ? all[material] : Json::object());
+        return known->second;
+    }
+
+    void light_up(SceneDescription& scene) const {
+        if (!scene.emitters.empty() ||
+            std::ranges::any_of(scene.shapes, [](const Shape& s) { return s.emission != nullptr; }))
+            return;
+        document_.warn("found no light: there is a white sky");
+        scene.emitters.push_back(make_constant_environment(Rgb(1.0)));
+    }
+
+    std::string path_;
+    Warnings warnings_;
+    Document document_;
+    std::map<std::size_t, Look> looks_;
+};
+
+} // namespace
+
+bool is_gltf(const std::string& path) {
+    const std::string extension = std::filesystem::path(path).extension().string();
+    return extension == ".gltf" || extension == ".glb";
+}
+
+LoadedScene load_gltf(const std::string& path, std::vector<std::string>* warnings) {
+    try {
+        return SceneBuilder(path, warnings).build();
+    } catch (const Json::exception& e) {
+        throw InputError({path, 0, 0}, std::string("found what glTF doesn't have at that place: ") + e.what());
+    }
+}
+
+} // namespace keyhole

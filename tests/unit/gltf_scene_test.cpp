@@ -1,0 +1,148 @@
+// glTF files as scenes: lights, cameras and materials by the numbers of the format, and broken files.
+#include "core/error.h"
+#include "scene/load/load.h"
+#include "scene/scene.h"
+#include "support/scratch_directory.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <numbers>
+
+namespace keyhole {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+/// A right angle at the origin whose legs are 1 m long along x and y, as base64 of three positions and three indices.
+constexpr const char* kTriangle = R"("buffers": [{"byteLength": 42, "uri":
+  "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAABAAIA"}],
+  "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 6}],
+  "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0],
+                 "max": [1, 1, 0]}, {"bufferView": 1, "componentType": 5123, "count": 3, "type": "SCALAR"}],
+  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "material": 0}]}])";
+
+class GltfScene : public testing::Test {
+  protected:
+    /// @param rest beside the mesh: nodes, materials, lights, cameras
+    LoadedScene read(const std::string& rest) {
+        const std::string path = folder_.path("scene.gltf");
+        std::ofstream(path) << fmt::format(R"({{"asset": {{"version": "2.0"}}, "scene": 0, {}, {}}})", kTriangle, rest);
+        warnings_.clear();
+        return load(path, {}, &warnings_);
+    }
+    std::string error_of(const std::string& rest) {
+        try {
+            read(rest);
+        } catch (const InputError& e) {
+            return e.what();
+        }
+        return "no error";
+    }
+
+    ScratchDirectory folder_;
+    std::vector<std::string> warnings_;
+};
+
+constexpr const char* kPlain = R"("scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}], "materials": [{}])";
+
+TEST_F(GltfScene, WithoutCameraOrLightHasBothAndSaysSo) {
+    const LoadedScene scene = read(kPlain);
+    ASSERT_EQ(scene.description.shapes.size(), 1u);
+    ASSERT_EQ(scene.description.emitters.size(), 1u);
+    EXPECT_THAT(warnings_, Contains(HasSubstr("found no light")));
+    EXPECT_THAT(warnings_, Contains(HasSubstr("found no camera")));
+    const Vec3 to_middle = Vec3(0.5F, 0.5F, 0) - scene.description.camera.origin;
+    EXPECT_GT(to_middle.normalized().dot(scene.description.camera.forward), 0.9999);
+}
+
+TEST_F(GltfScene, LightsAreInWattsByLumens) {
+    const LoadedScene scene = read(R"("materials": [{}], "scenes": [{"nodes": [0, 1]}],
+      "nodes": [{"mesh": 0}, {"translation": [1, 2, 3], "children": [2]},
+                {"scale": [2, 2, 2], "extensions": {"KHR_lights_punctual": {"light": 0}}}],
+      "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 1366, "color": [1, 1, 1]}]}})");
+    ASSERT_EQ(scene.description.emitters.size(), 1u);
+    const Emitter& lamp = *scene.description.emitters.front();
+    EXPECT_NEAR(lamp.power(), 2 * 4 * std::numbers::pi, 1e-5);
+    ASSERT_TRUE(lamp.bounds());
+    EXPECT_LT((lamp.bounds()->lower - Vec3(1, 2, 3)).length(), 1e-6);
+    EXPECT_THAT(warnings_, testing::Not(Contains(HasSubstr("found no light"))));
+}
+
+TEST_F(GltfScene, CameraStandsWhereItsNodeIs) {
+    // A quarter turn about y: what looked along -z looks along -x.
+    const LoadedScene scene = read(R"("materials": [{}], "scenes": [{"nodes": [0, 1]}],
+      "nodes": [{"mesh": 0}, {"camera": 0, "translation": [4, 5, 6], "rotation": [0, 0.70710678, 0, 0.70710678]}],
+      "cameras": [{"type": "perspective", "perspective": {"yfov": 0.5, "aspectRatio": 2, "znear": 0.1}}])");
+    const CameraParameters& camera = scene.description.camera;
+    EXPECT_LT((camera.origin - Vec3(4, 5, 6)).length(), 1e-6);
+    EXPECT_LT((camera.forward - Vec3(-1, 0, 0)).length(), 1e-6);
+    EXPECT_LT((camera.right - Vec3(0, 0, -1)).length(), 1e-6);
+    EXPECT_LT((camera.up - Vec3(0, 1, 0)).length(), 1e-6);
+    EXPECT_NEAR(camera.fov_degrees, 0.5 * 180 / std::numbers::pi, 1e-4);
+    EXPECT_EQ(scene.description.window.width, 640);
+    EXPECT_EQ(scene.description.window.height, 320);
+}
+
+TEST_F(GltfScene, MaterialsEmitAndAreClear) {
+    const LoadedScene scene = read(R"("scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+      "materials": [{"emissiveFactor": [1, 0.5, 0], "doubleSided": true, "alphaMode": "BLEND",
+        "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.25]},
+        "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 4}, "KHR_materials_sheen": {}}}])");
+    const Shape& shape = scene.description.shapes.at(0);
+    ASSERT_NE(shape.emission, nullptr);
+    EXPECT_EQ(shape.emission->radiance, Rgb(4, 2, 0));
+    EXPECT_TRUE(shape.emission->two_sided);
+    ASSERT_NE(shape.alpha, nullptr);
+    EXPECT_EQ(shape.alpha->value({}), 0.25);
+    EXPECT_STREQ(shape.material->kind(), "principled");
+    EXPECT_THAT(warnings_, Contains(HasSubstr("KHR_materials_sheen is left out")));
+}
+
+TEST_F(GltfScene, OpaqueUnlessItSaysSo) {
+    const LoadedScene scene = read(R"("scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+      "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.25]}}])");
+    EXPECT_EQ(scene.description.shapes.at(0).alpha, nullptr);
+    EXPECT_EQ(scene.description.shapes.at(0).emission, nullptr);
+}
+
+TEST_F(GltfScene, BrokenFilesAreErrors) {
+    const std::string start = R"("scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0)";
+    EXPECT_THAT(error_of(start + R"(, "extensions": {"KHR_lights_punctual": {"light": 3}}}], "materials": [{}])"),
+                HasSubstr("found no light 3"));
+    EXPECT_THAT(error_of(start + R"(}], "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 7}}}])"),
+                HasSubstr("textures"));
+    EXPECT_THAT(error_of(start + R"(}], "materials": [{"pbrMetallicRoughness": {"metallicFactor": "much"}}])"),
+                HasSubstr("scene.gltf: "));
+    EXPECT_THAT(error_of(start + R"(}], "textures": [{"source": 0}], "images": [{"uri": "lost.png"}],
+      "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}])"),
+                HasSubstr("lost.png: found no such file"));
+    EXPECT_THAT(
+        error_of(start + R"(}], "textures": [{"source": 0}], "images": [{"bufferView": 0, "mimeType": "image/png"}],
+      "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}])"),
+        HasSubstr("image-0"));
+    EXPECT_THAT(error_of(start + R"(}], "materials": [{"emissiveFactor": [1, -2, 1]}])"),
+                HasSubstr("found -2 as an amount of light"));
+    const auto whole = [&](const std::string& content) {
+        const std::string path = folder_.path("broken.glb");
+        std::ofstream(path, std::ios::binary) << content;
+        try {
+            load(path);
+        } catch (const InputError& e) {
+            return std::string(e.what());
+        }
+        return std::string("no error");
+    };
+    EXPECT_THAT(whole(""), HasSubstr("found broken JSON"));
+    EXPECT_THAT(whole("{}"), HasSubstr("found the glTF version ''"));
+    EXPECT_THAT(whole(R"({"asset": {"version": "1.0"}})"), HasSubstr("found the glTF version '1.0'"));
+    EXPECT_THAT(whole(std::string("glTF\2\0\0\0\x20\0\0\0\xFF\xFF\xFF\x7FJSON{}  ", 24)),
+                HasSubstr("found a broken GLB file"));
+    EXPECT_THAT(whole(R"({"asset": {"version": "2.0"}})"), testing::Not(HasSubstr("no error")));
+}
+
+} // namespace
+} // namespace keyhole

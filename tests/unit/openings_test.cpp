@@ -1,0 +1,158 @@
+// Openings that light has to pass are found where they are, and nowhere else.
+#include "methods/render.h"
+#include "sampling/guidance/found/find_openings.h"
+#include "sampling/guidance/found/guidance_gain.h"
+#include "sampling/guidance/found/passages.h"
+#include "scene/load/load_yaml.h"
+#include "support/test_scenes.h"
+#include "support/user_paths.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <tuple>
+
+namespace keyhole {
+namespace {
+
+OpeningSearch search(double least_gain = 0) { return {.pairs = 1 << 18, .least_gain = least_gain, .seed = 5}; }
+
+OpeningsFound found_in(const Scene& scene, const OpeningSearch& search) {
+    return find_openings(scene, trace_transport_ends(scene, 2048, search.seed, {}), search, {});
+}
+
+/// What the paths lead through.
+std::vector<Opening> openings_of(const UserPathFile& file) {
+    std::vector<Opening> openings;
+    for (const UserPathSpec& path : file.paths)
+        for (const UserPathPoint& point : path.points)
+            if (point.through) openings.push_back(*point.through);
+    return openings;
+}
+
+/// Where p lies in an opening along its edges, 0 to 1, and how far from its plane [m].
+std::tuple<double, double, double> within(const Opening& o, const Imath::V3d& p) {
+    const Imath::V3d offset = p - o.corner;
+    return {offset.dot(o.u) / o.u.length2(), offset.dot(o.v) / o.v.length2(),
+            std::abs(offset.dot(o.u.cross(o.v).normalized()))};
+}
+
+/// Whether `o` is the rectangle with these corners, but for a margin.
+void expect_tight(const Opening& o, const std::array<Imath::V3d, 3>& corners) {
+    constexpr double kSlack = 0.03;
+    for (const Imath::V3d& corner : corners) {
+        const auto [along, across, off] = within(o, corner);
+        for (const double x : {along, across}) {
+            EXPECT_LT(std::min(std::abs(x), std::abs(x - 1)), kSlack) << corner;
+            EXPECT_GT(x, -1e-3) << corner;
+            EXPECT_LT(x, 1 + 1e-3) << corner;
+        }
+        EXPECT_LT(off, 1e-3) << corner;
+    }
+}
+
+class Slits : public testing::TestWithParam<float> {};
+
+TEST_P(Slits, AreFoundAsTheyAre) {
+    const double slit = GetParam();
+    const auto scene = test::two_rooms(GetParam(), true);
+    const OpeningsFound found = found_in(*scene, search());
+    ASSERT_EQ(found.openings, 1);
+    ASSERT_GE(found.paths.paths.size(), 6u);
+    constexpr double plane = -0.0625;
+    for (const Opening& o : openings_of(found.paths))
+        expect_tight(o, {{{1.2, 0, plane}, {1.2 + slit, 0, plane}, {1.2, 2.5, plane}}});
+}
+
+// As light through it is worth: free paths go there in proportion to the width.
+TEST_P(Slits, BringAsMuchAsTheyAreNarrow) {
+    const auto scene = test::two_rooms(GetParam(), true);
+    const double gain = found_in(*scene, search()).gain;
+    EXPECT_GT(gain, 0.5 / GetParam());
+    EXPECT_LT(gain, 1.6 / GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(Widths, Slits, testing::Values(0.1f, 0.01f, 0.003f, 0.001f));
+
+TEST(Openings, AreFoundInAWallAskew) {
+    constexpr float kSlope = 0.3f, kFrom = 0.5f, kTo = 0.53f;
+    const auto white = make_diffuse(Rgb(0.75));
+    test::SceneMaker m;
+    m.room({-2, 0, -4}, {2, 2.5f, 4}, white);
+    const auto leaf = [&](float a, float b, float low, float high) {
+        m.rectangle({a, low, kSlope * a}, {b - a, 0, kSlope * (b - a)}, {0, high - low, 0}, white);
+    };
+    leaf(-2, kFrom, 0, 2.5f);
+    leaf(kTo, 2, 0, 2.5f);
+    leaf(kFrom, kTo, 0, 0.9f);
+    leaf(kFrom, kTo, 1.1f, 2.5f);
+    m.rectangle({-1.6f, 2.45f, -2.6f}, {0.8f, 0, 0}, {0, 0, 0.8f}, make_diffuse(Rgb(0.0)), Rgb(200.0));
+    m.camera({-1.5f, 1.4f, 3.7f}, {0.7f, 1, 0}, 58).window(64, 48);
+    const OpeningsFound found = found_in(*m.build(), search());
+    ASSERT_EQ(found.openings, 1);
+    for (const Opening& o : openings_of(found.paths))
+        expect_tight(o, {{{kFrom, 0.9, kSlope * kFrom}, {kTo, 0.9, kSlope * kTo}, {kFrom, 1.1, kSlope * kFrom}}});
+}
+
+TEST(Openings, OfAThickWallAreFoundAtItsFace) {
+    const auto scene = test::two_rooms(0.02f);
+    const OpeningsFound found = found_in(*scene, search());
+    ASSERT_GE(found.openings, 1);
+    for (const Opening& o : openings_of(found.paths)) {
+        const auto [along, across, off] = within(o, {1.21, 1.2, -0.05});
+        EXPECT_GT(std::min(along, across), 0);
+        EXPECT_LT(std::max(along, across), 1);
+        EXPECT_LT(off, 0.06);
+    }
+}
+
+TEST(Openings, AreNotLookedForWhereLightFindsItsWay) {
+    const auto finds_its_way = [](const Scene& scene) {
+        return light_finds_its_way(scene, trace_transport_ends(scene, 1024, 3, {}), 3, {});
+    };
+    EXPECT_TRUE(finds_its_way(*test::diffuse_box()));
+    EXPECT_TRUE(finds_its_way(*test::mirror_glass_box()));
+    EXPECT_FALSE(finds_its_way(*test::two_rooms(0.1f)));
+}
+
+TEST(Openings, ThatBringLittleAreLeftOut) {
+    const auto scene = test::two_rooms(0.1f, true);
+    const OpeningsFound found = found_in(*scene, search(1e6));
+    EXPECT_EQ(found.openings, 1);
+    EXPECT_GT(found.gain, 1);
+    EXPECT_TRUE(found.paths.paths.empty());
+}
+
+// What leads through an opening that there isn't takes half of the light away from where it is wanted.
+TEST(GainByGuides, IsNoneWherePathsLeadAstray) {
+    const auto scene = test::diffuse_box();
+    UserPathSpec path = test::user_path("through the air", {{0, 1.95f, 0}, {-0.5f, 0.5f, -1}}, 0.1);
+    path.points[1].through = Opening{{-0.6, 0.4, -0.5}, {0.2, 0, 0}, {0, 0.2, 0}};
+    path.points.insert(path.points.begin() + 1, UserPathPoint{.bounce = true});
+    path.beta.push_back(0.1);
+    path.tolerance = 2;
+    const UserPaths paths = bind_user_paths(*scene, {{path}});
+    const TransportEnds ends = trace_transport_ends(*scene, 1024, 3, {});
+    const double gain = gain_by_guides(*scene, LightGuides(*scene, paths), ends.eye, 3, {});
+    EXPECT_GT(gain, 0.2);
+    EXPECT_LT(gain, 1.2);
+}
+
+TEST(FoundOpenings, AreUsedWithoutAWordAndCanBeTurnedOff) {
+    auto loaded = load_scene(KEYHOLE_SOURCE_DIR "/scenes/failures/keyhole.yaml");
+    Scene scene(std::move(loaded.description));
+    Settings settings = loaded.settings;
+    settings.method = &method_named("ipm");
+    settings.light_paths = 40'000;
+    settings.spp = 1;
+    const RenderResult led = render(scene, settings, {});
+    EXPECT_EQ(led.stats.values.at("openings found"), 1);
+    EXPECT_GT(led.stats.values.at("gain by openings"), 10);
+    settings.find_openings = false;
+    const RenderResult free = render(scene, settings, {});
+    EXPECT_FALSE(free.stats.values.contains("openings found"));
+}
+
+} // namespace
+} // namespace keyhole
