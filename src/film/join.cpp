@@ -28,12 +28,13 @@ const std::string& attribute(const NamedPicture& p, const std::string& key) {
 
 bool is_share(const NamedPicture& p) { return !p.picture.sums.empty(); }
 
+/// Samples per pixel. A share may have none: its units may be groups of chains that no round of samples fell to.
 double samples(const NamedPicture& p) {
     const std::string& text = attribute(p, "samples");
     double value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || !(value > 0) || !std::isfinite(value))
-        refuse(p, fmt::format("found {} samples, expected some", text));
+    if (error != std::errc() || !(value >= 0) || !std::isfinite(value))
+        refuse(p, fmt::format("found {} samples, expected a finite number that is not negative", text));
     return value;
 }
 
@@ -78,6 +79,7 @@ Picture average(const std::vector<NamedPicture>& pictures) {
     double total = 0;
     std::string seeds, warnings;
     for (const NamedPicture& p : pictures) {
+        if (samples(p) == 0) refuse(p, "found 0 samples, expected some");
         total += samples(p);
         try {
             blend(result, p.picture, samples(p) / total);

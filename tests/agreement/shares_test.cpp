@@ -7,6 +7,9 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+#include <utility>
+
 namespace keyhole {
 namespace {
 
@@ -26,11 +29,11 @@ class Shares : public testing::TestWithParam<const char*> {
         s.photons = 5'000;
         return s;
     }
-    static RenderResult make(const WorkPartition& share, int threads = 2) {
+    static RenderResult make(const WorkPartition& share, int threads = 2, const Settings& s = settings()) {
         RenderResult result;
         with_threads(threads, [&] {
             const auto scene = test::mirror_glass_box();
-            result = render(*scene, settings(), {}, {}, share);
+            result = render(*scene, s, {}, {}, share);
         });
         for (const auto& [key, value] :
              {std::pair("program", "p"), {"scene hash", "h"}, {"settings", "spp=2"}, {"seed", "1"}})
@@ -61,6 +64,31 @@ TEST_P(Shares, JoinedAreTheWhole) {
     expect_same(joined, whole);
     EXPECT_TRUE(joined.sums.empty());
     EXPECT_EQ(joined.metadata.at("complete"), "yes");
+}
+
+TEST_P(Shares, OfOneUnitEachAreTheWholeThoughSomeHaveNoSamples) {
+    Settings s = settings();
+    s.passes = 1;
+    s.chain_groups = 4; // more than there are samples of a pixel to share out
+    const RenderResult whole = make({}, 2, s);
+    std::vector<NamedPicture> shares;
+    for (std::int64_t unit = 0;; ++unit) {
+        WorkPartition share;
+        share.keep_sums = true;
+        share.processes = 8; // more than there are passes, so that units are handed out one by one
+        bool given = false;
+        share.take_number = [&]() -> std::optional<std::int64_t> {
+            if (std::exchange(given, true)) return std::nullopt;
+            return unit;
+        };
+        const Picture picture = make(share, 2, s).picture;
+        if (!picture.metadata.contains("units") || picture.metadata.at("units").empty()) break;
+        shares.push_back({std::to_string(unit), picture});
+    }
+    const Picture joined = join_pictures(shares);
+    expect_same(joined, whole.picture);
+    EXPECT_EQ(joined.metadata.at("complete"), "yes");
+    EXPECT_NEAR(std::stod(joined.metadata.at("samples")), whole.stats.samples, 1e-6 * whole.stats.samples);
 }
 
 TEST_P(Shares, OfABrokenOffRenderAreGoneOnFrom) {
