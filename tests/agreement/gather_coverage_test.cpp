@@ -23,10 +23,10 @@ TEST(Reach_AgreesWithBidirectionalTracing, BlockByBlock) {
     photons.plan = Plan::all; // whether light outside gather coverage is worth it or not
     photons.spp = 2;
     photons.brightness_samples = 40'000;
-    photons.importons = 60'000;
-    photons.mutations = 50'000;
+    photons.importons = 240'000; // what power by importance is wrong by falls with their number
+    photons.mutations = 100'000;
     photons.light_paths = 50'000;
-    photons.photons = 40'000;
+    photons.photons = 80'000;
     for (const char* method : {"mps", "ipm"}) {
         photons.method = &method_named(method);
         const test::Disagreement d = test::compare(test::render_blocks(*scene, photons, kRuns), reference, 0.03);
