@@ -11,8 +11,9 @@ packages=(
 [[ ${1-} != --ci ]] || packages+=(clang-14 libclang-rt-14-dev clang-format-14 clang-tidy-14 libopenmpi-dev openmpi-bin)
 wanted=() # what is done without where it can't be had
 case ${1-} in
-    --ci) wanted=(blender pyflakes3) ;;
-    --blender) packages+=(blender) ;;
+    # Blender's Python needs numpy, which Blender's package only recommends.
+    --ci) wanted=(blender python3-numpy pyflakes3) ;;
+    --blender) packages+=(blender python3-numpy) ;;
 esac
 
 die() { printf '%s: %s\n' "${0##*/}" "$*" >&2; exit 1; }
