@@ -2,6 +2,7 @@
 
 #include "core/shared_work.h"
 #include "gather/compute_record.h"
+#include "gather/outlying_records.h"
 #include "gather/ray_shares.h"
 
 #include <algorithm>
@@ -151,6 +152,7 @@ IrradianceCache fill_cache(const GatherRays& rays, const CacheOptions& options, 
     }
     const double seconds = std::isfinite(start) ? start - context.seconds_left() : 0;
     fill.refine(decide ? decide({cache, fill.first(), seconds}) : options.rays, context);
+    share_outlying_light(cache);
     context.advance(1);
     context.end();
     return cache;

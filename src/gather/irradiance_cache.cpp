@@ -56,26 +56,31 @@ template <class Visit> void IrradianceCache::visit_near(const Vec3& position, Vi
     }
 }
 
+IrradianceCache::Weight IrradianceCache::weight_of(const Stored& r, const Vec3& d, const Vec3& normal) const {
+    const float height = d.dot(r.normal), height2 = height * height, across2 = d.length2() - height2;
+    const float raised = kHeight2 * height2 / (r.radius * r.radius);
+    const float apart2 = across2 / (r.reach * r.reach) + raised;
+    if (!(apart2 < 1)) return {};
+    // What lies behind the record may be in the dark behind an edge.
+    if (d.dot(normal + r.normal) < -0.1f * r.radius) return {};
+    const float turned = (normal - r.normal).length2() / (2 * kNormalReach);
+    const float say = kernel(std::max(apart2, turned));
+    if (!(say > 0)) return {};
+    return {say, kernel(std::max(across2 / (r.radius * r.radius) + raised, turned))};
+}
+
 IrradianceCache::Answer IrradianceCache::irradiance(const Vec3& position, const Vec3& normal) const {
     Vec3 sum(0.0f);
     float weights = 0, covered = 0, variance = 0;
     visit_near(position, [&](std::uint32_t i) {
         const Stored& r = records_[i];
         const Vec3 d = position - r.position;
-        const float height = d.dot(r.normal), height2 = height * height, across2 = d.length2() - height2;
-        const float raised = kHeight2 * height2 / (r.radius * r.radius);
-        const float apart2 = across2 / (r.reach * r.reach) + raised;
-        if (!(apart2 < 1)) return;
-        // What lies behind the record may be in the dark behind an edge.
-        if (d.dot(normal + r.normal) < -0.1f * r.radius) return;
-        const Vec3 turn = normal - r.normal;
-        const float turned = turn.length2() / (2 * kNormalReach);
-        const float w = kernel(std::max(apart2, turned));
-        if (!(w > 0)) return;
-        covered += kernel(std::max(across2 / (r.radius * r.radius) + raised, turned));
-        sum += irradiance_at(r, d, turn) * w;
-        weights += w;
-        variance += w * w * r.variance;
+        const Weight w = weight_of(r, d, normal);
+        if (!(w.say > 0)) return;
+        covered += w.covered;
+        sum += irradiance_at(r, d, normal - r.normal) * w.say;
+        weights += w.say;
+        variance += w.say * w.say * r.variance;
     });
     if (!(weights > 0)) return {};
     sum /= weights;
@@ -100,6 +105,7 @@ void IrradianceCache::insert(const IrradianceRecord& record) {
              .rotation = e.rotation,
              .translation = e.translation,
              .variance = static_cast<float>(e.variance),
+             .variance_by_all = static_cast<float>(e.variance),
              .distance = static_cast<float>(std::min(e.distance, 1e30)),
              .min_radius = record.min_radius,
              .max_radius = record.max_radius};
@@ -163,10 +169,36 @@ void IrradianceCache::refine(std::size_t i, const HemisphereEstimate& more, doub
     Stored& r = records_[i];
     const auto s = static_cast<float>(share);
     r.irradiance += (to_vec(more.irradiance) - r.irradiance) * s;
+    r.variance_by_all = (1 - s) * (1 - s) * r.variance_by_all + s * s * static_cast<float>(more.variance);
     for (std::size_t c = 0; c < 3; ++c) {
         r.rotation[c] += (more.rotation[c] - r.rotation[c]) * s;
         r.translation[c] += (more.translation[c] * r.held - r.translation[c]) * s;
     }
+}
+
+std::vector<IrradianceCache::Say> IrradianceCache::others_at(std::uint32_t i) const {
+    const Stored& here = records_[i];
+    std::vector<Say> found;
+    visit_near(here.position, [&](std::uint32_t k) {
+        if (k == i) return;
+        const Stored& r = records_[k];
+        const Vec3 d = here.position - r.position;
+        const float weight = weight_of(r, d, here.normal).say;
+        if (!(weight > 0)) return;
+        const Vec3 e = irradiance_at(r, d, here.normal - r.normal);
+        found.push_back({k, weight, Rgb(e.x, e.y, e.z)});
+    });
+    return found;
+}
+
+void IrradianceCache::change(std::uint32_t i, const Rgb& change) {
+    Stored& r = records_[i];
+    const float before = luminance_of(r.irradiance);
+    for (int c = 0; c < 3; ++c) r.irradiance[c] = std::max(0.0f, r.irradiance[c] + static_cast<float>(change[c]));
+    if (!(before > 0)) return;
+    const float scale = luminance_of(r.irradiance) / before;
+    for (Vec3& g : r.rotation) g *= scale;
+    for (Vec3& g : r.translation) g *= scale;
 }
 
 void IrradianceCache::update_radius(Stored& r) const {

@@ -45,6 +45,17 @@ class IrradianceCache {
     /// `share` in [0,1]. How far it is used stays as it is.
     void refine(std::size_t i, const HemisphereEstimate& more, double share);
 
+    /// What another record says of the place of one.
+    struct Say {
+        std::uint32_t record;
+        double weight;
+        Rgb irradiance; ///< that it predicts there [W/m^2]
+    };
+    /// Of all other records that have a say at record `i`.
+    std::vector<Say> others_at(std::uint32_t i) const;
+    /// Takes `change` [W/m^2] into record `i`, whose gradients change in proportion. No channel becomes negative.
+    void change(std::uint32_t i, const Rgb& change);
+
     struct Answer {
         Rgb irradiance{0.0}; ///< [W/m^2]
         double error = 0;    ///< standard error of its luminance by the rays that records had at first [W/m^2]
@@ -61,6 +72,12 @@ class IrradianceCache {
     float radius(std::size_t i) const { return records_[i].radius; }
     /// How far it is used [m].
     float reach(std::size_t i) const { return records_[i].reach; }
+    Rgb light(std::size_t i) const {
+        const Vec3& e = records_[i].irradiance;
+        return {e.x, e.y, e.z};
+    }
+    /// Of the luminance of light(i), by all rays that it has [(W/m^2)^2].
+    double variance(std::size_t i) const { return records_[i].variance_by_all; }
 
   private:
     /// What decides whether a record has a say comes first: most of those asked have none.
@@ -70,8 +87,9 @@ class IrradianceCache {
         float radius = 0; ///< how far there is no need of another record [m]
         Vec3 irradiance;
         RgbGradient rotation, translation;
-        float variance;                                        ///< of the luminance of `irradiance` [(W/m^2)^2]
-        float distance;                                        ///< to surrounding surfaces, clamped by neighbours' [m]
+        float variance;        ///< of the luminance of `irradiance`, by the rays it had at first [(W/m^2)^2]
+        float variance_by_all; ///< and by all of them
+        float distance;        ///< to surrounding surfaces, clamped by neighbours' [m]
         float border = std::numeric_limits<float>::infinity(); ///< to where it ends unless its radius is larger [m]
         float min_radius, max_radius;
         float held = 1; ///< factor of its translation gradient
@@ -80,6 +98,11 @@ class IrradianceCache {
 
     struct Sums;
     Sums sum_of_all() const;
+    /// What record `r` counts at an offset `d` from it where the normal is `normal`.
+    struct Weight {
+        float say = 0, covered = 0;
+    };
+    Weight weight_of(const Stored& r, const Vec3& d, const Vec3& normal) const;
     void update_radius(Stored& r) const;
     void clamp_with_neighbours(Stored& r);
     void end_where_wrong(Stored& r);
