@@ -58,7 +58,7 @@ const say = (text) => { byId("status").textContent = text; };
 // Okabe and Ito's colours, which people who see few tell apart.
 const COLOURS = ["#0072b2", "#e69f00", "#009e73", "#d55e00", "#cc79a7", "#56b4e9", "#8a5cd1", "#8f8f8f"];
 const colourOf = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16) / 255);
-const ORANGE = colourOf("#f08a24"), YELLOW = colourOf("#ffd24a"), BLUE = colourOf("#4aa8ff"), WHITE = [1, 1, 1], GREEN = colourOf("#2fbf8f");
+const ORANGE = colourOf("#f08a24"), YELLOW = colourOf("#ffd24a"), BLUE = colourOf("#4aa8ff"), WHITE = [1, 1, 1], GREEN = colourOf("#2fbf8f"), SKY = colourOf("#b9dcff");
 
 // From dark violet to yellow: viridis, by its values at the ninths.
 const RAMP = ["#440154", "#482878", "#3e4a89", "#31688e", "#26828e", "#1f9e89", "#35b779", "#6ece58", "#b5de2b", "#fde725"].map(colourOf);
@@ -67,4 +67,4 @@ function ramp(t) {
   return mix(RAMP[i], RAMP[i + 1], x - i);
 }
 const css = (c) => `rgb(${c.map((x) => Math.round(255 * x)).join(" ")})`;
-const rampStyle = () => `background: linear-gradient(90deg, ${RAMP.map(css).join(", ")})`;
+const rampStyle = (from = 0) => `background: linear-gradient(90deg, ${RAMP.map((_, i) => css(ramp(from + ((1 - from) * i) / (RAMP.length - 1)))).join(", ")})`;

@@ -10,7 +10,7 @@ class SceneView {
     this.lines = new Program(gl, LINES, ["corner", "from", "to", "tint", "width"]);
     this.pointSets = new Map();
     this.lineSets = new Map();
-    this.hidden = new Set(); // sets of lines that aren't of the panel at hand
+    this.hidden = new Set(); // sets of lines and points that aren't of the panel at hand
     this.opacity = 1;
     this.cut = 0;
     this.size = 2.5;
@@ -64,7 +64,8 @@ class SceneView {
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
     this.drawSurfaces({ toClip, eye, cut: this.cut, lower: page.surface.lower, upper: page.surface.upper });
     this.points.use({ toClip, eye, size: this.size * ratio, pixelsPerRadian: height / (2 * camera.vertical), lift: 0.002 * camera.size, opacity: this.faded ? 0.3 : 0.92 });
-    for (const set of this.pointSets.values()) {
+    for (const [name, set] of this.pointSets) {
+      if (this.hidden.has(name)) continue;
       gl.bindVertexArray(set.vao);
       gl.drawArrays(gl.POINTS, 0, set.count);
     }
