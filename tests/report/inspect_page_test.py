@@ -2,7 +2,9 @@
 """The page of keyhole inspect in headless Chromium: what it shows is what the map holds, and user paths made by clicking
 are user paths.
 
-usage: inspect_page_test.py KEYHOLE SCENES [FOLDER]     FOLDER: where pages and screenshots stay
+usage: inspect_page_test.py KEYHOLE SCENES [FOLDER [SCENE ...]]
+FOLDER is where pages and screenshots stay; further scenes are opened as those of SCENES are. Where they lie beside the
+source, as for tests/unit/pbrt_scene_test.cpp, dining-room and coffee are.
 Ends with 77, which stands for a skipped test, where there is no Chromium.
 """
 import json
@@ -16,6 +18,8 @@ import time
 import browser
 
 QUICK = ["--resolution", "80x60", "-D", "spp=1", "-D", "light_paths=40000", "-D", "cache_rays=50", "-D", "importons=5000"]
+OUTSIDE = ["-D", "spp=1", "-D", "light_paths=40000", "-D", "cache_rays=50", "-D", "importons=5000"]
+TABS = ("pixel", "photons", "paths", "figures")
 CONTROLS = {"button", "combobox", "textbox", "slider", "checkbox", "spinbutton", "tab", "application"}
 
 
@@ -78,8 +82,10 @@ def check_truth(page, file):
 
 def check_labels(page):
     page.call("Accessibility.enable")
-    for tab in ("pixel", "photons", "paths", "figures"):
+    for tab in TABS:
         page.click("#tab-" + tab)
+        if tab == "paths":
+            page.click("#new-path")
         seen = 0
         for node in page.call("Accessibility.getFullAXTree")["nodes"]:
             role = node.get("role", {}).get("value")
@@ -124,25 +130,116 @@ def check_moving(page):
     assert page.value(eye) == before, "C doesn't go back to the camera"
 
 
+def check_points(page):
+    """Each kind of points can be shown, by a key, and is as many as the panel says where all of them are on the page."""
+    page.click("#tab-photons")
+    for kind in ("refused", "importons", "ends", "records"):
+        page.value(f"document.getElementById('show-{kind}').focus()")
+        for phase in ("keyDown", "keyUp"):
+            page.call("Input.dispatchKeyEvent", type=phase, key=" ", code="Space", text=" ", windowsVirtualKeyCode=32)
+        shown = page.value(f"keyhole.view.pointSets.get('{kind}')?.count ?? 0")
+        said = page.value(f"Number(document.getElementById('show-{kind}').parentElement.lastChild.textContent.replaceAll(',', ''))")
+        assert shown == said if kind == "ends" else 0 < shown <= said or said == 0, (kind, shown, said)
+        page.value(f"document.getElementById('show-{kind}').click()")
+    page.value("keyhole.photons.show('gathered')")
+    legend = page.value("document.getElementById('legend').textContent")
+    missed = page.value("[...keyhole.arrays.photonKinds].filter((k) => k & 4).length")
+    assert ("caustic map alone" in legend) == (missed > 0), (legend, missed)
+    page.value("keyhole.photons.show('power')")
+
+
+def check_record(page):
+    """A click on a record of the cache tells its radius and its error."""
+    page.value("keyhole.photons.show('records'), keyhole.view.camera.lookAt(keyhole.photons.others.record(0).p), keyhole.view.draw()")
+    click_at(page, page.value("keyhole.photons.others.record(0).p"))
+    said = page.value("document.getElementById('photon').textContent")
+    assert said.startswith("Record of"), said
+    page.value("document.getElementById('show-records').click(), keyhole.view.camera.reset()")
+
+
+def check_warnings(page):
+    """Each warning of the statistics is there, and leads to where it comes from."""
+    page.click("#tab-figures")
+    said = page.value("[...document.querySelectorAll('#figures .warning')].map((e) => e.firstChild.data)")
+    for warning in page.value("keyhole.page.stats.warnings"):
+        assert warning["text"] in said, (warning, said)
+    for i in range(page.value("document.querySelectorAll('#figures .warning button').length")):
+        page.value(f"selectTab('figures'), document.querySelectorAll('#figures .warning button')[{i}].click()")
+        gone = page.value("document.getElementById('panel-figures').hidden")
+        about = page.value(f"keyhole.warnings.list().filter((w) => PLACES[w.about] || w.path !== undefined)[{i}]")
+        layer = page.value(f"PLACES[{json.dumps(about['about'])}].layer ?? null")
+        assert gone and (layer is None or page.value("document.getElementById('layer').value") == layer), (about, layer)
+    assert not page.errors, page.errors
+
+
+def check_lamps(page):
+    """What is known of lamps at a pixel: chances, of which there are at most one in all."""
+    lamps = page.value("""(() => { const seen = keyhole.arrays.pixelSeen.indexOf(1), w = keyhole.page.film.width;
+        keyhole.picture.choose(seen % w, Math.floor(seen / w)); return keyhole.picture.light.lamps; })()""")
+    told = page.value("document.querySelectorAll('#lamps li').length")
+    assert told == len(lamps) and sum(lamp["chance"] for lamp in lamps) < 1 + 1e-4, lamps
+    many = page.value("keyhole.page.emitters.length") > 1
+    assert (len(lamps) > 0) == many, (lamps, many)
+
+
 def check_pixel(page):
     """A click in the picture says where its light comes from, and the lines begin at the eye."""
     left, top, width, height = page.box("#film")
-    page.mouse("mousePressed", left + 40.5 / 80 * width, top + 48.5 / 60 * height)
-    page.mouse("mouseReleased", left + 40.5 / 80 * width, top + 48.5 / 60 * height)
-    assert page.value("keyhole.picture.pixel.join()") == "40,48", page.value("keyhole.picture.pixel")
-    lit = page.value("LAYERS.some((l) => keyhole.arrays[l + 'A'][48 * 80 + 40] + keyhole.arrays[l + 'B'][48 * 80 + 40] > 0)")
+    wide, high = page.value("[keyhole.page.film.width, keyhole.page.film.height]")
+    x, y = wide // 2, 4 * high // 5
+    page.mouse("mousePressed", left + (x + 0.5) / wide * width, top + (y + 0.5) / high * height)
+    page.mouse("mouseReleased", left + (x + 0.5) / wide * width, top + (y + 0.5) / high * height)
+    assert page.value("keyhole.picture.pixel.join()") == f"{x},{y}", page.value("keyhole.picture.pixel")
+    lit = page.value(f"LAYERS.some((l) => keyhole.arrays[l + 'A'][{y * wide + x}] + keyhole.arrays[l + 'B'][{y * wide + x}] > 0)")
     said = page.value("document.getElementById('answer').textContent")
     assert said.startswith("Mostly" if lit else "No light was found"), said
+    rings = page.value("[(keyhole.view.lineSets.get('rings')?.count ?? 0) / 14, keyhole.picture.sources.used.size]")
+    assert rings[0] == rings[1], rings
     off = page.value("Math.sqrt(distance2(keyhole.picture.light.trail[0], keyhole.page.camera.origin))")
     assert off < 1e-3 * page.value("keyhole.view.camera.size"), off
 
 
+# What is too small for a finger, cut off, out of the window, or covered by another control.
+FAULTS = """((least) => [...document.querySelectorAll("button, select, input, textarea, summary, [role=tab]")].flatMap((e) => {
+    const of = e.matches(".checks input") ? e.parentElement : e, b = of.getBoundingClientRect();
+    if (!e.checkVisibility() || b.width === 0) return [];
+    const name = `${e.tagName} ${e.id || e.getAttribute("aria-label") || e.textContent}`, faults = [];
+    if (b.width < least - 0.5 || b.height < least - 0.5) faults.push(`${name}: ${b.width} x ${b.height}`);
+    if (b.left < 0 || b.right > innerWidth + 0.5) faults.push(`${name}: from ${b.left} to ${b.right}`);
+    if (e.matches("button") && e.scrollWidth > e.clientWidth + 1) faults.push(`${name}: text is cut off`);
+    e.scrollIntoView({ block: "center" });
+    const c = of.getBoundingClientRect(), on = document.elementFromPoint(c.left + c.width / 2, c.top + c.height / 2);
+    if (!of.contains(on) && !on?.contains(of)) faults.push(`${name}: behind ${on?.outerHTML.slice(0, 80)}`);
+    return faults;
+}))(%d)"""
+
+# Contrast of text with what it stands on, by WCAG 2's formula: those below 4.5.
+FAINT = """(() => {
+    const numbers = (c) => c.match(/[\\d.]+/g).map(Number);
+    const light = (c) => numbers(c).slice(0, 3).map((x) => x / 255).map((x) => (x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4))
+        .reduce((s, x, k) => s + x * [0.2126, 0.7152, 0.0722][k], 0);
+    const ground = (e) => { for (; e; e = e.parentElement) { const c = getComputedStyle(e).backgroundColor; if ((numbers(c)[3] ?? 1) > 0) return c; } return "rgb(255, 255, 255)"; };
+    return [...document.querySelectorAll("body *")].filter((e) => e.checkVisibility() && !e.disabled && [...e.childNodes].some((n) => n.nodeType === 3 && n.data.trim())).flatMap((e) => {
+        const [a, b] = [light(getComputedStyle(e).color), light(ground(e))].sort((x, y) => y - x), ratio = (a + 0.05) / (b + 0.05);
+        return ratio < 4.5 ? [`${e.tagName} "${e.textContent.slice(0, 30)}": ${ratio.toFixed(2)}`] : [];
+    });
+})()"""
+
+
 def check_widths(path):
-    for width, dark in ((360, False), (820, True), (2560, False)):
-        page = open_page(path, width=width, height=800, dark=dark)
+    for width, dark, touch in ((360, False, True), (360, True, True), (768, True, True), (768, False, False), (1440, True, False),
+                               (1440, False, True), (2560, False, False), (2560, True, True)):
+        page = open_page(path, width=width, height=800, dark=dark, touch=touch)
         try:
-            over = page.value("document.documentElement.scrollWidth - innerWidth")
-            assert over <= 0, f"{over} pixels too wide at {width}"
+            page.value("keyhole.picture.choose(40, 48)")
+            for tab in TABS:
+                page.value(f"selectTab('{tab}')")
+                if tab == "paths":
+                    page.value("keyhole.paths.create(), keyhole.paths.begin(0), keyhole.paths.addPoint([0, 0, 0]), keyhole.paths.update()")
+                over = page.value("document.documentElement.scrollWidth - innerWidth")
+                assert over <= 0, f"{over} pixels too wide at {width}, {tab}"
+                faults = page.value(FAULTS % (44 if touch else 16)) + page.value(FAINT)
+                assert not faults, (width, dark, touch, tab, faults)
             background = page.value("getComputedStyle(document.getElementById('stage')).backgroundColor")
             assert (int(background[4:].split(",")[0]) < 60) == dark, background
         finally:
@@ -160,6 +257,10 @@ def check_scene(path):
         check_moving(page)
         check_drawing(page)
         check_pixel(page)
+        check_points(page)
+        check_record(page)
+        check_lamps(page)
+        check_warnings(page)
         assert not page.errors, page.errors
         print(f"{path.stem}: first frame after {seconds:.2f} s, {path.stat().st_size / 1e6:.1f} MB")
     finally:
@@ -180,16 +281,24 @@ def change(page, selector, value):
         e.dispatchEvent(new Event("change")); }})()""")
 
 
-def make_path(page):
-    """Lamp, bounces, an opening by clicking three of its corners, a place behind it."""
+CORNERS, BEHIND = ([-0.022, 0.958, -0.5], [0.022, 0.958, -0.5], [-0.022, 1.042, -0.5]), [0.3, 0, 0.5]
+
+
+def begin_path(page):
+    """A path from the lamp with bounces, and a click is a corner of its opening."""
     page.click("#tab-paths")
     page.click("#new-path")
     change(page, "#field-begins-at", "0")
     change(page, "#editor input[aria-label^=largest]", "15")
     page.click("#editor [data-mode=opening]")
-    for corner in ([-0.022, 0.958, -0.5], [0.022, 0.958, -0.5], [-0.022, 1.042, -0.5]):
+
+
+def make_path(page):
+    """Lamp, bounces, an opening by clicking three of its corners, a place behind it."""
+    begin_path(page)
+    for corner in CORNERS:
         click_at(page, corner)
-    click_at(page, [0.3, 0, 0.5])
+    click_at(page, BEHIND)
     assert not page.errors, page.errors
     return page.value("document.getElementById('yaml').value")
 
@@ -200,6 +309,26 @@ def squared_error(keyhole, folder, scene, seed, *more):
                     "-D", "spp=16", "--seed", str(seed), "-q", "--no-png", "-o", out, *more], check=True)
     found = subprocess.run([keyhole, "diff", out, folder / "1.exr", folder / "2.exr"], check=True, capture_output=True)
     return json.loads(found.stdout)["cross_trim"]
+
+
+def check_opening(page):
+    """A corner that is dragged stays in the opening's plane, and the other two stay where they are."""
+    corners = "openingCorners(keyhole.paths.path.points[1].through)"
+    before = page.value(corners)
+    left, top, _, _ = page.box("#view")
+    x, y = page.value(f"keyhole.picking.project({corners}[1])")
+    page.drag(left + x, top + y, left + x + 60, top + y + 40)
+    after = page.value(corners)
+    assert after[1] != before[1] and after[0] == before[0] and after[2] == before[2], (before, after)
+    assert abs(after[1][2] - before[1][2]) < 1e-4, after
+
+
+def check_cones(page):
+    """All of a cone's rim is seen under its angle from where light leaves."""
+    far = page.value("""(() => { const a = [0.1, 0.2, 0.3], b = [0.5, 1, 0.2], w = unit(sub(b, a));
+        const rim = userPathDrawing([{ points: [{ p: a }, { p: b }], beta: [7], bounces: null, opening: null }], 0, []).segments.slice(1, 33);
+        return Math.max(...rim.map((s) => Math.abs(Math.acos(dot(w, unit(sub(s.a, a)))) * 180 / Math.PI - 7))); })()""")
+    assert far < 1e-3, far
 
 
 def check_gain(keyhole, folder, scene, file):
@@ -242,6 +371,8 @@ def check_user_paths(keyhole, folder, scene):
         assert dragged != before
         (folder / "dragged.yaml").write_text(dragged)
         checked(keyhole, scene, folder / "dragged.yaml")
+        check_opening(page)
+        check_cones(page)
     finally:
         page.close()
     check_gain(keyhole, folder, scene, file)
@@ -264,6 +395,12 @@ def main():
         check_widths(box)
         for name in ("box", "rooms", "lantern", "failures/keyhole"):
             check_scene(inspect(keyhole, folder, scenes / f"{name}.yaml", *QUICK))
+        outside = [pathlib.Path(p) for p in sys.argv[4:]] or [
+            p for n in ("dining-room", "coffee") if (p := scenes.parents[1] / "shared" / "scenes" / n / "scene.pbrt").exists()]
+        for scene in outside:
+            page = folder / f"{scene.parent.name}.html"
+            subprocess.run([keyhole, "inspect", scene, "-o", page, *OUTSIDE], check=True)
+            check_scene(page)
         check_user_paths(keyhole, folder, scenes / "failures" / "keyhole.yaml")
     return 0
 

@@ -24,7 +24,8 @@ class OtherPoints {
   }
   record(i) {
     const [radius, noise, irradiance] = arrays.recordFigures.subarray(3 * i, 3 * i + 3);
-    return { p: [...this.records.subarray(3 * i, 3 * i + 3)], radius, noise, irradiance };
+    const p = [...this.records.subarray(3 * i, 3 * i + 3)];
+    return { p, n: unit(sub(place(page.surface, arrays.records, 2 * i + 1), p)), radius, noise, irradiance };
   }
   update(shown) {
     const flat = (n, colour) => Float32Array.from({ length: 3 * n }, (_, i) => colour[i % 3]);
@@ -37,7 +38,9 @@ class OtherPoints {
     this.view.setPoints("ends", shown.ends ? new Float32Array(this.ends.flatMap((i) => place(page.air, arrays.pixelGather, i, 9))) : null,
       shown.ends && new Float32Array(this.ends.flatMap((i) => (arrays.pixelGather[9 * i + 3] > 0 ? GREEN : UNKNOWN))));
     const n = this.records.length / 3, list = Array.from({ length: n }, (_, i) => this.record(i));
-    this.view.setPoints("records", shown.records ? this.records : null, new Float32Array(list.flatMap((r) => ramp(r.noise / NOISIEST))), Float32Array.from(list, (r) => r.radius));
+    const colour = (r) => ramp(r.noise / NOISIEST);
+    this.view.setPoints("records", shown.records ? this.records : null, new Float32Array(list.flatMap(colour)));
+    this.view.setLines("records", shown.records ? list.flatMap((r) => ring(r.p, r.n, r.radius, colour(r), 1.2, n > 5000 ? 8 : 14)) : [], 0);
   }
   legend(shown) {
     const item = (colour, name, note = "") => element("li", {}, element("span", { class: "dot", style: `background: ${css(colour)}` }), name, element("span", { class: "note", text: note }));

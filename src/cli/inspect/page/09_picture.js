@@ -96,9 +96,9 @@ class PicturePanel {
   }
   // Rings around the photons that what is said of the pixel comes from.
   markPhotons() {
-    const used = [...this.sources.used], colour = (i) => (arrays.photonKinds[i] & 1 ? GREEN : YELLOW);
-    this.view.setPoints("pixel", new Float32Array(used.flatMap(photonPlace)), new Float32Array(used.flatMap(colour)),
-      new Float32Array(used.length).fill(0.004 * this.view.camera.size), new Int8Array(used.flatMap((i) => [...arrays.photonNormals.subarray(3 * i, 3 * i + 3)])));
+    const size = this.view.camera.size, normal = (i) => unit([...arrays.photonNormals.subarray(3 * i, 3 * i + 3)]);
+    this.view.setLines("rings", [...this.sources.used].flatMap((i) =>
+      ring(add(photonPlace(i), scaled(normal(i), 0.001 * size)), normal(i), 0.005 * size, arrays.photonKinds[i] & 1 ? GREEN : YELLOW, 1.5)));
   }
   tell(x, y) {
     const i = y * this.width + x, light = LAYERS.map((l) => (arrays[l + "A"][i] + arrays[l + "B"][i]) / 2), all = light.reduce((a, b) => a + b, 0);

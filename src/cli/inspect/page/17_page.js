@@ -58,7 +58,7 @@ async function start() {
   });
   // What is drawn of a pixel would drown among photons.
   document.addEventListener("panel", (e) => {
-    view.hidden = new Set({ pixel: ["photon"], photons: ["pixel"], paths: ["pixel", "photon"] }[e.detail] ?? []);
+    view.hidden = new Set({ pixel: ["photon"], photons: ["pixel", "rings"], paths: ["pixel", "rings", "photon", "records"], figures: [] }[e.detail] ?? []);
     view.faded = (e.detail === "pixel" && picture.pixel !== null) || e.detail === "paths";
     view.redraw();
   });
