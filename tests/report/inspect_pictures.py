@@ -10,7 +10,7 @@ import tempfile
 import browser
 import inspect_page_test as test
 
-TURNED = """(() => { const c = keyhole.view.camera; c.eye = [4.6, 2.3, 3.4]; c.lookAt([0.1, 0.9, -0.2]); keyhole.view.redraw(); })()"""
+TURNED = """(() => { const c = keyhole.view.camera; c.eye = [3.3, 1.9, 2.6]; c.lookAt([0, 0.95, -0.35]); keyhole.view.redraw(); })()"""
 
 
 def settled(page):
@@ -27,7 +27,7 @@ def main():
         keep = lambda n: (folder / f"inspect-{n}.png").write_bytes(settled(page))
         try:
             test.change(page, "#layer", "error:indirect")
-            page.value("keyhole.picture.choose(40, 70)")
+            page.value("keyhole.picture.choose(30, 50)")
             keep(1)
             test.change(page, "#layer", "picture")
             page.value(TURNED)

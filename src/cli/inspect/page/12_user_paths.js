@@ -83,22 +83,21 @@ class UserPathPanel {
   // Points drawn at a place of the page can be dragged along the surfaces, corners of openings in their plane.
   grabbed(x, y, reach = 12) {
     if (byId("panel-paths").hidden || !this.path || this.mode) return null;
-    const near = (p) => {
+    const handles = [
+      ...this.path.points.map((point) => ({ p: point.p, move: (u, v) => {
+        const hit = this.picking.surfaceAt(u, v);
+        if (hit) point.p = hit.p.map((c) => Number(c.toPrecision(6)));
+      } })),
+      ...openingsOf(this.path).flatMap((o) => openingCorners(o).slice(0, 3).map((p, k) => ({ p, move: (u, v) =>
+        moveCorner(o, k, this.picking.cornerAt(u, v, reach) ?? inPlane(o, this.view.camera.eye, this.picking.ray(u, v))) })))];
+    const off = ({ p }) => {
       const at = this.picking.project(p);
-      return at && Math.hypot(at[0] - x, at[1] - y) < reach;
+      return at ? Math.hypot(at[0] - x, at[1] - y) : Infinity;
     };
-    for (const opening of openingsOf(this.path)) {
-      const k = openingCorners(opening).slice(0, 3).findIndex(near);
-      if (k >= 0) return (u, v) => {
-        moveCorner(opening, k, this.picking.cornerAt(u, v, reach) ?? inPlane(opening, this.view.camera.eye, this.picking.ray(u, v)));
-        this.draw();
-      };
-    }
-    const i = this.path.points.findIndex((point) => near(point.p));
-    if (i < 0) return null;
+    const nearest = handles.reduce((a, b) => (a && off(a) <= off(b) ? a : b), null);
+    if (!nearest || off(nearest) >= reach) return null;
     return (u, v) => {
-      const hit = this.picking.surfaceAt(u, v);
-      if (hit) this.path.points[i].p = hit.p.map((c) => Number(c.toPrecision(6)));
+      nearest.move(u, v);
       this.draw();
     };
   }
