@@ -19,6 +19,8 @@ import browser
 
 QUICK = ["--resolution", "80x60", "-D", "spp=1", "-D", "light_paths=40000", "-D", "cache_rays=50", "-D", "importons=5000"]
 OUTSIDE = ["-D", "spp=1", "-D", "light_paths=40000", "-D", "cache_rays=50", "-D", "importons=5000"]
+# What a warning is about, and the layer of the picture that its way leads to.
+LAYERS = {"samples": "error", "direct": "error:direct", "caustics": "error:caustic", "lookups": "reach"}
 TABS = ("pixel", "photons", "paths", "figures")
 CONTROLS = {"button", "combobox", "textbox", "slider", "checkbox", "spinbutton", "tab", "application"}
 
@@ -85,7 +87,7 @@ def check_labels(page):
     for tab in TABS:
         page.click("#tab-" + tab)
         if tab == "paths":
-            page.click("#new-path")
+            page.value("keyhole.paths.create(), keyhole.page.emitters[0].p && keyhole.paths.begin(0)")
         seen = 0
         for node in page.call("Accessibility.getFullAXTree")["nodes"]:
             role = node.get("role", {}).get("value")
@@ -130,6 +132,39 @@ def check_moving(page):
     assert page.value(eye) == before, "C doesn't go back to the camera"
 
 
+def key(page, name, text=None, code=0):
+    for phase in ("keyDown", "keyUp"):
+        page.call("Input.dispatchKeyEvent", type=phase, key=name, code=name, windowsVirtualKeyCode=code,
+                  **({"text": text} if text and phase == "keyDown" else {}))
+
+
+def check_keyboard(page):
+    """Every control is reached with the tab key alone, and panels with the arrow keys."""
+    page.click("#tab-photons")
+    page.value("document.activeElement.blur(), document.getElementById('view').focus()")
+    reached = {"view"}
+    for _ in range(40):
+        key(page, "Tab", code=9)
+        reached.add(page.value("document.activeElement.id"))
+    wanted = page.value("""[...document.querySelectorAll("button, select, input, canvas, textarea")]
+        .filter((e) => e.id && e.checkVisibility() && !e.disabled && e.tabIndex >= 0).map((e) => e.id)""")
+    assert len(wanted) > 12 and set(wanted) <= reached, set(wanted) - reached
+    page.value("document.getElementById('tab-photons').focus()")
+    key(page, "ArrowRight", code=39)
+    assert page.value("document.activeElement.id") == "tab-paths" and not page.value("document.getElementById('panel-paths').hidden")
+    page.value("document.getElementById('film').focus(), keyhole.picture.choose(3, 3)")
+    key(page, "ArrowRight", code=39)
+    assert page.value("keyhole.picture.pixel.join()") == "4,3"
+    # A point of a user path is put where the cross is.
+    page.value("selectTab('paths'), keyhole.paths.create(), keyhole.page.emitters[0].p && keyhole.paths.begin(0), keyhole.view.camera.reset()")
+    if page.value("keyhole.paths.path.points.length"):
+        page.value("document.getElementById('view').focus()")
+        key(page, "p", "p", 80)
+        key(page, "Enter", "\r", 13)
+        assert page.value("keyhole.paths.path.points.length") == 2, page.value("document.getElementById('status').textContent")
+    page.value("keyhole.paths.remove()")
+
+
 def check_points(page):
     """Each kind of points can be shown, by a key, and is as many as the panel says where all of them are on the page."""
     page.click("#tab-photons")
@@ -166,9 +201,16 @@ def check_warnings(page):
     for i in range(page.value("document.querySelectorAll('#figures .warning button').length")):
         page.value(f"selectTab('figures'), document.querySelectorAll('#figures .warning button')[{i}].click()")
         gone = page.value("document.getElementById('panel-figures').hidden")
-        about = page.value(f"keyhole.warnings.list().filter((w) => PLACES[w.about] || w.path !== undefined)[{i}]")
-        layer = page.value(f"PLACES[{json.dumps(about['about'])}].layer ?? null")
-        assert gone and (layer is None or page.value("document.getElementById('layer').value") == layer), (about, layer)
+        about = page.value(f"keyhole.warnings.list().filter((w) => PLACES[w.about] || w.path !== undefined)[{i}].about")
+        layer, records = page.value("[document.getElementById('layer').value, document.getElementById('show-records').checked]")
+        assert gone and (layer == LAYERS[about] if about in LAYERS else about != "records" or records), (about, layer, records)
+        if about in LAYERS:  # at the worst pixel
+            x, y = page.value("keyhole.picture.pixel")
+            worst = page.value("""(() => { const p = keyhole.picture, e = p.errors.get(byId("layer").value), all = [];
+                for (let y = 0; y < p.height; ++y) for (let x = 0; x < p.width; ++x)
+                    all.push(e ? p.smoothed(e.map, x, y) : keyhole.arrays.pixelReach[y * p.width + x]);
+                return [all[p.pixel[1] * p.width + p.pixel[0]], all.reduce((a, b) => Math.max(a, b))]; })()""")
+            assert worst[0] == worst[1], (about, x, y, worst)
     assert not page.errors, page.errors
 
 
@@ -258,6 +300,7 @@ def check_scene(path):
         check_moving(page)
         check_drawing(page)
         check_pixel(page)
+        check_keyboard(page)
         check_points(page)
         check_record(page)
         check_lamps(page)
