@@ -8,7 +8,8 @@ import sys
 import tempfile
 
 import browser
-import inspect_page_test as test
+import inspect_page as test
+from inspect_user_paths import BEHIND, CORNERS, begin_path
 
 TURNED = """(() => { const c = keyhole.view.camera; c.eye = [3.3, 1.9, 2.6]; c.lookAt([0, 0.95, -0.35]); keyhole.view.redraw(); })()"""
 
@@ -36,13 +37,13 @@ def main():
             page.value("document.getElementById('layers').scrollIntoView()")
             keep(2)
             page.value("keyhole.view.camera.reset(), keyhole.view.camera.zoom(0.4)")
-            test.begin_path(page)
-            for corner in test.CORNERS[:2]:
+            begin_path(page)
+            for corner in CORNERS[:2]:
                 test.click_at(page, corner)
             keep(3)
             page.value("keyhole.view.camera.reset()")
-            test.click_at(page, test.CORNERS[2])
-            test.click_at(page, test.BEHIND)
+            test.click_at(page, CORNERS[2])
+            test.click_at(page, BEHIND)
             page.value(TURNED)
             keep(4)
             file = scratch / "paths.yaml"
