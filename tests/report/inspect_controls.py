@@ -93,6 +93,17 @@ FAINT = """(() => {
 })()"""
 
 
+def check_taps(page):
+    """A finger chooses a pixel, and adds a point to a user path."""
+    left, top, width, height = page.box("#film")
+    page.tap(left + 0.255 * width, top + 0.755 * height)  # below the view, which stays at the top
+    assert page.value("keyhole.picture.pixel.join()") == "20,45", page.value("keyhole.picture.pixel")
+    page.value("selectTab('paths'), keyhole.paths.create(), keyhole.paths.begin(0), keyhole.paths.setMode('point'), scrollTo(0, 0)")
+    left, top, width, height = page.box("#view")
+    page.tap(left + width / 2, top + 0.7 * height)
+    assert page.value("keyhole.paths.path.points.length") == 2, "a tap adds no point"
+
+
 def check_widths(path):
     for width, dark, touch in ((360, False, True), (360, True, True), (768, True, True), (768, False, False), (1440, True, False),
                                (1440, False, True), (2560, False, False), (2560, True, True)):
@@ -107,6 +118,8 @@ def check_widths(path):
                 assert over <= 0, f"{over} pixels too wide at {width}, {tab}"
                 faults = page.value(FAULTS % (44 if touch else 16)) + page.value(FAINT)
                 assert not faults, (width, dark, touch, tab, faults)
+            if touch:
+                check_taps(page)
             background = page.value("getComputedStyle(document.getElementById('stage')).backgroundColor")
             assert (int(background[4:].split(",")[0]) < 60) == dark, background
         finally:
