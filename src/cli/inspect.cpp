@@ -29,6 +29,12 @@ struct InspectOptions {
     int threads = 0;
 };
 
+/// What people call it: many scenes are a file of the same name in a folder of their own.
+std::string name_of(const std::filesystem::path& file) {
+    const std::string name = file.stem().string(), folder = std::filesystem::absolute(file).parent_path().filename();
+    return (name == "scene" || name == "main") && !folder.empty() ? folder : name;
+}
+
 /// A picture of about so many pixels: what a page can hold of each.
 constexpr double kPixels = 22'000, kMostPixels = 100'000;
 
@@ -60,10 +66,11 @@ Settings preview_settings(const Settings& settings, const std::vector<std::strin
 }
 
 int run(InspectOptions o) {
-    const std::string name = std::filesystem::path(o.scene).stem().string();
+    const std::string name = name_of(o.scene);
     if (o.output.empty()) o.output = name + ".html";
     check_writable(o.output);
-    LoadedScene loaded = load(o.scene, o.overrides);
+    std::vector<std::string> load_warnings;
+    LoadedScene loaded = load(o.scene, o.overrides, &load_warnings);
     if (!o.user_paths.empty()) loaded.user_paths = load_user_paths(o.user_paths);
     choose_resolution(loaded.description.window, o.resolution);
     Settings settings = preview_settings(loaded.settings, o.overrides);
@@ -77,7 +84,8 @@ int run(InspectOptions o) {
         Scene scene(std::move(loaded.description));
         const UserPaths paths = bind_user_paths(scene, working_paths(loaded.user_paths, scene));
         const auto start = std::chrono::steady_clock::now();
-        const Inspection inspection = inspect_scene(scene, settings, paths, o.limits, context);
+        Inspection inspection = inspect_scene(scene, settings, paths, o.limits, context);
+        for (const std::string& warning : load_warnings) inspection.render.stats.warn(Doubt::scene, warning);
         const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
         page = kInspectionPage.with(page_data(scene, inspection, {name, took.count(), loaded.user_paths}).dump());
     });

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace keyhole {
@@ -56,6 +57,18 @@ struct PhotonQuality {
     std::optional<Noise> noise;
 };
 
+/// What a warning is about: where to look for what it says.
+enum class Doubt {
+    render,       ///< all of it
+    scene,        ///< the scene's file, which isn't read as it is meant
+    samples,      ///< of pixels
+    direct_light, ///< straight from emitters
+    caustics,     ///< light by the caustic map
+    photons,      ///< their number or power
+    lookups,      ///< how many photons are found where they are asked for
+    records,      ///< of the irradiance cache
+};
+
 struct RenderStats {
     std::string method; ///< the setting's, or what `auto` stood for
     std::vector<StageStats> stages;
@@ -71,7 +84,13 @@ struct RenderStats {
     std::map<std::string, double> values; ///< further figures, which nothing but reports reads
     std::vector<std::string> remarks;     ///< choices that were made, in words
     std::vector<std::string> warnings;    ///< in words
+    std::map<std::string, Doubt> doubts;  ///< what warnings are about; those that aren't here: the render
     bool complete = true;                 ///< false after a stop
+
+    void warn(Doubt about, std::string warning) {
+        doubts[warning] = about;
+        warnings.push_back(std::move(warning));
+    }
 
     /// Adds what a stage before the render took, and what it found.
     void begin_with(const RenderStats& before) {

@@ -109,8 +109,8 @@ void Film::report(RenderStats& stats) const {
     stats.no_samples = empty_pixels();
     for (std::size_t i = 0; i < kLayers.size(); ++i) {
         if (dropped(i) == 0) continue;
-        stats.warnings.push_back(fmt::format("{} samples were dropped: not finite, or negative, in layer '{}'",
-                                             dropped(i), kLayers[i].name));
+        stats.warn(Doubt::samples, fmt::format("{} samples were dropped: not finite, or negative, in layer '{}'",
+                                               dropped(i), kLayers[i].name));
     }
 }
 

@@ -46,14 +46,14 @@ LearnedDirectLightScope::LearnedDirectLightScope(Scene& scene, const Settings& s
     scene.set_direct_light(nullptr);
     if (!settings.method->asks_for_direct_light || !has_choice_of_direct_light(scene)) return;
     const StageClock clock(own_, kLearning);
-    const auto learned = learn_direct_light(scene, learning(settings, scene.camera().window(), context), context);
-    if (!learned) return;
-    own_.values["direct_light_second_moment"] = learned->second_moment_ratio();
-    own_.values["direct_light_bytes"] = static_cast<double>(learned->bytes());
+    learned_ = learn_direct_light(scene, learning(settings, scene.camera().window(), context), context);
+    if (!learned_) return;
+    own_.values["direct_light_second_moment"] = learned_->second_moment_ratio();
+    own_.values["direct_light_bytes"] = static_cast<double>(learned_->bytes());
     own_.remarks.push_back(fmt::format("direct light: learned in {} cells, {:.2g} times fewer shadow rays for the same "
                                        "second moment",
-                                       learned->cells(), 1 / learned->second_moment_ratio()));
-    scene.set_direct_light(learned);
+                                       learned_->cells(), 1 / learned_->second_moment_ratio()));
+    scene.set_direct_light(learned_);
 }
 
 } // namespace keyhole

@@ -4,6 +4,7 @@
 #include "core/progress.h"
 #include "core/render_stats.h"
 #include "core/settings.h"
+#include "sampling/guidance/learned_direct_light.h"
 #include "scene/scene.h"
 
 namespace keyhole {
@@ -19,12 +20,16 @@ class LearnedDirectLightScope {
     LearnedDirectLightScope(const LearnedDirectLightScope&) = delete;
     LearnedDirectLightScope& operator=(const LearnedDirectLightScope&) = delete;
 
+    /// Null: nothing was learned.
+    const LearnedDirectLight* learned() const { return learned_.get(); }
+
     /// Adds what learning took, and what it found.
     void report(RenderStats& stats) const { stats.begin_with(own_); }
 
   private:
     Scene& scene_;
     RenderStats own_;
+    std::shared_ptr<const LearnedDirectLight> learned_;
 };
 
 } // namespace keyhole

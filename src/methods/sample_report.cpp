@@ -49,9 +49,10 @@ void report_small_emitters(const RunningStats& luminance, const Scene& scene, Re
         if (image && image->share * static_cast<double>(luminance.count()) < kFewHits) missed += image->luminance;
     }
     if (missed > kMostSampleError * luminance.mean())
-        stats.warnings.push_back(fmt::format("emitters that the eye sees are so small that hardly a sample meets them, "
-                                             "and may be {:.0f} % of the picture's light: try more spp, or bdpt",
-                                             100 * missed / (missed + luminance.mean())));
+        stats.warn(Doubt::direct_light,
+                   fmt::format("emitters that the eye sees are so small that hardly a sample meets them, "
+                               "and may be {:.0f} % of the picture's light: try more spp, or bdpt",
+                               100 * missed / (missed + luminance.mean())));
 }
 
 } // namespace
@@ -61,9 +62,10 @@ void report_samples(const RunningStats& luminance, RenderStats& stats) {
     const double error = luminance.standard_error() / luminance.mean();
     stats.values["relative error of the mean"] = error;
     if (luminance.count() < 2 || error > kMostSampleError)
-        stats.warnings.push_back(fmt::format("samples of pixels are so few or unequal that the mean of the picture is "
-                                             "known to {:.0f} % only (standard error): try more spp",
-                                             100 * error));
+        stats.warn(Doubt::samples,
+                   fmt::format("samples of pixels are so few or unequal that the mean of the picture is "
+                               "known to {:.0f} % only (standard error): try more spp",
+                               100 * error));
 }
 
 void report_eye_samples(const RunningStats& luminance, const Scene& scene, RenderStats& stats) {
@@ -73,11 +75,11 @@ void report_eye_samples(const RunningStats& luminance, const Scene& scene, Rende
 
 void report_lost_light(const RunningStats& luminance, const Scene& scene, RenderStats& stats) {
     if (luminance.count() > 0 && !(luminance.mean() > 0))
-        stats.warnings.emplace_back("no sample carried light: the picture is black. If there is light in the scene, it "
-                                    "comes where paths from the eye don't find it: try mps");
+        stats.warn(Doubt::samples, "no sample carried light: the picture is black. If there is light in the scene, it "
+                                   "comes where paths from the eye don't find it: try mps");
     const bool no_extent = std::ranges::any_of(scene.emitters(), [](const auto& e) { return e->is_delta(); });
     if (no_extent && scene.traits().delta)
-        stats.warnings.emplace_back("light from emitters without extent that comes through specular surfaces is "
+        stats.warn(Doubt::caustics, "light from emitters without extent that comes through specular surfaces is "
                                     "missing, or what is seen of it in others: paths from the eye can't find it. Use "
                                     "mps");
 }

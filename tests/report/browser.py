@@ -17,7 +17,7 @@ def find():
 class Page:
     """A page at `url`. Errors that its scripts throw, and those in the console, are collected in `errors`."""
 
-    def __init__(self, url, width=1180, height=900, dark=False):
+    def __init__(self, url, width=1180, height=900, dark=False, touch=False):
         self.profile = tempfile.TemporaryDirectory(prefix="keyhole-browser-", ignore_cleanup_errors=True)
         to_browser, self.out = os.pipe()
         self.inbox, from_browser = os.pipe()
@@ -38,7 +38,9 @@ class Page:
         self.session = self.call("Target.attachToTarget", targetId=target["targetId"], flatten=True)["sessionId"]
         for domain in ("Page", "Runtime", "Log"):
             self.call(domain + ".enable")
-        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=touch)
+        if touch:  # the pointer is coarse then
+            self.call("Emulation.setTouchEmulationEnabled", enabled=True)
         if dark:
             self.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark"}])
         # Whatever isn't in the file must not be asked for.
@@ -112,6 +114,10 @@ class Page:
         for k in range(1, 6):
             self.mouse("mouseMoved", x0 + (x1 - x0) * k / 5, y0 + (y1 - y0) * k / 5, held=True)
         self.mouse("mouseReleased", x1, y1)
+
+    def tap(self, x, y):
+        self.call("Input.dispatchTouchEvent", type="touchStart", touchPoints=[{"x": x, "y": y}])
+        self.call("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
 
     def screenshot(self, whole=True):
         return base64.b64decode(self.call("Page.captureScreenshot", format="png", captureBeyondViewport=whole)["data"])

@@ -154,6 +154,58 @@ TEST(Inspection, PixelsSeeWhatTheCameraSees) {
     EXPECT_GT(lit, inspection.pixels.size());
 }
 
+/// Two lamps, of which the second is the stronger.
+TEST(Inspection, PixelsTellTheChancesOfLamps) {
+    test::SceneMaker m;
+    const auto wall = make_diffuse(Rgb(0.5));
+    m.room({-2, 0, -1}, {2, 1, 1}, wall);
+    m.rectangle({-1.5f, 0.99f, -0.1f}, {0.2f, 0, 0}, {0, 0, 0.2f}, wall, Rgb(1));
+    m.rectangle({1.3f, 0.99f, -0.1f}, {0.2f, 0, 0}, {0, 0, 0.2f}, wall, Rgb(5));
+    m.camera({0, 0.5f, 0.9f}, {0, 0, -0.3f}, 90).window(32, 24);
+    const auto scene = m.build();
+    const Inspection inspection = inspect_scene(*scene, inspected_settings(methods::ipm), {}, kLimits, {});
+    EXPECT_FALSE(inspection.learned_direct_light);
+    for (int i = 0; i < 32 * 24; ++i) {
+        const PixelLight& pixel = inspection.pixels[static_cast<std::size_t>(i)];
+        const ImageWindow& window = scene->camera().window();
+        const SurfacePoint eye = scene->camera().eye(0.5, 0.5);
+        const Vec2 middle(static_cast<float>(i % 32) + 0.5f, static_cast<float>(i / 32) + 0.5f);
+        const auto seen = scene->trace(eye, scene->camera().ray_direction(eye, window.to_window(middle)));
+        ASSERT_TRUE(seen && pixel.seen && pixel.lamps.size() == 2);
+        EXPECT_GE(pixel.lamps[0].probability, pixel.lamps[1].probability);
+        for (const EmitterChance& lamp : pixel.lamps)
+            EXPECT_EQ(lamp.probability, scene->light_tree().probability(*seen, lamp.emitter));
+    }
+    const PixelLight& right = inspection.pixels[20 * 32 + 29];
+    EXPECT_EQ(right.lamps[0].emitter, 1u);
+    EXPECT_GT(right.lamps[0].probability, 0.6);
+}
+
+/// In test::two_rooms() the eye is where z > 0, the lamp beyond the partition.
+TEST(Inspection, PhotonsAreToldFromThoseBeyondGatherRays) {
+    const auto scene = test::two_rooms(0.01f);
+    const Inspection inspection = inspect_scene(*scene, inspected_settings(methods::ipm), {}, kLimits, {});
+    EXPECT_FALSE(inspection.gathered_everywhere);
+    std::size_t beyond = 0;
+    for (const PhotonShown& p : inspection.photons.photons) {
+        const float z = p.photon.position().z;
+        EXPECT_FALSE(z < -0.5f && p.gathered) << z;
+        EXPECT_FALSE(z > 0.5f && !p.gathered) << z;
+        EXPECT_TRUE(p.gathered || p.caustic) << z;
+        beyond += p.gathered ? 0 : 1;
+    }
+    EXPECT_GT(beyond, 100u);
+}
+
+TEST(Inspection, WarningsSayWhatTheyAreAbout) {
+    const auto scene = test::diffuse_box();
+    Settings s = inspected_settings(methods::ipm);
+    s.light_paths = 50;
+    const RenderStats stats = inspect_scene(*scene, s, {}, kLimits, {}).render.stats;
+    ASSERT_FALSE(stats.warnings.empty());
+    for (const std::string& warning : stats.warnings) EXPECT_TRUE(stats.doubts.contains(warning)) << warning;
+}
+
 TEST(Inspection, MeshesAreSimplifiedToWhatIsAskedFor) {
     TriangleMesh mesh;
     constexpr std::uint32_t kSide = 120;

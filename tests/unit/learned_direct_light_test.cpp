@@ -6,13 +6,16 @@
 #include "scene/bsdfs/diffuse.h"
 #include "scene/emitters/emitters.h"
 #include "scene/emitters/sphere_map.h"
+#include "support/chance.h"
 #include "support/chi_squared.h"
 #include "support/test_scenes.h"
 #include "support/window_room.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace keyhole {
 namespace {
@@ -194,6 +197,33 @@ TEST_F(LearnedDirectLight_Window, HasTheDensityOfItsSamples) {
         }
         EXPECT_NEAR(all / kSamples, 1, 0.02);
     }
+}
+
+TEST_F(LearnedDirectLight_Window, TellsTheChancesOfItsSamples) {
+    ASSERT_TRUE(learned);
+    constexpr int kSamples = 40'000, kDirections = 6;
+    const Vertex v = white_vertex({1.5f, 0, 1.5f}, {0, 1, 0});
+    const std::vector<EmitterChance> chances = learned->chances(v.point, kDirections);
+    ASSERT_FALSE(chances.empty());
+    std::map<std::uint32_t, int> drawn;
+    Rng rng(8, StreamPurpose::test, 0);
+    for (int i = 0; i < kSamples; ++i) ++drawn[learned->sample(v.point, rng).point.emitter];
+    double before = 1, told = 0;
+    for (const EmitterChance& chance : chances) {
+        const double p = chance.probability, n = drawn[chance.emitter];
+        EXPECT_LT(std::abs(n - kSamples * p), test::most_errors(2) * std::sqrt(kSamples * p * (1 - p)) + 1)
+            << n << " " << p;
+        EXPECT_LE(p, before);
+        before = p;
+        told += p;
+        for (const Vec3& w : chance.towards) {
+            SurfacePoint x0 = infinite_point(w);
+            x0.emitter = chance.emitter;
+            EXPECT_GT(learned->pdf(v.point, x0), 1 / (4 * kPi)) << "no likelier than any other direction";
+        }
+    }
+    EXPECT_LE(told, 1 + 1e-9);
+    EXPECT_TRUE(std::ranges::any_of(chances, [](const auto& c) { return c.towards.size() == kDirections; }));
 }
 
 TEST_F(LearnedDirectLight_Window, BringsAllLightWithATenthOfTheVariance) {

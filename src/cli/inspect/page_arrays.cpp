@@ -53,7 +53,7 @@ void add_photons(const PhotonSample& sample, BinaryData& data) {
         trails.push_back(p.trail);
         emitters.push_back(static_cast<std::uint16_t>(std::min<std::uint32_t>(p.emitter, 65535)));
         scatterings.push_back(static_cast<std::uint8_t>(p.scatterings < 0 ? 255 : std::min(p.scatterings, 254)));
-        kinds.push_back(static_cast<std::uint8_t>((p.caustic ? 1 : 0) | (p.guided ? 2 : 0)));
+        kinds.push_back(static_cast<std::uint8_t>((p.caustic ? 1 : 0) | (p.guided ? 2 : 0) | (p.gathered ? 0 : 4)));
     }
     data.add("photons", places);
     data.add("photonPowers", powers);
@@ -106,6 +106,30 @@ void add_ends(const std::vector<PixelLight::GatherEnd>& ends, const PlaceCode& c
     }
 }
 
+/// Of each pixel as many lamps as any has, and as many directions of each.
+void add_lamps(const std::vector<PixelLight>& pixels, BinaryData& data) {
+    std::size_t lamps = 0, directions = 0;
+    for (const PixelLight& pixel : pixels) {
+        lamps = std::max(lamps, pixel.lamps.size());
+        for (const EmitterChance& lamp : pixel.lamps) directions = std::max(directions, lamp.towards.size());
+    }
+    std::vector<std::uint16_t> chances;
+    std::vector<std::int8_t> towards;
+    for (const PixelLight& pixel : pixels)
+        for (std::size_t i = 0; i < lamps; ++i) {
+            const EmitterChance lamp = i < pixel.lamps.size() ? pixel.lamps[i] : EmitterChance{65535, 0};
+            chances.push_back(static_cast<std::uint16_t>(std::min<std::uint32_t>(lamp.emitter, 65535)));
+            chances.push_back(static_cast<std::uint16_t>(std::lround(65535 * std::clamp(lamp.probability, 0.0, 1.0))));
+            for (std::size_t k = 0; k < directions; ++k) {
+                const Vec3 w = k < lamp.towards.size() ? lamp.towards[k] : Vec3(0);
+                for (int axis = 0; axis < 3; ++axis)
+                    towards.push_back(static_cast<std::int8_t>(std::lround(127 * std::clamp(w[axis], -1.0f, 1.0f))));
+            }
+        }
+    data.add("pixelLamps", chances);
+    data.add("pixelTowards", towards);
+}
+
 void add_pixels(const std::vector<PixelLight>& pixels, const PlaceCode& code, BinaryData& data) {
     std::vector<std::uint32_t> starts{0};
     std::vector<std::uint16_t> trails, gather, direct;
@@ -130,6 +154,7 @@ void add_pixels(const std::vector<PixelLight>& pixels, const PlaceCode& code, Bi
     data.add("pixelDirect", direct);
     data.add("pixelSeen", seen);
     data.add("pixelReach", reach);
+    add_lamps(pixels, data);
 }
 
 void add_places(const Inspection& inspection, const PlaceCode& surface, BinaryData& data) {

@@ -108,9 +108,44 @@ Json counts_json(const Inspection& i) {
             {"refused", i.photons.refused},
             {"importons", i.importon_count},
             {"records", i.record_count},
+            {"gatheredEverywhere", i.gathered_everywhere},
+            {"learnedDirectLight", i.learned_direct_light},
             {"triangles", i.surface.of_scene},
             {"firstEmitter", i.surface.emitters},
             {"firstClear", i.surface.clear}};
+}
+
+const char* word(Doubt about) {
+    switch (about) {
+    case Doubt::render:
+        break;
+    case Doubt::scene:
+        return "scene";
+    case Doubt::samples:
+        return "samples";
+    case Doubt::direct_light:
+        return "direct";
+    case Doubt::caustics:
+        return "caustics";
+    case Doubt::photons:
+        return "photons";
+    case Doubt::lookups:
+        return "lookups";
+    case Doubt::records:
+        return "records";
+    }
+    return "render";
+}
+
+/// Each with what it is about.
+Json warnings_json(const RenderStats& stats) {
+    Json list = Json::array();
+    for (const std::string& warning : stats.warnings) {
+        const auto about = stats.doubts.find(warning);
+        list.push_back(
+            {{"text", warning}, {"about", word(about != stats.doubts.end() ? about->second : Doubt::render)}});
+    }
+    return list;
 }
 
 /// What the statistics know that a page has room for.
@@ -124,6 +159,7 @@ Json stats_of(const RenderResult& render) {
                            {"asked", render.settings.nearest}};
     if (quality.of_brightest) json["ofBrightest"] = *quality.of_brightest;
     json["photonMemory"] = render.settings.photon_memory;
+    json["warnings"] = warnings_json(render.stats);
     json["settings"] = settings_text(render.settings);
     return json;
 }

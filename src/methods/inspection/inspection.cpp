@@ -14,8 +14,9 @@ namespace {
 /// Keeps what the first pass is made from.
 class PassRecorder final : public PassObserver {
   public:
-    PassRecorder(const InspectionLimits& limits, std::uint64_t seed, Inspection& out)
-        : limits_(limits), seed_(seed), out_(out) {}
+    /// @param learned may be null
+    PassRecorder(const InspectionLimits& limits, std::uint64_t seed, const LearnedDirectLight* learned, Inspection& out)
+        : limits_(limits), seed_(seed), learned_(learned), out_(out) {}
 
     void stored(const Photon& photon, const PhotonOrigin& origin) override {
         if (!done_) recorder_.stored(photon, origin);
@@ -30,11 +31,19 @@ class PassRecorder final : public PassObserver {
         if (std::exchange(done_, true)) return;
         const double pixels = gather.rays().scene().camera().window().size();
         const auto rays = static_cast<int>(std::clamp(static_cast<double>(limits_.gather_rays) / pixels, 1.0, 16.0));
-        out_.pixels = pixel_lights(gather.rays(), gather.irradiance(), {.gather = rays, .seed = seed_});
+        out_.pixels =
+            pixel_lights(gather.rays(), gather.irradiance(), {.gather = rays, .seed = seed_, .learned = learned_});
+        keep_coverage(gather.coverage());
         if (gather.cache() != nullptr) keep_records(*gather.cache());
     }
 
   private:
+    void keep_coverage(const GatherCoverage* coverage) {
+        out_.gathered_everywhere = coverage == nullptr;
+        if (coverage == nullptr) return;
+        for (PhotonShown& p : out_.photons.photons)
+            p.gathered = coverage->comes_to(p.photon.position(), p.photon.normal().decode());
+    }
     void keep_records(const IrradianceCache& cache) {
         out_.record_count = cache.size();
         const std::vector<double> noise = cache.relative_noise();
@@ -49,6 +58,7 @@ class PassRecorder final : public PassObserver {
 
     InspectionLimits limits_;
     std::uint64_t seed_;
+    const LearnedDirectLight* learned_;
     Inspection& out_;
     PhotonRecorder recorder_;
     bool done_ = false; // the first pass
@@ -84,7 +94,8 @@ Inspection inspect_scene(Scene& scene, const Settings& settings, const UserPaths
     Inspection out;
     Findings findings;
     const LearnedDirectLightScope direct_light(scene, settings, context);
-    PassRecorder recorder(limits, static_cast<std::uint64_t>(settings.seed), out);
+    out.learned_direct_light = direct_light.learned() != nullptr;
+    PassRecorder recorder(limits, static_cast<std::uint64_t>(settings.seed), direct_light.learned(), out);
     out.render = render_by_method({scene, settings, paths, context, {}, findings, &recorder});
     out.render.settings = settings;
     Settings other = settings;

@@ -30,7 +30,9 @@ struct Inspection {
     RenderResult render, again; ///< two, that differ in their seed: how far they differ is their error
     SurfaceMesh surface;
     PhotonSample photons;
-    std::vector<PixelLight> pixels; ///< of `render`, row by row
+    bool gathered_everywhere = true;   ///< else light where gather rays seldom come is only in the caustic map
+    bool learned_direct_light = false; ///< whether lamps are chosen as was learned
+    std::vector<PixelLight> pixels;    ///< of `render`, row by row
     std::vector<Importon> importons;
     std::size_t importon_count = 0; ///< that were traced for this, of which some may be left out
     std::vector<Record> records;

@@ -17,6 +17,7 @@ struct PhotonShown {
     bool guided = false;                         ///< whether its path began along a user path
     int scatterings = -1;                        ///< before it arrived; -1: the sampler doesn't say
     std::uint32_t emitter = SurfacePoint::kNone; ///< that it comes from, where that is known
+    bool gathered = true;                        ///< whether gather rays come there
     std::int32_t trail = -1;                     ///< index among the trails, where its whole path was kept
 };
 

@@ -4,6 +4,7 @@
 #include "gather/direct_light.h"
 #include "sampling/paths/random_walk.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace keyhole {
@@ -49,6 +50,7 @@ class PixelTracer {
         if (!out.seen) return out;
         gather(walk, rng, out);
         light(walk, rng, out);
+        out.lamps = lamps(walk.found->point);
         if (irradiance_ != nullptr) {
             const auto answer = irradiance_->irradiance(walk.found->point, facing(walk.found->point.ng, walk.back));
             if (answer.known) out.reach = irradiance_->radius(answer.place);
@@ -101,6 +103,18 @@ class PixelTracer {
             if (!std::isfinite(source.value)) source.value = 0;
             out.direct.push_back(source);
         }
+    }
+
+    std::vector<EmitterChance> lamps(const SurfacePoint& at) const {
+        constexpr std::size_t kMost = 64; // which the light tree is asked for, one by one
+        const std::size_t count = scene_.emitters().size();
+        std::vector<EmitterChance> list;
+        if (options_.learned != nullptr) list = options_.learned->chances(at, options_.towards);
+        if (list.empty() && count > 1 && count <= kMost)
+            for (std::uint32_t i = 0; i < count; ++i) list.push_back({i, scene_.light_tree().probability(at, i)});
+        std::ranges::stable_sort(list, std::greater<>(), &EmitterChance::probability);
+        if (list.size() > options_.lamps) list.resize(options_.lamps);
+        return list;
     }
 
     const GatherRays& rays_;

@@ -3,6 +3,7 @@
 
 #include "gather/gather_rays.h"
 #include "photonmap/irradiance/irradiance_map.h"
+#include "sampling/guidance/learned_direct_light.h"
 
 #include <cstdint>
 #include <vector>
@@ -26,12 +27,18 @@ struct PixelLight {
     bool seen = false;             ///< whether there is one: otherwise the trail leads nowhere, or to an emitter
     std::vector<GatherEnd> gather; ///< ends of gather rays: light that was scattered there
     std::vector<Source> direct;    ///< points on emitters that are in sight
-    float reach = 0;               ///< radius of the estimate from photons there [m]; 0: none
+    /// Where shadow rays go: the likeliest emitters, as was learned, or, where nothing was, by the light tree. None
+    /// where there is no choice, or too large a one.
+    std::vector<EmitterChance> lamps;
+    float reach = 0; ///< radius of the estimate from photons there [m]; 0: none
 };
 
 struct PixelLightOptions {
     int gather = 12, direct = 4; ///< samples of each
     std::uint64_t seed;
+    const LearnedDirectLight* learned = nullptr; ///< null: nothing
+    std::size_t lamps = 3;                       ///< most that are told
+    int towards = 6;                             ///< most directions of each
 };
 
 /// Of all pixels, row by row. The same on any number of threads.

@@ -49,9 +49,9 @@ class LightChainSampler final : public PhotonSampler {
     void finish(RenderStats& stats) override {
         warn_of_broken(stats, broken_);
         if (target_.standard_error() > 0.05 * target_.mean())
-            stats.warnings.push_back(fmt::format("the visible power of light sub-paths is known to {:.0f} % only "
-                                                 "(standard error): raise brightness_samples",
-                                                 100 * target_.standard_error() / target_.mean()));
+            stats.warn(Doubt::photons, fmt::format("the visible power of light sub-paths is known to {:.0f} % only "
+                                                   "(standard error): raise brightness_samples",
+                                                   100 * target_.standard_error() / target_.mean()));
     }
 
   private:

@@ -29,7 +29,7 @@ LookupOptions lookups(const Settings& settings, const Radii& radii) {
 
 PassGather::PassGather(const SamplerContext& c, const RenderPlan& plan, std::int64_t pass, std::uint64_t seed,
                        Photons photons, RenderStats& stats, const RunContext& context)
-    : window_(c.scene.camera().window()), seed_(seed), global_(std::move(photons.global)),
+    : window_(c.scene.camera().window()), seed_(seed), coverage_(c.coverage), global_(std::move(photons.global)),
       caustic_(std::move(photons.caustic)) {
     const Settings& s = c.settings;
     const Radii radii(c.scene, pass);

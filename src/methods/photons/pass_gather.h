@@ -32,6 +32,8 @@ class PassGather {
     /// What it asks. The maps may be without photons; where there is no cache, or no irradiance known beforehand: null.
     const GatherRays& rays() const { return *rays_; }
     const IrradianceCache* cache() const { return cache_ ? &*cache_ : nullptr; }
+    /// Where light is gathered; null: everywhere.
+    const GatherCoverage* coverage() const { return coverage_; }
     const IrradianceMap* irradiance() const { return irradiance_ ? &*irradiance_ : nullptr; }
 
     /// Says what the samples have shown of the cache, how noisy they are, and looks for spots that are not there.
@@ -43,6 +45,7 @@ class PassGather {
 
     ImageWindow window_;
     std::uint64_t seed_;
+    const GatherCoverage* coverage_;
     PilotedMap global_, caustic_;
     std::optional<IrradianceMap> irradiance_;
     std::optional<DirectIrradianceCache> direct_irradiance_;

@@ -120,37 +120,38 @@ void warn_of_photons(RenderStats& stats, std::int64_t passes) {
     const auto cache = q.cache.value_or(PhotonQuality::Cache{});
     const double brightest = q.of_brightest.value_or(0), all_passes = std::max(1.0, static_cast<double>(passes));
     if (stats.photons_global + stats.photons_caustic == 0) {
-        stats.warnings.emplace_back("no photon was stored: only direct light is rendered. If there is more, try more "
-                                    "light_paths or mutations");
+        stats.warn(Doubt::photons, "no photon was stored: only direct light is rendered. If there is more, try more "
+                                   "light_paths or mutations");
         return;
     }
     // Where light is brightest no lookup may ask: a room behind a narrow door has most of the power, in few photons.
     if (brightest > kMostOfPower && lookups.effective < kLeastEffective * (q.lookups ? lookups.found : 1))
-        stats.warnings.push_back(fmt::format("the brightest 0.1 % of the photons carry {:.0f} % of the power: expect "
-                                             "blotches. Try more passes, or another method",
-                                             100 * brightest));
+        stats.warn(Doubt::photons, fmt::format("the brightest 0.1 % of the photons carry {:.0f} % of the power: expect "
+                                               "blotches. Try more passes, or another method",
+                                               100 * brightest));
     if (lookups.share < kLeastFound)
-        stats.warnings.push_back(fmt::format("the photon map is too sparse where it is asked: {:.1f} photons within "
-                                             "reach of a lookup, {:.0f} % of those asked for. Try more photons",
-                                             lookups.found, 100 * lookups.share));
+        stats.warn(Doubt::lookups, fmt::format("the photon map is too sparse where it is asked: {:.1f} photons within "
+                                               "reach of a lookup, {:.0f} % of those asked for. Try more photons",
+                                               lookups.found, 100 * lookups.share));
     // Each pass has spots of its own, and shows them less the more passes there are.
     if (const double share = q.unconfirmed.value_or(0) / all_passes; share > kMostFalse)
-        stats.warnings.push_back(fmt::format("in {:.1f} % of the picture a good part of the light comes from a few "
-                                             "photons of great power that lie close together: expect bright discs that "
-                                             "are not there. Try more photons, light_paths or mutations, more passes, "
-                                             "or another method",
-                                             100 * share));
+        stats.warn(Doubt::caustics,
+                   fmt::format("in {:.1f} % of the picture a good part of the light comes from a few "
+                               "photons of great power that lie close together: expect bright discs that "
+                               "are not there. Try more photons, light_paths or mutations, more passes, "
+                               "or another method",
+                               100 * share));
     if (const double noise = cache.noise / std::sqrt(all_passes); noise > kMostNoise)
-        stats.warnings.push_back(
-            fmt::format("so few gather rays find light that it is known to {:.0f} % only where the "
-                        "irradiance cache estimates it (standard error): expect blotches. Try more "
-                        "cache_rays, user paths, or another method",
-                        100 * noise));
+        stats.warn(Doubt::records,
+                   fmt::format("so few gather rays find light that it is known to {:.0f} % only where the "
+                               "irradiance cache estimates it (standard error): expect blotches. Try more "
+                               "cache_rays, user paths, or another method",
+                               100 * noise));
     if (cache.starving > kMostStarving)
-        stats.warnings.push_back(fmt::format("the irradiance cache has no record for {:.0f} % of what is seen: a few "
-                                             "gather rays of each sample have to do, "
-                                             "and make noise. Try more spp, or more gather_rays",
-                                             100 * cache.starving));
+        stats.warn(Doubt::records, fmt::format("the irradiance cache has no record for {:.0f} % of what is seen: a few "
+                                               "gather rays of each sample have to do, "
+                                               "and make noise. Try more spp, or more gather_rays",
+                                               100 * cache.starving));
 }
 
 } // namespace keyhole

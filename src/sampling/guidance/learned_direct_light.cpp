@@ -1,10 +1,12 @@
 #include "sampling/guidance/learned_direct_light.h"
 
+#include "core/kronecker.h"
 #include "core/parallel.h"
 #include "sampling/paths/direct_light.h"
 
 #include <algorithm>
 #include <array>
+#include <functional>
 
 namespace keyhole {
 namespace {
@@ -164,6 +166,19 @@ double LearnedDirectLight::pdf(const FoundLight& f) const {
     const Cell& cell = cells_[tree_.cell_of(f.at)];
     if (cell.plain == 1) return f.choice * f.point_pdf;
     return cell.plain * by_tree(cell, cell.middle, f.emitter) * f.point_pdf + (1 - cell.plain) * cell.pdf(f);
+}
+
+std::vector<EmitterChance> LearnedDirectLight::chances(const SurfacePoint& at, int directions) const {
+    const Cell& cell = cell_of(at);
+    std::vector<EmitterChance> list;
+    for (const Share& share : cell.shares) {
+        EmitterChance chance{share.emitter, cell.plain * share.by_tree + (1 - cell.plain) * share.probability};
+        for (int i = 0; i < directions && !share.directions.empty(); ++i)
+            chance.towards.push_back(share.directions.sample(at.p, (i + 0.5) / directions, kronecker(0.5, i, kR2[1])));
+        list.push_back(std::move(chance));
+    }
+    std::ranges::stable_sort(list, std::greater<>(), &EmitterChance::probability);
+    return list;
 }
 
 std::size_t LearnedDirectLight::bytes() const {

@@ -24,6 +24,13 @@ struct FoundLight {
     double density{0}; ///< of all samples that were drawn in search of light, added up: balance heuristic
 };
 
+/// With which probability samples of direct light go to an emitter.
+struct EmitterChance {
+    std::uint32_t emitter;
+    double probability;
+    std::vector<Vec3> towards{}; ///< of an environment: directions as they are drawn, unit; none: by the emitter
+};
+
 /// Surfaces in cells by place and normal, in each of which emitters are chosen by the root of the second moment of what
 /// they were found to bring, visibility included (Vevoda, Kondapaneni and Krivanek 2018, "Bayesian Online Regression
 /// for Adaptive Direct Illumination Sampling", cells and moments; theirs are regularised where these fall back on the
@@ -39,6 +46,10 @@ class LearnedDirectLight final : public DirectLightSampler {
     double pdf(const SurfacePoint& at, const SurfacePoint& x0) const override;
     /// The same for a sample that was found.
     double pdf(const FoundLight& found) const;
+
+    /// What is known of emitters at a place, the likeliest first, each with at most `directions` directions; empty
+    /// where the light tree chooses alone.
+    std::vector<EmitterChance> chances(const SurfacePoint& at, int directions) const;
 
     /// Expected second moment of samples over that of the light tree's, the mean over what was found.
     double second_moment_ratio() const { return ratio_; }

@@ -60,7 +60,14 @@ function pixelLight(x, y) {
   const gather = sources(arrays.pixelGather, 9).map((end) => ({ ...end,
     lamp: place(page.air, arrays.pixelGather.subarray(end.at + 4, end.at + 7), 0),
     fromLamp: fromLogarithm(arrays.pixelGather[end.at + 7]), emitter: arrays.pixelGather[end.at + 8] }));
-  return { trail: trailPoints, seen: arrays.pixelSeen[pixel] === 1, reach: arrays.pixelReach[pixel],
+  // Where shadow rays go, the likeliest lamp first; of an environment some directions that they take.
+  const most = arrays.pixelLamps.length / 2 / pixels, directions = most > 0 ? arrays.pixelTowards.length / 3 / (most * pixels) : 0, lamps = [];
+  for (let i = pixel * most; i < (pixel + 1) * most; ++i) {
+    if (arrays.pixelLamps[2 * i + 1] === 0) continue;
+    const towards = Array.from({ length: directions }, (_, k) => [...arrays.pixelTowards.subarray(3 * (directions * i + k), 3 * (directions * i + k + 1))]);
+    lamps.push({ emitter: arrays.pixelLamps[2 * i], chance: arrays.pixelLamps[2 * i + 1] / 65535, towards: towards.filter((w) => dot(w, w) > 0).map(unit) });
+  }
+  return { lamps, trail: trailPoints, seen: arrays.pixelSeen[pixel] === 1, reach: arrays.pixelReach[pixel],
            gather, direct: sources(arrays.pixelDirect, 4) };
 }
 

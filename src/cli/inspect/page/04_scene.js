@@ -10,7 +10,7 @@ class SceneView {
     this.lines = new Program(gl, LINES, ["corner", "from", "to", "tint", "width"]);
     this.pointSets = new Map();
     this.lineSets = new Map();
-    this.hidden = new Set(); // sets of lines that aren't of the panel at hand
+    this.hidden = new Set(); // sets of lines and points that aren't of the panel at hand
     this.opacity = 1;
     this.cut = 0;
     this.size = 2.5;
@@ -28,13 +28,14 @@ class SceneView {
     this.redraw();
   }
 
-  // Segments {a, b, colour, width in pixels}.
-  setLines(name, segments) {
+  // Segments {a, b, colour, width in pixels}. `through`: how much is seen of them behind surfaces.
+  setLines(name, segments, through = 0.22) {
     if (segments.length === 0) this.lineSets.delete(name);
     else {
       const column = (get, n) => new Float32Array(segments.flatMap((s) => get(s)));
       this.lineSets.set(name, {
         count: segments.length,
+        through,
         vao: vertexArray(this.gl, [
           [0, new Float32Array([0, -1, 0, 1, 1, -1, 1, 1]), 2], [1, column((s) => s.a), 3, true], [2, column((s) => s.b), 3, true],
           [3, column((s) => s.colour), 3, true], [4, column((s) => [s.width]), 1, true]]) });
@@ -64,17 +65,18 @@ class SceneView {
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
     this.drawSurfaces({ toClip, eye, cut: this.cut, lower: page.surface.lower, upper: page.surface.upper });
     this.points.use({ toClip, eye, size: this.size * ratio, pixelsPerRadian: height / (2 * camera.vertical), lift: 0.002 * camera.size, opacity: this.faded ? 0.3 : 0.92 });
-    for (const set of this.pointSets.values()) {
+    for (const [name, set] of this.pointSets) {
+      if (this.hidden.has(name)) continue;
       gl.bindVertexArray(set.vao);
       gl.drawArrays(gl.POINTS, 0, set.count);
     }
     // What surfaces hide of lines is drawn faintly.
     gl.depthMask(false);
-    for (const [test, opacity] of [[gl.GREATER, 0.22], [gl.LEQUAL, 1]]) {
-      gl.depthFunc(test);
-      this.lines.use({ toClip, eye, screen: [width / ratio, height / ratio], opacity });
+    for (const behind of [true, false]) {
+      gl.depthFunc(behind ? gl.GREATER : gl.LEQUAL);
       for (const [name, set] of this.lineSets) {
-        if (this.hidden.has(name)) continue;
+        if (this.hidden.has(name) || (behind && set.through === 0)) continue;
+        this.lines.use({ toClip, eye, screen: [width / ratio, height / ratio], opacity: behind ? set.through : 1 });
         gl.bindVertexArray(set.vao);
         gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, set.count);
       }

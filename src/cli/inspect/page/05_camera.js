@@ -64,7 +64,8 @@ class ViewCamera {
   }
 }
 
-// `view` is told of clicks: view.clicked(x, y), view.grabbed(x, y) -> dragged(x, y) or null, in pixels of the page.
+// `view` is told of clicks: view.clicked(x, y, reach), view.grabbed(x, y, reach) -> dragged(x, y) or null, in pixels of
+// the page; within `reach` of them lies what is meant: fingers are wide.
 class ViewControls {
   constructor(canvas, camera, view) {
     Object.assign(this, { canvas, camera, view, flying: false, pointers: new Map() });
@@ -80,8 +81,9 @@ class ViewControls {
     this.canvas.setPointerCapture(e.pointerId);
     this.canvas.focus({ preventScroll: true });
     this.pointers.set(e.pointerId, { x: e.offsetX, y: e.offsetY });
+    this.reach = e.pointerType === "touch" ? 22 : 10;
     this.travelled = this.pointers.size > 1 ? 100 : 0;
-    this.dragging = this.pointers.size === 1 && e.button === 0 ? this.view.grabbed(e.offsetX, e.offsetY) : null;
+    this.dragging = this.pointers.size === 1 && e.button === 0 ? this.view.grabbed(e.offsetX, e.offsetY, this.reach) : null;
     this.panning = e.button !== 0 || e.shiftKey;
   }
   moved(e) {
@@ -101,8 +103,8 @@ class ViewControls {
     this.view.redraw();
   }
   up(e) {
-    if (this.pointers.delete(e.pointerId) && this.travelled < 5 && e.type === "pointerup" && e.button === 0 && !this.dragging)
-      this.view.clicked(e.offsetX, e.offsetY);
+    if (this.pointers.delete(e.pointerId) && this.travelled < this.reach / 2 && e.type === "pointerup" && e.button === 0 && !this.dragging)
+      this.view.clicked(e.offsetX, e.offsetY, this.reach);
     if (this.dragging) this.view.released();
     if (this.pointers.size === 0) this.dragging = null;
   }
@@ -122,7 +124,7 @@ class ViewControls {
       "+": () => c.zoom(0.85), "=": () => c.zoom(0.85), "-": () => c.zoom(1 / 0.85),
       w: () => c.move(0, 0, step), s: () => c.move(0, 0, -step), a: () => c.move(-step, 0, 0), d: () => c.move(step, 0, 0),
       e: () => c.move(0, step, 0), q: () => c.move(0, -step, 0), c: () => c.reset(), Home: () => c.reset(),
-      Enter: () => this.view.clicked(this.canvas.clientWidth / 2, this.canvas.clientHeight / 2), Escape: () => this.view.cancelled() };
+      Enter: () => this.view.clicked(this.canvas.clientWidth / 2, this.canvas.clientHeight / 2, 10), Escape: () => this.view.cancelled() };
     const action = actions[e.key] ?? actions[e.key.toLowerCase()];
     if (!action) return;
     e.preventDefault();

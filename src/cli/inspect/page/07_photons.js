@@ -1,7 +1,10 @@
 // Photons and what else is drawn as points, their colours and legends.
 
 const BOUNCES = ["#56b4e9", "#009e73", "#e69f00", "#d55e00", "#cc79a7", "#8a5cd1"];
-const UNKNOWN = colourOf("#8f8f8f");
+const UNKNOWN = colourOf("#8f8f8f"), MISSED = BLUE;
+// Points are small: the darkest colours would be lost among surfaces.
+const POINT_RAMP_FROM = 0.3;
+const pointRamp = (t) => ramp(POINT_RAMP_FROM + (1 - POINT_RAMP_FROM) * Math.min(1, Math.max(0, t)));
 const emitterName = (index) => {
   const at = page.emitters.findIndex((e) => e.index === index);
   return at < 0 ? "another lamp" : `${page.emitters[at].p ? "lamp" : "light from afar"} ${at + 1} (${page.emitters[at].kind}, ${watts(page.emitters[at].power)})`;
@@ -17,11 +20,13 @@ const samplerOf = (i) => (arrays.photonKinds[i] & 2 ? "along a user path" : page
 class PhotonPanel {
   constructor(view) {
     this.view = view;
-    this.shown = { photons: true, refused: false, importons: false, records: false };
+    this.others = new OtherPoints(view);
+    this.shown = { photons: true, refused: false, importons: false, ends: false, records: false };
     const c = page.counts;
     this.checks = [
       ["photons", "Photons", whole(c.global.mainPhotons + c.caustic.mainPhotons)], ["refused", "Thrown away", whole(c.refused)],
-      ["importons", "Importons", whole(c.importons)], ["records", "Records of the cache", whole(c.records)]];
+      ["importons", "Importons", whole(c.importons)],
+      ["ends", "Ends of gather rays", whole(this.others.ends.length)], ["records", "Records of the cache", whole(c.records)]];
     for (const [key, name, count] of this.checks)
       byId("layers").append(element("label", {}, element("input", { type: "checkbox", id: "show-" + key, checked: this.shown[key] ? "" : null,
         onchange: (e) => { this.shown[key] = e.target.checked; this.update(); } }), name, element("span", { class: "note", text: count })));
@@ -42,8 +47,9 @@ class PhotonPanel {
     switch (byId("colour").value) {
       case "bounces": return bounceColour(bouncesBefore(i));
       case "emitter": return arrays.photonEmitters[i] === 65535 ? UNKNOWN : emitterColour(arrays.photonEmitters[i]);
+      case "gathered": return arrays.photonKinds[i] & 4 ? MISSED : ORANGE;
       case "sampler": return arrays.photonKinds[i] & 2 ? GREEN : ORANGE;
-      default: return ramp(Math.log(Math.max(this.powers[i], this.least) / this.least) / Math.log(this.most / this.least));
+      default: return pointRamp(Math.log(Math.max(this.powers[i], this.least) / this.least) / Math.log(this.most / this.least));
     }
   }
   update() {
@@ -59,21 +65,8 @@ class PhotonPanel {
         }
     this.places = new Float32Array(places);
     this.view.setPoints("photons", this.places, new Float32Array(colours), null, new Int8Array(sides));
-    this.others();
+    this.others.update(this.shown);
     this.legend();
-  }
-  others() {
-    const flat = (n, colour) => Float32Array.from({ length: 3 * n }, (_, i) => colour[i % 3]);
-    const show = (key, array, stride, colour) => {
-      const places = this.shown[key] ? decodedPlaces(page.surface, array, stride) : null;
-      this.view.setPoints(key, places, places && flat(places.length / 3, colour));
-    };
-    show("refused", arrays.refused, 3, colourOf("#a33c3c"));
-    show("importons", arrays.importons, 4, BLUE);
-    const n = arrays.recordFigures.length / 3, figure = (i, k) => arrays.recordFigures[3 * i + k];
-    const places = this.shown.records ? decodedPlaces(page.surface, arrays.records, 6) : null;
-    this.view.setPoints("records", places, places && new Float32Array(Array.from({ length: n }, (_, i) => ramp(figure(i, 1) / 0.5)).flat()),
-      Float32Array.from({ length: n }, (_, i) => figure(i, 0)));
   }
   legend() {
     const counts = new Map(), count = (key) => counts.set(key, (counts.get(key) ?? 0) + 1);
@@ -91,19 +84,36 @@ class PhotonPanel {
     } else if (by === "sampler") {
       this.indices.forEach((i) => count(samplerOf(i)));
       for (const [name, number] of counts) item(name === "along a user path" ? GREEN : ORANGE, name, number);
+    } else if (by === "gathered") {
+      const missed = this.indices.filter((i) => arrays.photonKinds[i] & 4).length;
+      item(ORANGE, page.counts.gatheredEverywhere ? "gather rays count everywhere" : "where gather rays come", this.indices.length - missed);
+      if (missed > 0) item(MISSED, "where they don't: in the caustic map alone", missed);
     } else if (this.indices.length > 0)
-      items.push(element("li", {}, watts(this.least), element("span", { class: "ramp", style: rampStyle() }), watts(this.most)));
-    if (this.shown.records)
-      items.push(element("li", {}, "records: noise 0", element("span", { class: "ramp", style: rampStyle() }), "50 %"));
+      items.push(element("li", {}, watts(this.least), element("span", { class: "ramp", style: rampStyle(POINT_RAMP_FROM) }), watts(this.most)));
+    items.push(...this.others.legend(this.shown));
     byId("legend").replaceChildren(...items);
   }
   // Draws the path of the photon that is drawn nearest to a place of the page. False: there is none.
-  clicked(picking, x, y) {
+  clicked(picking, x, y, reach = 8) {
+    if (this.shown.records && this.others.clicked(picking, x, y, reach)) return true;
     if (!this.shown.photons) return false;
-    const at = picking.nearest(this.places, x, y, 8, (k) => arrays.photonTrails[this.indices[k]] >= 0);
+    const at = picking.nearest(this.places, x, y, reach, (k) => arrays.photonTrails[this.indices[k]] >= 0);
     if (at < 0) return false;
     this.select(this.indices[at]);
     return true;
+  }
+  // The strongest of those with a path.
+  selectStrongest() {
+    let best = -1;
+    for (const i of this.indices) if (arrays.photonTrails[i] >= 0 && (best < 0 || this.powers[i] > this.powers[best])) best = i;
+    if (best >= 0) this.select(best);
+    return best;
+  }
+  // By name: a kind of points to be shown, or what photons are coloured by.
+  show(name) {
+    if (name in this.shown) byId("show-" + name).checked = this.shown[name] = true;
+    else byId("colour").value = name;
+    this.update();
   }
   select(i) {
     const path = trail(arrays.photonTrails[i]), n = bouncesBefore(i);

@@ -13,14 +13,13 @@ function photonFigures() {
   if (found > 0) says.push(`Of ${whole(found)} that could have been stored ${percent(kept / found)} were kept.`);
   if (s.lookups) says.push(`An estimate finds ${digits(s.lookups.found, 2)} photons, as good as ${digits(s.lookups.effective, 2)} equal ones; ${percent(s.lookups.share)} of those it looks for.`);
   if (s.ofBrightest !== undefined) says.push(`The brightest 0.1 % carry ${percent(s.ofBrightest)} of the power.`);
-  if (s.lookups && (s.lookups.share < 0.7 || s.lookups.effective < 15)) parts.push(element("p", { class: "warning", text: "Photons are few where they are asked: more memory, more light paths, or user paths would help." }));
   return [...parts, element("p", { text: says.join(" ") })];
 }
 
-function showFigures(picture) {
+function showFigures(picture, warnings) {
   const s = page.stats, error = (name) => digits(100 * picture.errors.get(name).rms, 2) + " %";
   byId("figures").replaceChildren(
-    ...s.warnings.map((w) => element("p", { class: "warning", text: w })),
+    ...warnings.elements(),
     element("h2", { text: "Error" }),
     table(["layer", "standard error"], [["picture", error("error")], ["direct light", error("error:direct")], ["indirect light", error("error:indirect")], ["caustics", error("error:caustic")]]),
     ...photonFigures(),

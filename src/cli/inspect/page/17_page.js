@@ -43,7 +43,7 @@ async function start() {
   const picking = new Picking(view), photons = new PhotonPanel(view), picture = new PicturePanel(view), paths = new UserPathPanel(view, picking);
   const controls = new ViewControls(view.canvas, view.camera, {
     redraw: () => view.redraw(),
-    grabbed: (x, y) => paths.grabbed(x, y),
+    grabbed: (x, y, reach) => paths.grabbed(x, y, reach),
     released: () => paths.update(),
     cancelled: () => paths.setMode(null),
     focused: (x, y) => {
@@ -51,14 +51,14 @@ async function start() {
       if (hit) view.camera.lookAt(hit.p);
       view.redraw();
     },
-    clicked: (x, y) => {
-      if (paths.clicked(x, y)) return;
-      if (photons.clicked(picking, x, y)) selectTab("photons");
+    clicked: (x, y, reach) => {
+      if (paths.clicked(x, y, reach)) return;
+      if (photons.clicked(picking, x, y, reach)) selectTab("photons");
     },
   });
   // What is drawn of a pixel would drown among photons.
   document.addEventListener("panel", (e) => {
-    view.hidden = new Set({ pixel: ["photon"], photons: ["pixel"], paths: ["pixel", "photon"] }[e.detail] ?? []);
+    view.hidden = new Set({ pixel: ["photon"], photons: ["pixel", "rings"], paths: ["pixel", "rings", "photon", "records"], figures: [] }[e.detail] ?? []);
     view.faded = (e.detail === "pixel" && picture.pixel !== null) || e.detail === "paths";
     view.redraw();
   });
@@ -75,12 +75,14 @@ async function start() {
   byId("title").textContent = "Where the light goes in " + page.scene;
   document.title = `${page.scene}: where the light goes`;
   byId("summary").textContent = `${whole(global.mainPhotons + caustic.mainPhotons)} photons by ${page.stats.method}, ${whole(page.counts.triangles)} triangles, ${page.program}`;
-  showFigures(picture);
+  const warnings = new Warnings(view, picture, photons, paths), count = warnings.list().length;
+  showFigures(picture, warnings);
+  if (count > 0) byId("tab-figures").append(element("span", { class: "count", text: count, "aria-label": count === 1 ? "1 warning" : count + " warnings" }));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => view.redraw());
   new ResizeObserver(() => view.redraw()).observe(view.canvas);
   await picture.ready;
   view.draw();
-  window.keyhole = { page, arrays, view, picking, photons, picture, paths, controls, firstFrame: performance.now() };
+  window.keyhole = { page, arrays, view, picking, photons, picture, paths, warnings, controls, firstFrame: performance.now() };
 }
 
 start().catch((e) => {

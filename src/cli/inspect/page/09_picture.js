@@ -55,6 +55,19 @@ class PicturePanel {
     scale.replaceChildren("0", element("span", { class: "ramp", style: rampStyle() }), error ? "100 %" : metres(widest),
       error ? ` (root mean square ${digits(100 * error.rms, 2)} %)` : "");
   }
+  // Chooses a layer, and the pixel that is the worst in it.
+  showWorst(layer) {
+    byId("layer").value = layer;
+    this.draw();
+    const error = this.errors.get(layer);
+    let worst = [0, 0], most = -1;
+    for (let y = 0; y < this.height; ++y)
+      for (let x = 0; x < this.width; ++x) {
+        const value = error ? this.smoothed(error.map, x, y) : arrays.pixelReach[y * this.width + x];
+        if (value > most) [most, worst] = [value, [x, y]];
+      }
+    this.choose(...worst);
+  }
   point(e) {
     const box = this.canvas.getBoundingClientRect();
     this.choose(Math.floor((e.clientX - box.left) / box.width * this.width), Math.floor((e.clientY - box.top) / box.height * this.height));
@@ -76,9 +89,16 @@ class PicturePanel {
     this.light = pixelLight(x, y);
     this.sources = photonsBehind(this.light);
     const means = LAYERS.map((l) => arrays[l + "A"][y * this.width + x] + arrays[l + "B"][y * this.width + x]);
+    this.markPhotons();
     this.view.setLines("pixel", pixelSegments(this.light, this.sources, means[2] / (means[0] + means[1] + means[2] || 1)));
     this.tell(x, y);
     selectTab("pixel");
+  }
+  // Rings around the photons that what is said of the pixel comes from.
+  markPhotons() {
+    const size = this.view.camera.size, normal = (i) => unit([...arrays.photonNormals.subarray(3 * i, 3 * i + 3)]);
+    this.view.setLines("rings", [...this.sources.used].flatMap((i) =>
+      ring(add(photonPlace(i), scaled(normal(i), 0.001 * size)), normal(i), 0.005 * size, arrays.photonKinds[i] & 1 ? GREEN : YELLOW, 1.5)));
   }
   tell(x, y) {
     const i = y * this.width + x, light = LAYERS.map((l) => (arrays[l + "A"][i] + arrays[l + "B"][i]) / 2), all = light.reduce((a, b) => a + b, 0);
@@ -95,10 +115,20 @@ class PicturePanel {
         ...shares.map((s) => element("span", { style: `width: ${100 * s.share}%; background: ${s.colour}` }))),
       element("ul", { class: "legend" }, ...shares.map((s) => element("li", {}, element("span", { class: "dot", style: `background: ${s.colour}` }), s.name, element("span", { class: "note", text: percent(s.share) })))),
       ...this.sourcesText(),
+      ...this.lampsText(),
       ...(shares[2].share > 0.02 ? [element("p", { class: "note", text: "The caustic map holds light that came through glass or mirrors, and what gather rays would hardly find. Green lines are paths of its photons." })] : []),
       element("p", { class: "note", text: `Pixel ${x}, ${y}: luminance ${digits(all)} W/(m² sr), standard error ${percent(this.smoothed(this.errors.get("error").map, x, y))}` +
         (this.light.reach > 0 ? `; photons within ${metres(this.light.reach)} make an estimate here.` : ".") }));
     say(`Pixel ${x}, ${y}: mostly ${main.name}`);
+  }
+  // What is known here of lamps before a shadow ray is sent.
+  lampsText() {
+    const { lamps } = this.light;
+    if (lamps.length === 0) return [];
+    return [element("p", { text: `Shadow rays from here go to${page.counts.learnedDirectLight ? ", as was learned" : " (by size and distance; nothing was learned)"}:` }),
+      element("ul", { class: "legend", id: "lamps" }, ...lamps.map((l) => element("li", {}, element("span", { class: "dot", style: `background: ${css(emitterColour(l.emitter))}` }),
+        emitterName(l.emitter), element("span", { class: "note", text: percent(l.chance) })))),
+      ...(lamps.some((l) => l.towards.length > 0) ? [element("p", { class: "note", text: "Pale short lines are directions to the sky, as they were learned." })] : [])];
   }
   sourcesText() {
     const { lamps, once, more } = this.sources, total = once + more;
@@ -107,66 +137,7 @@ class PicturePanel {
     const names = by.slice(0, 2).map(([e, w]) => (w > 0.98 * total ? "" : percent(w / total) + " ") + "from " + (e < 0 ? "where nothing is known" : emitterName(e)));
     const way = share < 0.02 ? "by way of several surfaces" : share > 0.98 ? "by way of one surface" : `${percent(share)} by way of one surface, the rest of several`;
     return [element("p", { text: `What other surfaces scatter here came ${names.join(", ")}; ${way}.` }),
-      element("p", { class: "note", text: "Orange lines show from where the light reaches this place, yellow ones how it came there from a lamp, blue ones lead to lamps in sight." })];
+      element("p", { class: "note", text: "Orange lines show from where the light reaches this place, yellow ones how it came there from a lamp, blue ones lead to lamps in sight." +
+        (this.sources.used.size > 0 ? ` Rings are ${whole(this.sources.used.size)} photons that say so.` : "") })];
   }
-}
-
-// Where the light came from that gather rays found: straight from a lamp, or, for the rest, as the photons nearest to
-// their ends did, by power. {lamps: light by emitter, once, more: light by way of one surface, of more; trails}.
-function photonsBehind(light) {
-  const found = { lamps: new Map(), once: 0, more: 0, trails: [], caustic: [] };
-  const count = (emitter, value) => found.lamps.set(emitter, (found.lamps.get(emitter) ?? 0) + value);
-  for (const end of light.gather) {
-    const once = Math.min(end.value, end.fromLamp), more = end.value - once;
-    if (once > 0) count(end.emitter, once);
-    found.once += once;
-    found.more += more;
-    if (!(more > 0)) continue;
-    const near = nearestPhotons(end.p, light.trail[light.trail.length - 1], 12), power = near.reduce((s, i) => s + photonPower(i), 0);
-    if (near.length === 0) count(-1, more);
-    for (const i of near) count(arrays.photonEmitters[i] === 65535 ? -1 : arrays.photonEmitters[i], (more * photonPower(i)) / power);
-    const drawn = near.find((i) => arrays.photonTrails[i] >= 0);
-    if (drawn !== undefined) found.trails.push({ photon: drawn, value: more });
-  }
-  found.trails.sort((a, b) => b.value - a.value);
-  const here = light.trail[light.trail.length - 1];
-  if (light.seen && light.reach > 0) // farther off photons have no say
-    found.caustic = nearestPhotons(here, light.trail[light.trail.length - 2], 20, true).filter((i) => arrays.photonTrails[i] >= 0 && distance2(photonPlace(i), here) < (4 * light.reach) ** 2).slice(0, 3);
-  return found;
-}
-
-// The photons of a map nearest to a place, the nearest first, that lie on the side where `from` is.
-function nearestPhotons(p, from, most, caustic = false) {
-  const w = sub(from, p), normals = arrays.photonNormals;
-  const near = [];
-  for (let i = 0; i < photonCount(); ++i) {
-    if (((arrays.photonKinds[i] & 1) !== 0) !== caustic) continue;
-    const d = (arrays.photons[3 * i] - p[0]) ** 2 + (arrays.photons[3 * i + 1] - p[1]) ** 2 + (arrays.photons[3 * i + 2] - p[2]) ** 2;
-    if (near.length === most && d >= near[most - 1][0]) continue;
-    if (!(w[0] * normals[3 * i] + w[1] * normals[3 * i + 1] + w[2] * normals[3 * i + 2] > 0)) continue;
-    let k = near.length;
-    while (k > 0 && near[k - 1][0] > d) --k;
-    near.splice(k, 0, [d, i]);
-    near.length = Math.min(near.length, most);
-  }
-  return near.map(([, i]) => i);
-}
-
-// `share`: of the pixel's light, by the caustic map.
-function pixelSegments(light, sources, share) {
-  const segments = [], at = light.trail[light.trail.length - 1];
-  for (let k = 0; k + 1 < light.trail.length; ++k) segments.push({ a: light.trail[k], b: light.trail[k + 1], colour: WHITE, width: 3 });
-  const most = Math.max(...light.gather.map((g) => g.value), ...light.direct.map((g) => g.value), 1e-30);
-  for (const g of light.direct) segments.push({ a: at, b: g.p, colour: BLUE, width: 1 + 2 * Math.sqrt(g.value / most) });
-  for (const g of light.gather) segments.push({ a: at, b: g.p, colour: ORANGE, width: 0.8 + 2.4 * Math.sqrt(g.value / most) });
-  for (const g of light.gather) if (g.fromLamp > 0.05 * most) segments.push({ a: g.lamp, b: g.p, colour: YELLOW, width: 2 });
-  for (const s of sources.trails.filter((t) => t.value > 0.05 * most).slice(0, 3)) {
-    const path = trail(arrays.photonTrails[s.photon]);
-    segments.push(...trailSegments({ points: path.points.slice(0, path.photon + 1), photon: path.photon }, 2));
-  }
-  for (const i of share > 0.02 ? sources.caustic : []) {
-    const path = trail(arrays.photonTrails[i]);
-    for (let k = 0; k < path.photon; ++k) segments.push({ a: path.points[k], b: path.points[k + 1], colour: GREEN, width: 2 });
-  }
-  return segments;
 }

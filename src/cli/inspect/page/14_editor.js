@@ -37,7 +37,12 @@ function pointRows(panel) {
   path.points.forEach((point, i) => {
     if (point.through) opening(point.through, () => { delete point.through; panel.update(); });
     rows.push(element("li", {}, element("span", { class: "dot", style: `background: ${i === 0 ? css(YELLOW) : COLOURS[panel.current % COLOURS.length]}` }),
-      element("span", { class: "place", text: `${i === 0 ? "lamp" : "point " + (i + 1)} (${coordinates(point.p)})` }),
+      element("span", { text: i === 0 ? "lamp" : "point " + (i + 1) }),
+      element("input", { type: "text", class: "place", value: point.p.map(number).join(", "), "aria-label": `Place of point ${i + 1}`, onchange: (e) => {
+        const p = e.target.value.split(",").map(Number);
+        if (p.length === 3 && p.every(Number.isFinite)) point.p = p;
+        panel.update();
+      } }),
       element("button", { "aria-label": `Delete point ${i + 1}`, text: "×", onclick: () => panel.removePoint(i) })));
   });
   if (path.opening) opening(path.opening, () => { path.opening = null; panel.update(); });

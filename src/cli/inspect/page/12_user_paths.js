@@ -58,9 +58,9 @@ class UserPathPanel {
     this.draw();
   }
   // Returns whether the click was for the editor.
-  clicked(x, y) {
+  clicked(x, y, reach = 12) {
     if (!this.mode || !this.path) return false;
-    const corner = this.mode === "opening" ? this.picking.cornerAt(x, y) : null, hit = corner ? { p: corner } : this.picking.surfaceAt(x, y);
+    const corner = this.mode === "opening" ? this.picking.cornerAt(x, y, reach + 2) : null, hit = corner ? { p: corner } : this.picking.surfaceAt(x, y);
     if (!hit) {
       say("There is no surface here");
       return true;
@@ -80,43 +80,29 @@ class UserPathPanel {
     this.setMode("point");
     say("Click a surface behind the opening");
   }
-  // The point drawn at a place of the page can be dragged along the surfaces.
-  grabbed(x, y) {
+  // Points drawn at a place of the page can be dragged along the surfaces, corners of openings in their plane.
+  grabbed(x, y, reach = 12) {
     if (byId("panel-paths").hidden || !this.path || this.mode) return null;
-    const i = this.path.points.findIndex((point) => {
-      const at = this.picking.project(point.p);
-      return at && Math.hypot(at[0] - x, at[1] - y) < 12;
-    });
-    if (i < 0) return null;
+    const handles = [
+      ...this.path.points.map((point) => ({ p: point.p, move: (u, v) => {
+        const hit = this.picking.surfaceAt(u, v);
+        if (hit) point.p = hit.p.map((c) => Number(c.toPrecision(6)));
+      } })),
+      ...openingsOf(this.path).flatMap((o) => openingCorners(o).slice(0, 3).map((p, k) => ({ p, move: (u, v) =>
+        moveCorner(o, k, this.picking.cornerAt(u, v, reach) ?? inPlane(o, this.view.camera.eye, this.picking.ray(u, v))) })))];
+    const off = ({ p }) => {
+      const at = this.picking.project(p);
+      return at ? Math.hypot(at[0] - x, at[1] - y) : Infinity;
+    };
+    const nearest = handles.reduce((a, b) => (a && off(a) <= off(b) ? a : b), null);
+    if (!nearest || off(nearest) >= reach) return null;
     return (u, v) => {
-      const hit = this.picking.surfaceAt(u, v);
-      if (hit) this.path.points[i].p = hit.p.map((c) => Number(c.toPrecision(6)));
+      nearest.move(u, v);
       this.draw();
     };
   }
   draw() {
-    const segments = [], places = [], colours = [];
-    this.paths.forEach((path, k) => {
-      const now = k === this.current, colour = colourOf(COLOURS[k % COLOURS.length]), width = now ? 4 : 2;
-      const opening = (o) => {
-        const c = [o.corner, add(o.corner, o.u), add(add(o.corner, o.u), o.v), add(o.corner, o.v)];
-        c.forEach((p, i) => segments.push({ a: p, b: c[(i + 1) % 4], colour: GREEN, width }));
-        return mix(c[0], c[2], 0.5);
-      };
-      let last = null;
-      path.points.forEach((point, i) => {
-        const middle = point.through ? opening(point.through) : null;
-        // Where light is scattered before the opening nobody says: only from there on the way is known.
-        if (last && middle) segments.push({ a: last, b: middle, colour, width: i === 1 && path.bounces ? width / 3 : width }, { a: middle, b: point.p, colour, width });
-        else if (last) segments.push({ a: last, b: point.p, colour, width });
-        last = point.p;
-        places.push(...point.p);
-        colours.push(...(i === 0 ? YELLOW : colour));
-      });
-      if (path.opening) opening(path.opening);
-    });
-    this.clicks.forEach((p, i) => { if (i > 0) segments.push({ a: this.clicks[0], b: p, colour: GREEN, width: 4 }); });
-    for (const p of this.clicks) { places.push(...p); colours.push(...GREEN); }
+    const { segments, places, colours } = userPathDrawing(this.paths, this.current, this.clicks);
     this.view.setLines("userPaths", segments);
     const radius = 0.005 * this.view.camera.size;
     this.view.setPoints("userPaths", new Float32Array(places), new Float32Array(colours), new Float32Array(places.length / 3).fill(radius));
