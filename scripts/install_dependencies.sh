@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that Keyhole needs and that are missing; says nothing if none is.
-# --ci: also what the checks of .ci/run need, and Blender if it can be had. --blender: Blender as well.
+# --ci: also what the checks of .ci/run need, and Blender if it can be had. --blender: Blender as well, with numpy, which
+# the add-on needs and Debian only recommends.
 set -euo pipefail
 
 packages=(
@@ -11,8 +12,8 @@ packages=(
 [[ ${1-} != --ci ]] || packages+=(clang-14 libclang-rt-14-dev clang-format-14 clang-tidy-14 libopenmpi-dev openmpi-bin)
 wanted=() # what is done without where it can't be had
 case ${1-} in
-    --ci) wanted=(blender pyflakes3) ;;
-    --blender) packages+=(blender) ;;
+    --ci) wanted=(blender python3-numpy pyflakes3) ;;
+    --blender) packages+=(blender python3-numpy) ;;
 esac
 
 die() { printf '%s: %s\n' "${0##*/}" "$*" >&2; exit 1; }
