@@ -54,9 +54,11 @@ class KeyholeEngine(bpy.types.RenderEngine):
                    *settings.arguments(chosen)]
         if exported.user_paths:
             command += ["--user-paths", exported.user_paths, "--skip-bad-paths"]
-        passes.add_all(self)
+        layer = depsgraph.view_layer
+        if any(passes.mattes(layer)):
+            command += ["-D", "cryptomatte=true"]
+        passes.add_all(self, layer)
         run = Run(command)
-        layer = depsgraph.view_layer.name
         self.follow(run, live, layer, chosen.time if chosen.effort == "TIME" else None)
         live.close()
         self.finish(run, layer, output)
@@ -84,7 +86,7 @@ class KeyholeEngine(bpy.types.RenderEngine):
         for line in run.warnings():
             self.warn(line)
         if os.path.exists(output):
-            passes.put(self, layer, exr.read(output))
+            passes.put(self, layer, exr.read(output), passes.manifests(output, layer))
         elif run.interrupted is None:
             self.fail("\n".join(run.errors()) or f"keyhole ended with code {code}")
 

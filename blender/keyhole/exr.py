@@ -55,6 +55,13 @@ def unzip(block, size):
     return whole.tobytes()
 
 
+def texts(path, prefix):
+    """{name: value} of the attributes whose names begin so, which are strings."""
+    with open(path, "rb") as file:
+        found, _ = header(file.read())
+    return {name: value.decode() for name, value in found.items() if name.startswith(prefix)}
+
+
 def read(path):
     """{channel: array (height, width), float32, first row on top}. Raises ValueError for files of other kinds."""
     with open(path, "rb") as file:

@@ -63,7 +63,17 @@ class KEYHOLE_PT_user_paths(KeyholePanel, bpy.types.Panel):
             column.label(text="Custom properties: bounces, weight, beta", icon="PROPERTIES")
 
 
-CLASSES = KEYHOLE_PT_effort, KEYHOLE_PT_resources, KEYHOLE_PT_user_paths
+class KEYHOLE_PT_mattes(KeyholePanel, bpy.types.Panel):
+    bl_label = "Cryptomatte"
+    bl_context = "view_layer"
+
+    def draw(self, context):
+        column = self.column()
+        column.prop(context.view_layer, "use_pass_cryptomatte_object", text="Objects")
+        column.prop(context.view_layer, "use_pass_cryptomatte_material", text="Materials")
+
+
+CLASSES = KEYHOLE_PT_effort, KEYHOLE_PT_resources, KEYHOLE_PT_user_paths, KEYHOLE_PT_mattes
 
 
 def shared_panels():

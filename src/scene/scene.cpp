@@ -128,7 +128,7 @@ bool Scene::trace(const SurfacePoint& from, const Vec3& w, SurfacePoint& found) 
     const Vec3 o = from.ray_origin(w);
     const auto hit = accelerator_.intersect(o, w);
     if (!hit) {
-        if (environment_ == SurfacePoint::kNone) return false;
+        if (environment_ == SurfacePoint::kNone || hides_surroundings(from)) return false;
         found = infinite_point(w);
         found.emitter = environment_;
         return true;
@@ -149,6 +149,7 @@ bool Scene::visible(const SurfacePoint& a, const SurfacePoint& b, const Vec3& a_
     const bool turned = a.site == Site::infinite;
     const SurfacePoint &from = turned ? b : a, &to = turned ? a : b;
     const Vec3 w = turned ? -a_to_b : a_to_b, o = from.ray_origin(w);
+    if (to.site == Site::infinite && hides_surroundings(from)) return false;
     if (to.site == Site::infinite) return !accelerator_.occluded(o, w, std::numeric_limits<float>::infinity());
     const Vec3 edge = to.ray_origin(-w) - o;
     if ((begins_farther_on(from) || begins_farther_on(to)) && edge.dot(w) < 0) return false; // before the view begins

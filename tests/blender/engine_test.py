@@ -6,42 +6,8 @@ import time
 import bpy
 import numpy as np
 
-from harness import ball, diffuse, empty_scene, expect, floor, lamp, of_operator, render, add, sky, test
+from harness import diffuse, empty_scene, expect, floor, lamp, of_operator, render, add, sky, test
 from keyhole import engine, process, settings
-
-
-@test
-def passes_add_up():
-    floor()
-    ball()
-    lamp("AREA", size=2)
-    layers, messages = render("KEYHOLE", multilayer=True)
-    expect(messages, [])
-    names = {name.split(".")[-2] for name in layers}
-    assert names >= {"Combined", "Depth", "Normal", "Albedo", "Direct", "Indirect", "Caustics"}, names
-    layer = next(name for name in layers if name.endswith("Combined.R")).rsplit(".", 2)[0]
-    of = {name[len(layer) + 1:]: values for name, values in layers.items()}
-    total = of["Direct.R"] + of["Indirect.R"] + of["Caustics.R"]
-    assert np.allclose(total, of["Combined.R"], rtol=1e-3, atol=1e-4)
-    middle = of["Normal.Z"].shape[0] - 4, of["Normal.Z"].shape[1] // 2
-    assert of["Normal.Z"][middle] > 0.99, "the floor, at the bottom, looks up"
-    assert 3 < of["Depth.Z"][middle] < 6
-    assert abs(of["Albedo.R"][middle] - 0.6) < 0.01
-
-
-@test
-def each_view_layer_has_its_picture():
-    floor()
-    collection = bpy.data.collections.new("Lamps")
-    bpy.context.scene.collection.children.link(collection)
-    thing = lamp("AREA", size=2)
-    bpy.context.scene.collection.objects.unlink(thing)
-    collection.objects.link(thing)
-    dark = bpy.context.scene.view_layers.new("Dark")
-    dark.layer_collection.children["Lamps"].exclude = True
-    layers, _ = render("KEYHOLE", multilayer=True, samples=8)
-    first = bpy.context.scene.view_layers[0].name
-    assert layers["Dark.Combined.R"].mean() < 0.8 * layers[first + ".Combined.R"].mean() > 0
 
 
 @test
@@ -172,19 +138,3 @@ def user_paths_are_used_and_bad_ones_left_out():
     bright, reference = with_paths["R"].mean(), without["R"].mean()
     assert abs(bright / reference - 1) < 0.1, (bright, reference)
     empty_scene()
-
-
-@test
-def blender_reads_the_passes_of_a_file_from_the_command_line():
-    floor()
-    exported = engine.scene_export.export(bpy.context.evaluated_depsgraph_get(), bpy.app.tempdir)
-    picture = os.path.join(bpy.app.tempdir, "layers.exr")
-    assert process.Run([os.environ["KEYHOLE"], "render", exported.path, "-o", picture, "--no-png", "--method", "path",
-                        "--spp", "1"]).finish() == 0
-    scene = bpy.context.scene
-    scene.use_nodes = True
-    node = scene.node_tree.nodes.new("CompositorNodeImage")
-    node.image = bpy.data.images.load(picture)
-    assert node.image.type == "MULTILAYER", node.image.type
-    names = {output.name for output in node.outputs}
-    assert names >= {"Combined", "albedo", "caustic", "depth", "direct", "indirect", "normal"}, names

@@ -51,7 +51,7 @@ def export(scene, messages):
     if render.pixel_aspect_x != render.pixel_aspect_y:
         messages.add("Output", "pixels that are not square are not exported")
     if render.film_transparent:
-        messages.add("Film", "transparency is not exported: the picture is opaque")
+        film["transparent"] = True
     data = thing.data
     if data.type not in {"PERSP", "ORTHO"}:
         messages.add(thing.name, f"a camera of type {data.type} is not exported: it is a perspective one")
