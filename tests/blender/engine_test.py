@@ -4,9 +4,8 @@ import os
 import time
 
 import bpy
-import numpy as np
 
-from harness import diffuse, empty_scene, expect, floor, lamp, of_operator, render, add, sky, test
+from harness import floor, lamp, render, test
 from keyhole import engine, process, settings
 
 
@@ -90,51 +89,3 @@ def settings_become_options():
                                           "--photon-memory", "64MiB"]
     chosen.effort, chosen.target_error = "ERROR", 0.05
     assert "--target-error" in settings.arguments(chosen)
-
-
-def two_rooms():
-    """A lamp behind a wall with a door, a user path drawn through it, and another one that leads nowhere."""
-    sky(0)
-    floor()
-    wall = diffuse("Wall", (0.7, 0.7, 0.7))
-    for x in (-2.6, 2.6):
-        of_operator(bpy.ops.mesh.primitive_cube_add, wall, location=(x, 0, 1.5)).scale = 2, 0.05, 1.5
-    of_operator(bpy.ops.mesh.primitive_cube_add, wall, location=(0, 4, 1.5)).scale = 4, 0.05, 1.5
-    lamp("AREA", (2, 2, 2.9), size=0.5, energy=200)
-    collection = bpy.data.collections.new("Keyhole Paths")
-    bpy.context.scene.collection.children.link(collection)
-    door = of_operator(bpy.ops.mesh.primitive_plane_add, size=1, location=(0, 0, 1.5), rotation=(1.5708, 0, 0))
-    door.scale = 1.2, 3, 1
-    through = curve("Through the door", [(2, 2, 2.9), (0, 0, 1.5), (-1, -2, 0)])
-    through["bounces"] = [1, 2]
-    bad = curve("From no lamp", [(-3, -3, 1), (2, -2, 0)])
-    bad["tolerance"] = 0.01
-    for thing in (door, through, bad):
-        for owner in list(thing.users_collection):
-            owner.objects.unlink(thing)
-        collection.objects.link(thing)
-    bpy.context.view_layer.update()
-
-
-def curve(name, points):
-    data = bpy.data.curves.new(name, "CURVE")
-    data.dimensions = "3D"
-    spline = data.splines.new("POLY")
-    spline.points.add(len(points) - 1)
-    for point, place in zip(spline.points, points):
-        point.co = (*place, 1)
-    return add(name, data)
-
-
-@test
-def user_paths_are_used_and_bad_ones_left_out():
-    two_rooms()
-    with_paths, messages = render("KEYHOLE", "--spp 16 --photons 20k", method="ipm")
-    bpy.context.scene.keyhole.user_paths = False
-    without, nothing = render("KEYHOLE", "--spp 16 --photons 20k", method="ipm")
-    expect(nothing, [])
-    expect(messages, ["'From no lamp'"])
-    assert not np.array_equal(with_paths["R"], without["R"])
-    bright, reference = with_paths["R"].mean(), without["R"].mean()
-    assert abs(bright / reference - 1) < 0.1, (bright, reference)
-    empty_scene()
