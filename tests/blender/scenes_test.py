@@ -7,7 +7,7 @@ import tempfile
 import numpy as np
 
 import whole_scenes
-from harness import agree, blocks, empty_scene, render, test
+from harness import blocks, empty_scene, render, test
 from keyhole import exr
 
 WITHIN = 0.05
@@ -22,26 +22,26 @@ def close(a, b):
 def compare(cycles, options, method):
     reference, _ = render("CYCLES", samples=cycles)
     picture, messages = render("KEYHOLE", options, method=method)
-    assert not [line for line in messages if "known to" not in line], messages
+    assert not [line for line in messages if "warning: light" not in line], messages
     return close(blocks(reference), blocks(picture))
 
 
 @test
 def interior():
     whole_scenes.interior()
-    return compare(3000, "--spp 500", "path")
+    return compare(1200, "--spp 250", "path")
 
 
 @test
 def door_with_a_path():
     whole_scenes.door()
-    return compare(6000, "--spp 24 -D light_paths=1M", "ipm")
+    return compare(2500, "--spp 24 -D light_paths=1M", "ipm")
 
 
 @test
 def model_of_gltf():
     whole_scenes.model()
-    return agree(WITHIN)
+    return compare(400, "--spp 300", "path")
 
 
 @test
@@ -54,4 +54,5 @@ def blenders_own_files_are_rendered():
             done = subprocess.run([os.environ["KEYHOLE"], "render", file, "-o", output, "--no-png", "--method", "path",
                                    "--resolution", "64x48", "--spp", "4"], capture_output=True, text=True)
             assert done.returncode == 0, done.stderr
-            assert exr.read(output)["R"].mean() > 0
+            # The door's lamp has an area, which glTF has no word for.
+            assert (exr.read(output)["R"].mean() > 0) == (make is not whole_scenes.door)

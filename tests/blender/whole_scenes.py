@@ -54,12 +54,17 @@ def pattern():
     return image
 
 
-def plastic(name, colour, roughness=0.4, texture=None):
+def plastic(name, colour, roughness=0.4, **inputs):
     nodes = Nodes(name)
-    bsdf = nodes.add("ShaderNodeBsdfPrincipled", True, Base_Color=rgba(colour), Roughness=roughness)
-    if texture:
-        node = nodes.add("ShaderNodeTexImage", bsdf.inputs["Base Color"])
-        node.image, node.interpolation = texture, "Closest"
+    nodes.add("ShaderNodeBsdfPrincipled", True, Base_Color=rgba(colour), Roughness=roughness, **inputs)
+    return nodes.material
+
+
+def tiled(kind, **inputs):
+    nodes = Nodes("Tiles")
+    shader = nodes.add(kind, True, **inputs)
+    texture = nodes.add("ShaderNodeTexImage", shader.inputs[0])
+    texture.image, texture.interpolation = pattern(), "Closest"
     return nodes.material
 
 
@@ -72,7 +77,7 @@ def glass():
 def interior():
     """A room with a window; a soft sun and a sky. Plastic, glass, textures, in the shade: Cycles has no caustics."""
     white = diffuse("White", (0.75, 0.75, 0.72))
-    room((0, 0, 0), (4, 5, 2.6), white, plastic("Tiles", (1, 1, 1), 0.5, pattern()))
+    room((0, 0, 0), (4, 5, 2.6), white, tiled("ShaderNodeBsdfDiffuse"))
     wall_with_hole(4, (0, 5), (0, 2.6), (1.8, 3.8), (0.9, 2.2), white)
     block((0.8, 3.2, 0), (1.6, 4.2, 0.75), plastic("Table", (0.5, 0.25, 0.1)))
     ball(plastic("Red", (0.7, 0.1, 0.08), 0.3), (1.0, 3.9, 0.95)).scale = (0.2,) * 3
@@ -116,14 +121,16 @@ def draw_path():
         for other in list(thing.users_collection):
             other.objects.unlink(thing)
         owner.objects.link(thing)
+        thing.hide_render = True  # for Cycles
     bpy.context.view_layer.update()
 
 
 def model():
     """A head of painted metal on a plinth under a glowing panel, and a sun."""
     sky(0)
-    of_operator(bpy.ops.mesh.primitive_plane_add, plastic("Tiles", (1, 1, 1), 0.5, pattern()), size=8)
-    head = of_operator(bpy.ops.mesh.primitive_monkey_add, location=(0, 0, 1.6))
+    of_operator(bpy.ops.mesh.primitive_plane_add, tiled("ShaderNodeBsdfPrincipled", Specular=0.0), size=12)
+    look((0, -4.2, 5.2), (45, 0, 0), 45)
+    head = of_operator(bpy.ops.mesh.primitive_monkey_add, location=(0, 0, 1.2))
     for polygon in head.data.polygons:
         polygon.use_smooth = True
     nodes = Nodes("Paint")
