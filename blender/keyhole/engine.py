@@ -49,6 +49,7 @@ class KeyholeEngine(bpy.types.RenderEngine):
             self.warn(line)
         chosen = depsgraph.scene.keyhole
         output = os.path.join(folder, "picture.exr")
+        shown = os.path.join(folder, "shown.exr")  # how Blender takes pictures in
         live = LiveView()
         command = [keyhole, "render", exported.path, "-o", output, "--no-png", "--display-server", live.address,
                    *settings.arguments(chosen)]
@@ -59,11 +60,11 @@ class KeyholeEngine(bpy.types.RenderEngine):
             command += ["-D", "cryptomatte=true"]
         passes.add_all(self, layer)
         run = Run(command)
-        self.follow(run, live, layer, chosen.time if chosen.effort == "TIME" else None)
+        self.follow(run, live, layer, chosen.time if chosen.effort == "TIME" else None, shown)
         live.close()
-        self.finish(run, layer, output)
+        self.finish(run, layer, output, shown)
 
-    def follow(self, run, live, layer, seconds):
+    def follow(self, run, live, layer, seconds, shown):
         """Until the program has ended: progress, pictures, cancelling."""
         start, told = time.monotonic(), None
         while run.running():
@@ -78,15 +79,15 @@ class KeyholeEngine(bpy.types.RenderEngine):
                 self.update_stats("Keyhole", line)
             picture = live.take()
             if picture is not None:
-                passes.put(self, layer, picture)
+                passes.put_picture(self, layer, picture, shown)
             time.sleep(POLL)
 
-    def finish(self, run, layer, output):
+    def finish(self, run, layer, output, shown):
         code = run.finish()
         for line in run.warnings():
             self.warn(line)
         if os.path.exists(output):
-            passes.put(self, layer, exr.read(output), passes.manifests(output, layer))
+            passes.put(self, layer, exr.read(output), passes.manifests(output, layer), shown)
         elif run.interrupted is None:
             self.fail("\n".join(run.errors()) or f"keyhole ended with code {code}")
 

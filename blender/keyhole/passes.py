@@ -45,17 +45,10 @@ def add_all(engine, layer):
         engine.add_pass(name, len(letters), letters, layer=layer.name)
 
 
-def rows(channels, names):
-    """Pixels from the bottom row up, as Blender has them: (pixels, channels)."""
-    pixels = np.stack([channels[name] for name in names], 2)[::-1]
-    return np.ascontiguousarray(pixels, np.float32).reshape(-1, len(names))
-
-
 def combined(channels):
-    """RGBA; opaque where the file has no alpha."""
-    if "A" not in channels:
-        channels = dict(channels, A=np.ones_like(channels["R"]))
-    return rows(channels, ["R", "G", "B", "A"])
+    """Those of the picture; opaque where the file has no alpha."""
+    alpha = channels["A"] if "A" in channels else np.ones_like(channels["R"])
+    return {"R": channels["R"], "G": channels["G"], "B": channels["B"], "A": alpha}
 
 
 def manifests(path, layer):
@@ -69,16 +62,26 @@ def manifests(path, layer):
     return found
 
 
-def put(engine, layer, channels, attributes=None):
-    """Hands the picture of a view layer to Blender: a map from channels of Keyhole's EXR files to arrays (height, width)."""
+def put_picture(engine, layer, channels, file):
+    """Hands the picture alone of a view layer to Blender, by way of a file that is free to be written."""
+    exr.write(file, combined(channels))
     height, width = channels["R"].shape
     result = engine.begin_result(0, 0, width, height, layer=layer.name)
-    for render_pass in result.layers[0].passes:
-        if render_pass.name == "Combined":
-            render_pass.rect = combined(channels)
-        for name, _, _, names in of_layer(layer):
-            if render_pass.name == name and names[0] in channels:
-                render_pass.rect = rows(channels, names)
+    result.layers[0].load_from_file(file)
     engine.end_result(result)
-    for name, text in (attributes or {}).items():
+
+
+def put(engine, layer, channels, attributes, file):
+    """Hands all passes of a view layer to Blender, in the same way: `channels` maps those of Keyhole's EXR files to
+    arrays (height, width). `attributes` are for the files that Blender writes."""
+    named = {f"{layer.name}.Combined.{letter}": values for letter, values in combined(channels).items()}
+    for name, letters, _, names in of_layer(layer):
+        if names[0] in channels:
+            named.update({f"{layer.name}.{name}.{letter}": channels[c] for letter, c in zip(letters, names)})
+    exr.write(file, named)
+    height, width = channels["R"].shape
+    result = engine.begin_result(0, 0, width, height, layer=layer.name)
+    result.load_from_file(file)
+    engine.end_result(result)
+    for name, text in attributes.items():
         engine.get_result().stamp_data_add_field(name, text)

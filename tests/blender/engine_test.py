@@ -65,7 +65,7 @@ def cancelled_within_a_second():
     class NoPictures:
         take = staticmethod(lambda: None)
 
-    engine.KeyholeEngine.follow(Waiting, run, NoPictures, "", None)
+    engine.KeyholeEngine.follow(Waiting, run, NoPictures, None, None, "")
     assert 0.5 < time.monotonic() - start < 1.5
     assert run.finish() != 0 and os.path.exists(picture), "a picture of what there was"
 
