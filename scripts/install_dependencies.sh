@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that Keyhole needs and that are missing; says nothing if none is.
-# --ci: also what the checks of .ci/run need, and Blender if it can be had. --blender: Blender as well, with numpy, which
-# the add-on needs and Debian only recommends.
+# --ci: also what the checks of .ci/run need, and Blender if it can be had. --blender: Blender as well.
 set -euo pipefail
 
 packages=(
@@ -12,6 +11,7 @@ packages=(
 [[ ${1-} != --ci ]] || packages+=(clang-14 libclang-rt-14-dev clang-format-14 clang-tidy-14 libopenmpi-dev openmpi-bin)
 wanted=() # what is done without where it can't be had
 case ${1-} in
+    # Blender's Python needs numpy, which Blender's package only recommends.
     --ci) wanted=(blender python3-numpy pyflakes3) ;;
     --blender) packages+=(blender python3-numpy) ;;
 esac

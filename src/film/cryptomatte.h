@@ -21,7 +21,7 @@ std::uint32_t cryptomatte_id(std::string_view name);
 /// most first.
 class CryptomatteLayers {
   public:
-    static constexpr int kLayers = 3;
+    static constexpr int kLayers = 3; ///< pairs of names in a pixel, of which most need fewer
 
     /// @param type of the names, as in "CryptoObject"
     CryptomatteLayers(std::string type, int width, int height);
