@@ -9,9 +9,9 @@ bl_info = {
     "support": "COMMUNITY",
 }
 
-from . import engine, panels, preferences, settings  # noqa: E402  (Blender reads bl_info without running the rest)
+from . import engine, labels, panels, preferences, settings, tools  # noqa: E402  (Blender reads bl_info without running the rest)
 
-PARTS = preferences, settings, engine, panels
+PARTS = preferences, settings, engine, tools, labels, panels
 
 
 def register():

@@ -49,19 +49,22 @@ class KeyholeEngine(bpy.types.RenderEngine):
             self.warn(line)
         chosen = depsgraph.scene.keyhole
         output = os.path.join(folder, "picture.exr")
+        shown = os.path.join(folder, "shown.exr")  # how Blender takes pictures in
         live = LiveView()
         command = [keyhole, "render", exported.path, "-o", output, "--no-png", "--display-server", live.address,
                    *settings.arguments(chosen)]
         if exported.user_paths:
             command += ["--user-paths", exported.user_paths, "--skip-bad-paths"]
-        passes.add_all(self)
+        layer = depsgraph.view_layer
+        if any(passes.mattes(layer)):
+            command += ["-D", "cryptomatte=true"]
+        passes.add_all(self, layer)
         run = Run(command)
-        layer = depsgraph.view_layer.name
-        self.follow(run, live, layer, chosen.time if chosen.effort == "TIME" else None)
+        self.follow(run, live, layer, chosen.time if chosen.effort == "TIME" else None, shown)
         live.close()
-        self.finish(run, layer, output)
+        self.finish(run, layer, output, shown)
 
-    def follow(self, run, live, layer, seconds):
+    def follow(self, run, live, layer, seconds, shown):
         """Until the program has ended: progress, pictures, cancelling."""
         start, told = time.monotonic(), None
         while run.running():
@@ -76,15 +79,15 @@ class KeyholeEngine(bpy.types.RenderEngine):
                 self.update_stats("Keyhole", line)
             picture = live.take()
             if picture is not None:
-                passes.put(self, layer, picture)
+                passes.put_picture(self, layer, picture, shown)
             time.sleep(POLL)
 
-    def finish(self, run, layer, output):
+    def finish(self, run, layer, output, shown):
         code = run.finish()
         for line in run.warnings():
             self.warn(line)
         if os.path.exists(output):
-            passes.put(self, layer, exr.read(output))
+            passes.put(self, layer, exr.read(output), passes.manifests(output, layer), shown)
         elif run.interrupted is None:
             self.fail("\n".join(run.errors()) or f"keyhole ended with code {code}")
 

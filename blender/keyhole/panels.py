@@ -2,6 +2,9 @@
 
 import bpy
 
+from . import labels
+from .export.user_paths import COLLECTION
+
 # Blender's own panels that make no sense here.
 OTHERS = {"RENDER_PT_simplify", "RENDER_PT_color_management_curves", "VIEWLAYER_PT_filter",
           "VIEWLAYER_PT_layer_passes"}
@@ -42,6 +45,7 @@ class KEYHOLE_PT_resources(KeyholePanel, bpy.types.Panel):
         column = self.column()
         for name in ("photon_memory", "threads", "options"):
             column.prop(context.scene.keyhole, name)
+        column.operator("keyhole.show_photons")
 
 
 class KEYHOLE_PT_user_paths(KeyholePanel, bpy.types.Panel):
@@ -52,18 +56,33 @@ class KEYHOLE_PT_user_paths(KeyholePanel, bpy.types.Panel):
 
     def draw(self, context):
         column = self.column()
-        paths = bpy.data.collections.get("Keyhole Paths")
+        row = column.row(align=True)
+        row.operator("keyhole.check_paths")
+        row.operator("keyhole.suggest_paths")
+        paths = bpy.data.collections.get(COLLECTION)
         if paths is None:
-            column.label(text='Draw curves in a collection "Keyhole Paths"', icon="INFO")
+            column.label(text=f'Draw curves in a collection "{COLLECTION}"', icon="INFO")
             return
         for curve in paths.all_objects:
             if curve.type == "CURVE":
-                column.label(text=curve.name, icon="OUTLINER_OB_CURVE")
+                check = labels.CHECKED.get(curve.name)
+                icon = "OUTLINER_OB_CURVE" if check is None else "CHECKMARK" if check.good else "ERROR"
+                column.label(text=curve.name if check is None else f"{curve.name}: {check.text}", icon=icon)
         if context.object and context.object.type == "CURVE":
             column.label(text="Custom properties: bounces, weight, beta", icon="PROPERTIES")
 
 
-CLASSES = KEYHOLE_PT_effort, KEYHOLE_PT_resources, KEYHOLE_PT_user_paths
+class KEYHOLE_PT_mattes(KeyholePanel, bpy.types.Panel):
+    bl_label = "Cryptomatte"
+    bl_context = "view_layer"
+
+    def draw(self, context):
+        column = self.column()
+        column.prop(context.view_layer, "use_pass_cryptomatte_object", text="Objects")
+        column.prop(context.view_layer, "use_pass_cryptomatte_material", text="Materials")
+
+
+CLASSES = KEYHOLE_PT_effort, KEYHOLE_PT_resources, KEYHOLE_PT_user_paths, KEYHOLE_PT_mattes
 
 
 def shared_panels():

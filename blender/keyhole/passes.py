@@ -1,6 +1,10 @@
 """Passes of a render: what they are called in Blender, and the channels of Keyhole's EXR files that they come from."""
 
+import zlib
+
 import numpy as np
+
+from . import exr
 
 # name in Blender, names of its channels there, kind there, channels of the EXR file
 PASSES = [
@@ -11,42 +15,73 @@ PASSES = [
     ("Indirect", "RGB", "COLOR", ["indirect.R", "indirect.G", "indirect.B"]),
     ("Caustics", "RGB", "COLOR", ["caustic.R", "caustic.G", "caustic.B"]),
 ]
+MATTES = {"CryptoObject": "use_pass_cryptomatte_object", "CryptoMaterial": "use_pass_cryptomatte_material"}
+MATTE_LAYERS = 3  # of two names each
+
+
+def mattes(layer):
+    """The Cryptomatte passes that a view layer asks for."""
+    for kind, switch in MATTES.items():
+        if getattr(layer, switch):
+            for i in range(MATTE_LAYERS):
+                name = f"{kind}{i:02}"
+                yield name, "rgba", "COLOR", [f"{name}.{letter}" for letter in "RGBA"]
+
+
+def of_layer(layer):
+    return PASSES + list(mattes(layer))
 
 
 def register_all(engine, scene, layer):
     """Tells Blender's compositor what a render has."""
     engine.register_pass(scene, layer, "Combined", 4, "RGBA", "COLOR")
-    for name, letters, kind, _ in PASSES:
+    for name, letters, kind, _ in of_layer(layer):
         engine.register_pass(scene, layer, name, len(letters), letters, kind)
 
 
-def add_all(engine):
+def add_all(engine, layer):
     """Makes room for them; Blender makes it for its own passes where they are asked for."""
-    for name, letters, _, _ in PASSES:
-        engine.add_pass(name, len(letters), letters)
-
-
-def rows(channels, names):
-    """Pixels from the bottom row up, as Blender has them: (pixels, channels)."""
-    pixels = np.stack([channels[name] for name in names], 2)[::-1]
-    return np.ascontiguousarray(pixels, np.float32).reshape(-1, len(names))
+    for name, letters, _, _ in of_layer(layer):
+        engine.add_pass(name, len(letters), letters, layer=layer.name)
 
 
 def combined(channels):
-    """RGBA; opaque where the file has no alpha."""
-    if "A" not in channels:
-        channels = dict(channels, A=np.ones_like(channels["R"]))
-    return rows(channels, ["R", "G", "B", "A"])
+    """Those of the picture; opaque where the file has no alpha."""
+    alpha = channels["A"] if "A" in channels else np.ones_like(channels["R"])
+    return {"R": channels["R"], "G": channels["G"], "B": channels["B"], "A": alpha}
 
 
-def put(engine, layer, channels):
-    """Hands the picture of a view layer to Blender: a map from channels of Keyhole's EXR files to arrays (height, width)."""
+def manifests(path, layer):
+    """What a file says of its Cryptomatte layers, as Blender keeps it: with the view layer before their names."""
+    found, written = {}, exr.texts(path, "cryptomatte/")
+    for name, text in written.items():
+        group, kind = name.rsplit("/", 1)
+        title = f"{layer.name}.{written[group + '/name']}"
+        key = f"{zlib.crc32(title.encode()):08x}"[:7]  # readers ask for one of its own alone
+        found[f"cryptomatte/{key}/{kind}"] = title if kind == "name" else text
+    return found
+
+
+def put_picture(engine, layer, channels, file):
+    """Hands the picture alone of a view layer to Blender, by way of a file that is free to be written."""
+    exr.write(file, combined(channels))
     height, width = channels["R"].shape
-    result = engine.begin_result(0, 0, width, height, layer=layer)
-    for render_pass in result.layers[0].passes:
-        if render_pass.name == "Combined":
-            render_pass.rect = combined(channels)
-        for name, _, _, names in PASSES:
-            if render_pass.name == name and names[0] in channels:
-                render_pass.rect = rows(channels, names)
+    result = engine.begin_result(0, 0, width, height, layer=layer.name)
+    result.layers[0].load_from_file(file)
     engine.end_result(result)
+
+
+def put(engine, layer, channels, attributes, file):
+    """Hands all passes of a view layer to Blender, in the same way: `channels` maps those of Keyhole's EXR files to
+    arrays (height, width). `attributes` are for the files that Blender writes."""
+    named = {f"{layer.name}.Combined.{letter}": values for letter, values in combined(channels).items()}
+    for name, letters, _, names in of_layer(layer):
+        if names[0] in channels:
+            named.update({f"{layer.name}.{name}.{letter}": channels[c] for letter, c in zip(letters, names)})
+    exr.write(file, named)
+    height, width = channels["R"].shape
+    result = engine.begin_result(0, 0, width, height, layer=layer.name)
+    result.load_from_file(file)
+    engine.end_result(result)
+    for name, text in attributes.items():
+        engine.get_result().stamp_data_add_field(name, text)

@@ -17,6 +17,7 @@
 #include "methods/choice/effort.h"
 #include "methods/choice/first_look.h"
 #include "methods/choice/render_in_time.h"
+#include "methods/masks.h"
 #include "methods/method.h"
 #include "sampling/guidance/user_paths.h"
 #include "sampling/scene_hash.h"
@@ -144,6 +145,7 @@ RenderResult render_scene(LoadedScene& loaded, RenderOptions& options, std::vect
                      ? render_in_time(scene, loaded.settings, named_settings(options.overrides), context,
                                       loaded.user_paths, share)
                      : render(scene, loaded.settings, context, loaded.user_paths, share);
+        if (!result.picture.layers.empty()) add_masks(result.picture, scene, loaded.settings, stop);
         result.stats.stages.insert(result.stats.stages.begin(), loading);
         const auto identity = render_identity(result.settings, hash);
         result.picture.metadata.insert(identity.begin(), identity.end());

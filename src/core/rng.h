@@ -62,6 +62,7 @@ enum class StreamPurpose : std::uint64_t {
     passages,
     guidance_gain,
     inspection,
+    masks,
 };
 
 /// PCG32 (O'Neill 2014). One for each chain and each pixel, never for each thread, so that a picture does not

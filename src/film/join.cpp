@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/work_item_set.h"
 #include "film/accumulation_buffer.h"
+#include "film/cryptomatte.h"
 
 #include <fmt/format.h>
 
@@ -90,6 +91,7 @@ Picture average(const std::vector<NamedPicture>& pictures) {
         if (const auto w = p.picture.metadata.find("warnings"); w != p.picture.metadata.end())
             warnings = joined_lines(warnings, w->second);
     }
+    copy_masks(pictures.front().picture, result);
     result.metadata["seed"] = seeds;
     result.metadata["samples"] = fmt::format("{}", total);
     result.metadata["warnings"] = warnings;
@@ -148,6 +150,7 @@ Picture join_shares(std::span<const NamedPicture> shares) {
     }
     Picture result = all.to_picture();
     result.sums = all.sums();
+    copy_masks(first.picture, result);
     result.metadata = first.picture.metadata;
     result.metadata["samples"] = fmt::format("{}", total);
     result.metadata["units"] = units.to_string();

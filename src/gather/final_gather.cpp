@@ -46,7 +46,7 @@ struct FinalGather::EyeWalk : SpecularWalkHooks {
 
     bool arrive(const Vertex& v, const WalkRay& ray) {
         const Vec3 back = -ray.w;
-        if (scatterings == 0 && v.point.site != Site::infinite) out.depth = (v.point.p - ray.last->p).length();
+        if (scatterings == 0 && v.point.site != Site::infinite) out.depth = seen_depth(*ray.last, v.point);
         if (v.point.is_emitter())
             out.direct += ray.throughput * gather.scene_.emitter(v.point.emitter).radiance(v.point, back);
         if (scatterings == gather.rays_.max_scatterings()) return false;

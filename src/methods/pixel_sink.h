@@ -28,7 +28,7 @@ struct PixelSink {
     /// has it.
     void see(const Vertex& v, const Vertex& before, const Rgb& throughput, bool first) {
         if (v.point.site == Site::infinite) return;
-        if (first) pixel.depth = Vec3(v.point.p - before.point.p).length();
+        if (first) pixel.depth = seen_depth(before.point, v.point);
         if (!v.bsdf.traits().finite || saw_surface) return;
         note_seen_surface(pixel, v, direction(v.point, before.point), throughput);
         saw_surface = true;

@@ -23,6 +23,7 @@ void add_camera(const Camera& camera, Hash& hash) {
     for (const Vec3& v : {c.origin, c.right, c.up, c.forward}) hash.add(v);
     for (const float f : {c.fov_degrees, c.lens_radius, c.focus_distance, c.near}) hash.add(f);
     for (const double d : {c.shift.x, c.shift.y}) hash.add(d);
+    if (!c.sees_surroundings) hash.add(c.sees_surroundings);
 }
 
 /// What light does here.

@@ -42,6 +42,8 @@ struct CameraParameters {
     /// Where the middle of the picture is off `forward`, to the right and up, over the film's shorter side.
     Imath::V2d shift{0, 0};
     float near = 0; ///< distance from `origin` within which nothing is seen
+    bool sees_surroundings =
+        true; ///< the environment, where nothing is before it; by way of surfaces it is seen anyway
 };
 
 /// Distance from which an orthographic camera looks, over the shorter side of what it sees.

@@ -37,6 +37,9 @@ void check_sphere(const Sphere& sphere) {
         throw InputError("a sphere needs a finite centre and a positive radius");
 }
 
+/// Of an eye that sees nothing near.
+bool begins_farther_on(const SurfacePoint& p) { return p.site == Site::point && p.offset > 0; }
+
 /// Puts the sum of all environments, if there are several, in the place of the first.
 void merge_environments(std::vector<std::unique_ptr<Emitter>>& emitters) {
     const auto environment = [](const auto& e) { return is_environment(*e); };
@@ -125,7 +128,7 @@ bool Scene::trace(const SurfacePoint& from, const Vec3& w, SurfacePoint& found) 
     const Vec3 o = from.ray_origin(w);
     const auto hit = accelerator_.intersect(o, w);
     if (!hit) {
-        if (environment_ == SurfacePoint::kNone) return false;
+        if (environment_ == SurfacePoint::kNone || hides_surroundings(from)) return false;
         found = infinite_point(w);
         found.emitter = environment_;
         return true;
@@ -146,8 +149,11 @@ bool Scene::visible(const SurfacePoint& a, const SurfacePoint& b, const Vec3& a_
     const bool turned = a.site == Site::infinite;
     const SurfacePoint &from = turned ? b : a, &to = turned ? a : b;
     const Vec3 w = turned ? -a_to_b : a_to_b, o = from.ray_origin(w);
+    if (to.site == Site::infinite && hides_surroundings(from)) return false;
     if (to.site == Site::infinite) return !accelerator_.occluded(o, w, std::numeric_limits<float>::infinity());
-    return !accelerator_.occluded(o, to.ray_origin(-w) - o, kEdgeEnd);
+    const Vec3 edge = to.ray_origin(-w) - o;
+    if ((begins_farther_on(from) || begins_farther_on(to)) && edge.dot(w) < 0) return false; // before the view begins
+    return !accelerator_.occluded(o, edge, kEdgeEnd);
 }
 
 bool Scene::visible(const Vec3& a, const Vec3& b) const {

@@ -86,6 +86,10 @@ class Scene {
 
   private:
     void attach_shapes();
+    /// Of points in space eyes alone see surroundings, or not; lights there don't care.
+    bool hides_surroundings(const SurfacePoint& from) const {
+        return from.site == Site::point && !camera_.parameters().sees_surroundings;
+    }
     void prepare_emitters();
 
     std::vector<Shape> shapes_;

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -42,6 +43,7 @@ struct Shape {
     std::unique_ptr<SurfaceEmission> emission;
     FloatTexture alpha{}; ///< opacity, as is_opaque() reads it; null: opaque. Of an area light 0: see below
     std::shared_ptr<const Medium> inside{}, outside{}; ///< null: vacuum; both the same: whatever is around
+    std::string name{}, material_name{};               ///< what people call them; empty: nothing
 };
 
 /// Whether one medium ends at the surface of `shape` and another begins.

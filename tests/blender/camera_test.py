@@ -4,7 +4,7 @@ import math
 
 import bpy
 
-from harness import agree, ball, floor, lamp, render, test
+from harness import agree, ball, expect, floor, lamp, render, test
 
 
 def set_up():
@@ -64,8 +64,23 @@ def border():
 
 
 @test
-def orthographic_is_reported():
-    camera = set_up()
-    camera.data.type = "ORTHO"
-    _, messages = render("KEYHOLE", samples=1)
-    assert len(messages) == 1 and "Camera: a camera of type ORTHO" in messages[0], messages
+def orthographic():
+    data = set_up().data
+    data.type, data.ortho_scale = "ORTHO", 5
+    return agree()
+
+
+@test
+def orthographic_upright_with_shift():
+    data, output = set_up().data, bpy.context.scene.render
+    output.resolution_x, output.resolution_y = 48, 64
+    data.type, data.ortho_scale, data.shift_x, data.shift_y = "ORTHO", 4, 0.1, -0.2
+    data.dof.use_dof = True
+    return agree(says=["Camera: depth of field"])
+
+
+@test
+def panoramic_is_reported():
+    data = set_up().data
+    data.type = "PANO"
+    expect(render("KEYHOLE", samples=1)[1], ["Camera: a camera of type PANO"])

@@ -9,7 +9,7 @@ import numpy as np
 
 from harness import Nodes, ball, blocks, floor, lamp, render, rgba, sky, test
 from keyhole import exr
-from materials_test import picture
+from textures_test import picture
 
 
 def principled(name, **inputs):

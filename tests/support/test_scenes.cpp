@@ -71,6 +71,11 @@ SceneMaker& SceneMaker::camera(const Vec3& from, const Vec3& to, float fov, floa
     return *this;
 }
 
+SceneMaker& SceneMaker::orthographic(double size) {
+    d_.camera = keyhole::orthographic(d_.camera, size);
+    return *this;
+}
+
 SceneMaker& SceneMaker::window(int width, int height, float margin) {
     d_.window = {width, height, margin};
     return *this;
@@ -114,6 +119,14 @@ std::unique_ptr<Scene> mirror_glass_box(float lens_radius) {
     m.sphere({-0.45f, 0.4f, -0.4f}, 0.4f, make_mirror(Rgb(0.9)));
     m.sphere({0.35f, 0.4f, 0.5f}, 0.4f, make_glass(1.5));
     return m.build();
+}
+
+std::unique_ptr<Scene> parallel_sight_box() {
+    SceneMaker m = box_shell(make_mirror(Rgb(0.9)));
+    add_light(m);
+    m.sphere({-0.45f, 0.4f, -0.4f}, 0.4f, make_mirror(Rgb(0.9)));
+    m.sphere({0.35f, 0.4f, 0.5f}, 0.4f, make_glass(1.5));
+    return m.orthographic(1.8).build();
 }
 
 std::unique_ptr<Scene> hazy_box() {

@@ -25,6 +25,8 @@ class SceneMaker {
     SceneMaker& cloud(const Vec3& lower, const Vec3& upper, const std::shared_ptr<const Medium>& inside);
     SceneMaker& emitter(std::unique_ptr<Emitter> e);
     SceneMaker& camera(const Vec3& from, const Vec3& to, float fov, float lens_radius = 0, float focus = 1);
+    /// Makes the camera see along parallels, `size` metres of the film's shorter side.
+    SceneMaker& orthographic(double size);
     SceneMaker& window(int width, int height, float margin = 0);
     std::unique_ptr<Scene> build();
 
@@ -37,6 +39,9 @@ std::unique_ptr<Scene> diffuse_box();
 
 /// The same with a mirror wall, a mirror ball at the rear and a glass ball in front.
 std::unique_ptr<Scene> mirror_glass_box(float lens_radius = 0);
+
+/// mirror_glass_box() seen along parallels from a plane within it.
+std::unique_ptr<Scene> parallel_sight_box();
 
 /// diffuse_box() lit by a point light.
 std::unique_ptr<Scene> point_light_box();

@@ -208,6 +208,10 @@ TEST_F(ExportedScene, ParallelSightBeginsAtItsPlane) {
         EXPECT_NEAR(seen->p.z, z < 4 ? z : 0, 1e-3f);
         EXPECT_EQ(scene.visible(at_origin(), eye), z > 4);
         EXPECT_EQ(scene.visible(eye, at_origin()), z > 4);
+        SurfacePoint there = at_origin();
+        there.p.z = z;
+        EXPECT_EQ(scene.visible(there, eye), z < 4) << "no light from before the plane to the eye";
+        EXPECT_EQ(scene.visible(eye, there), z < 4);
     }
 }
 

@@ -51,9 +51,9 @@ def export(scene, messages):
     if render.pixel_aspect_x != render.pixel_aspect_y:
         messages.add("Output", "pixels that are not square are not exported")
     if render.film_transparent:
-        messages.add("Film", "transparency is not exported: the picture is opaque")
+        film["transparent"] = True
     data = thing.data
-    if data.type != "PERSP":
+    if data.type not in {"PERSP", "ORTHO"}:
         messages.add(thing.name, f"a camera of type {data.type} is not exported: it is a perspective one")
     axes = thing.matrix_world.to_3x3().normalized()
     forward = -(axes @ Vector((0, 0, 1)))
@@ -64,9 +64,14 @@ def export(scene, messages):
         "from": list(eye),
         "to": list(eye + forward),
         "up": list(axes @ Vector((0, 1, 0))),
-        "fov": math.degrees(2 * math.atan(size / 2 / data.lens * shorter / side)),
         "shift": [data.shift_x * side / shorter, data.shift_y * side / shorter],
     }
-    if data.dof.use_dof:
+    if data.type == "ORTHO":
+        view["orthographic"] = data.ortho_scale * shorter / side
+    else:
+        view["fov"] = math.degrees(2 * math.atan(size / 2 / data.lens * shorter / side))
+    if data.dof.use_dof and data.type == "ORTHO":
+        messages.add(thing.name, "depth of field of an orthographic camera is not exported: all is in focus")
+    elif data.dof.use_dof:
         view.update(depth_of_field(thing, forward, messages))
     return film, view

@@ -1,7 +1,5 @@
 """Materials: what a shape has to say of them."""
 
-import bpy
-
 from . import principled, shaders, values
 from .nodes import Tree
 from .shaders import Surface
@@ -24,7 +22,7 @@ class Materials:
 
     def convert(self, material, uv_map):
         surface = self.surface(material, uv_map)
-        name = bpy.path.clean_name(material.name_full) if material else "default"
+        name = material.name if material else "default_surface"
         while name in self.written and self.written[name] != surface.material:
             name += "_"
         self.written[name] = surface.material

@@ -27,7 +27,7 @@ class Shapes:
         self.folder, self.materials, self.messages = folder, materials, messages
         self.top = []  # shapes in world space
         self.parts = {}  # shapes of each identity
-        self.matrices = {}  # where it stands
+        self.places = {}  # where it stands, and by what name
         self.groups = {}
         self.files = 0
 
@@ -50,7 +50,7 @@ class Shapes:
         key = identity(thing, is_instance)
         if key not in self.parts:
             self.parts[key] = self.convert(thing)
-        self.matrices.setdefault(key, []).append(matrix)
+        self.places.setdefault(key, []).append((matrix, thing.name))
 
     def report_features(self, thing):
         hidden = [ray for ray in RAYS if not getattr(thing, f"visible_{ray}")]
@@ -80,11 +80,12 @@ class Shapes:
         """All shapes. Only parts that don't emit can be instances."""
         shapes = list(self.top)
         for key, parts in self.parts.items():
-            matrices = self.matrices[key]
-            if len(matrices) == 1 or any("emission" in part for part in parts):
-                shapes += [dict(part, transform=rows(m)) for m in matrices for part in parts]
+            places = self.places[key]
+            if len(places) == 1 or any("emission" in part for part in parts):
+                shapes += [dict(part, name=name, transform=rows(m)) for m, name in places for part in parts]
             elif parts:
-                name = f"group-{len(self.groups) + 1}"
-                self.groups[name] = parts
-                shapes += [{"type": "instance", "group": name, "transform": rows(m)} for m in matrices]
+                group = f"group-{len(self.groups) + 1}"
+                self.groups[group] = parts
+                shapes += [{"type": "instance", "group": group, "name": name, "transform": rows(m)}
+                           for m, name in places]
         return shapes

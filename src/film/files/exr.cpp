@@ -35,6 +35,7 @@ std::string_view last_part(std::string_view channel) {
 std::string_view letters(const std::string& layer, int channels) {
     switch (channels) {
     case 1:
+        if (layer == "alpha") return "A";
         return layer == "depth" ? "Z" : "Y";
     case 3:
         return layer == "normal" ? "XYZ" : "RGB";
@@ -47,7 +48,7 @@ std::string_view letters(const std::string& layer, int channels) {
 
 /// The channels of a layer of `channels` channels, in order; empty for a number that has no names.
 std::vector<std::string> exr_channel_names(const std::string& layer, int channels) {
-    const std::string prefix = layer == "beauty" ? "" : layer + ".";
+    const std::string prefix = layer == "beauty" || layer == "alpha" ? "" : layer + ".";
     std::vector<std::string> names;
     for (const char letter : letters(layer, channels)) names.push_back(prefix + letter);
     return names;
@@ -163,6 +164,8 @@ std::map<std::string, std::vector<std::string>> layers_of(const Imf::ChannelList
                 fmt::format("found the subsampled channel '{}', expected all at full resolution", c.name()));
         if (!is_exr_sum(c.name())) layers[exr_layer_of(c.name())].emplace_back(c.name());
     }
+    if (auto& beauty = layers["beauty"]; beauty.size() > 1 && std::erase(beauty, "A") > 0) layers["alpha"] = {"A"};
+    std::erase_if(layers, [](const auto& layer) { return layer.second.empty(); });
     for (auto& [layer, names] : layers) sort_exr_channels(names);
     return layers;
 }

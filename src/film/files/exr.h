@@ -7,9 +7,9 @@
 
 namespace keyhole {
 
-/// Writes one part of 32-bit scan lines, ZIP compressed. The layer "beauty" becomes R, G, B; others `layer.R` and so
-/// on, "normal" `normal.X`, `.Y`, `.Z`, layers of one channel `depth.Z` and `layer.Y`. Metadata become string
-/// attributes, sums channels of whole numbers `sums.KIND.NNN`. Layers have 1, 3 or 4 channels. Atomic: see
+/// Writes one part of 32-bit scan lines, ZIP compressed. The layer "beauty" becomes R, G, B, "alpha" A; others
+/// `layer.R` and so on, "normal" `normal.X`, `.Y`, `.Z`, layers of one channel `depth.Z` and `layer.Y`. Metadata become
+/// string attributes, sums channels of whole numbers `sums.KIND.NNN`. Layers have 1, 3 or 4 channels. Atomic: see
 /// write_file_atomically().
 /// @throws InputError with the path and the reason.
 void write_exr(const std::string& path, const Picture& picture);

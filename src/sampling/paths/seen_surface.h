@@ -4,6 +4,8 @@
 #include "core/pixel_sample.h"
 #include "sampling/paths/path.h"
 
+#include <algorithm>
+
 namespace keyhole {
 
 /// Notes in `pixel` that the eye sees `v` from `back` (unit, towards the eye), as the first vertex of its walk with a
@@ -14,6 +16,11 @@ inline void note_seen_surface(PixelSample& pixel, const Vertex& v, const Vec3& b
     // The reflectance has a simple form where the BSDF is diffuse; others show a typical value.
     pixel.albedo += throughput * (v.bsdf.eval(facing(v.bsdf.shading_normal(), back), back) * kPi);
     pixel.normal += facing(v.point.ng, back) * static_cast<float>(share);
+}
+
+/// The distance from where the view begins to the first surface [m]; `eye` is the vertex that it is seen from.
+inline double seen_depth(const SurfacePoint& eye, const SurfacePoint& seen) {
+    return std::max(0.0f, (seen.p - eye.p).length() - (eye.site == Site::point ? eye.offset : 0.0f));
 }
 
 } // namespace keyhole

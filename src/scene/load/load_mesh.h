@@ -36,6 +36,7 @@ TriangleMesh import_mesh(const std::string& path);
 struct MeshPart {
     TriangleMesh mesh;
     std::size_t material = 0;
+    std::string name; ///< of the node that places it; may be empty
 };
 
 /// Reads the parts of an OBJ, glTF or GLB file one by one, as import_mesh() does.

@@ -66,6 +66,8 @@ class SceneBuilder {
             shape.geometry = std::move(part.mesh);
             shape.material = look.material;
             shape.alpha = look.alpha;
+            shape.name = std::move(part.name);
+            shape.material_name = name_of(part.material);
             if (!is_black(look.emission.radiance)) shape.emission = std::make_unique<SurfaceEmission>(look.emission);
             shapes.push_back(std::move(shape));
         }
@@ -79,6 +81,13 @@ class SceneBuilder {
         const Json& all = gltf::member(document_.root(), "materials");
         known->second = gltf::read_look(document_, material < all.size() ? all[material] : Json::object());
         return known->second;
+    }
+
+    std::string name_of(std::size_t material) const {
+        const Json& all = gltf::member(document_.root(), "materials");
+        if (material >= all.size() || !all[material].is_object()) return {};
+        const auto name = all[material].find("name");
+        return name != all[material].end() && name->is_string() ? name->get<std::string>() : std::string();
     }
 
     void light_up(SceneDescription& scene) const {

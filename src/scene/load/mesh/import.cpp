@@ -105,11 +105,12 @@ class Collector {
     void visit(const aiNode& node, const Transform& parent, int depth) {
         if (depth > 256) fail(path_, "found parts nested more than 256 deep, expected fewer levels");
         const Transform to_world = to_transform(node.mTransformation) * parent;
-        for (unsigned i = 0; i < node.mNumMeshes; ++i) place(*scene_.mMeshes[node.mMeshes[i]], to_world);
+        for (unsigned i = 0; i < node.mNumMeshes; ++i)
+            place(*scene_.mMeshes[node.mMeshes[i]], to_world, node.mName.C_Str());
         for (unsigned i = 0; i < node.mNumChildren; ++i) visit(*node.mChildren[i], to_world, depth + 1);
     }
 
-    void place(const aiMesh& source, const Transform& to_world) {
+    void place(const aiMesh& source, const Transform& to_world, const char* name) {
         triangles_ += source.mNumFaces;
         positions_ += source.mNumVertices;
         if (triangles_ > kMaxMeshTriangles || positions_ > 3 * kMaxMeshTriangles)
@@ -121,7 +122,7 @@ class Collector {
         transform_mesh(part, to_world);
         mend_mesh(part, path_);
         if (part.triangles.empty()) return;
-        parts_.push_back({std::move(part), source.mMaterialIndex});
+        parts_.push_back({std::move(part), source.mMaterialIndex, name});
     }
 
     const aiScene& scene_;

@@ -7,9 +7,10 @@
 namespace keyhole {
 
 void CameraReader::read_film(const YamlNode& section) {
-    const MapReader map(section, "a film", {"resolution", "crop"});
+    const MapReader map(section, "a film", {"resolution", "crop", "transparent"});
     if (const YamlNode* resolution = map.find("resolution")) read_resolution(*resolution);
     if (const YamlNode* crop = map.find("crop")) read_crop(*crop);
+    transparent_ = map.boolean("transparent", transparent_);
 }
 
 void CameraReader::read_resolution(const YamlNode& node) {
@@ -80,7 +81,8 @@ void CameraReader::set_base(const CameraParameters& camera, const ImageWindow& w
 }
 
 CameraParameters CameraReader::camera(const YamlNode& scene) const {
-    const CameraParameters all = uncropped(scene);
+    CameraParameters all = uncropped(scene);
+    all.sees_surroundings = all.sees_surroundings && !transparent_;
     if (!crop_) return all;
     const CropWindow& c = *crop_;
     if (!(c.x0 < c.x1 && c.y0 < c.y1 && c.x1 <= window_.width && c.y1 <= window_.height))

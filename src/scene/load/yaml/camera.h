@@ -42,6 +42,7 @@ class CameraReader {
     std::optional<Imath::V2d> shift_;
     std::optional<CropWindow> crop_;
     const YamlNode* crop_node_ = nullptr;
+    bool transparent_ = false;
     std::optional<CameraParameters> base_;
 };
 

@@ -9,8 +9,8 @@ using PrimitiveReader = Geometry (*)(const YamlNode&, MeshCache&);
 
 /// A shape's map, with the keys that all shapes have and its own.
 MapReader shape_map(const YamlNode& node, std::string_view what, const std::vector<std::string_view>& own) {
-    std::vector<std::string_view> keys{"type", "material", "transform", "emission",
-                                       "flip", "alpha",    "inside",    "outside"};
+    std::vector<std::string_view> keys{"type",  "material", "transform", "emission", "flip",
+                                       "alpha", "inside",   "outside",   "name"};
     keys.insert(keys.end(), own.begin(), own.end());
     return {node, what, keys};
 }

@@ -62,7 +62,7 @@ void ShapeReader::read_shape(const YamlNode& node, const Placement& placement) {
     Shape shape;
     shape.geometry = read_geometry(type, node, meshes_);
     const MapReader map(node, "a shape");
-    const Placement own = inherit(map, placement);
+    Placement own = inherit(map, placement);
     transform_geometry(shape.geometry, own.to_world);
     if (map.boolean("flip", false)) flip(shape.geometry);
     const double area = surface_area(shape);
@@ -75,6 +75,8 @@ void ShapeReader::read_shape(const YamlNode& node, const Placement& placement) {
     const YamlNode* emission = map.find("emission");
     if (emission != nullptr) shape.emission = read_emission(*emission, area);
     shape.material = own.material;
+    shape.name = std::move(own.name);
+    shape.material_name = std::move(own.material_name);
     if (!shape.material) {
         if (emission == nullptr) fail(node, fmt::format("found a {} without 'material', expected that key", type));
         shape.material = make_diffuse(Rgb(0.0)); // a lamp that reflects nothing
@@ -92,12 +94,12 @@ void ShapeReader::read_shape(const YamlNode& node, const Placement& placement) {
 }
 
 void ShapeReader::read_group(const YamlNode& node, const Placement& placement) {
-    const MapReader map(node, "a group", {"type", "shapes", "transform", "material"});
+    const MapReader map(node, "a group", {"type", "shapes", "transform", "material", "name"});
     read_list_of_shapes(map.at("shapes"), inherit(map, placement));
 }
 
 void ShapeReader::read_instance(const YamlNode& node, const Placement& placement) {
-    const MapReader map(node, "an instance", {"type", "group", "transform", "material"});
+    const MapReader map(node, "an instance", {"type", "group", "transform", "material", "name"});
     const YamlNode& reference = map.at("group");
     const std::string name = read_string(reference, "the name of a group");
     const auto found = groups_.find(name);
@@ -126,7 +128,11 @@ ShapeReader::Placement ShapeReader::inherit(const MapReader& map, const Placemen
             fail(*transform,
                  "found a transform that is singular with those around it, expected one that can be inverted");
     }
-    if (const YamlNode* material = map.find("material")) own.material = find_material(*material, materials_);
+    if (const YamlNode* name = map.find("name")) own.name = read_string(*name, "a name");
+    if (const YamlNode* material = map.find("material")) {
+        own.material = find_material(*material, materials_);
+        own.material_name = material->kind == YamlNode::Kind::map ? "" : material->text;
+    }
     return own;
 }
 

@@ -56,6 +56,7 @@ class ShapeReader {
     struct Placement {
         Transform to_world;
         std::shared_ptr<const Material> material; ///< for those without one; may be null
+        std::string name, material_name;          ///< of those without one; may be empty
         int depth = 0;                            ///< groups around
     };
     struct Group {
