@@ -25,6 +25,9 @@ PhotonQuery query_at(const Vertex& v, const Vec3& back, float radius, const Look
 /// Least probability with which the glossy part is looked at where a ray ends.
 constexpr double kLeastGlossy = 0.05;
 
+/// Of a place's radius, how far from it what stands around it is known well enough.
+constexpr float kKnown = 0.25f;
+
 /// Caustics are the lesser part of the light where they are below this share of the rest; least probability with which
 /// they are looked at there.
 constexpr double kLesserCaustic = 0.1, kLeastLook = 0.1;
@@ -85,13 +88,17 @@ GatherRays::Arrival GatherRays::trace(const Vertex& from, const Vec3& w, double 
     return walk.arrival;
 }
 
-bool GatherRays::too_near(const Leg& leg, std::uint32_t place) const {
+bool GatherRays::goes_on(const Leg& leg, std::uint32_t place, const Vec3& position) const {
+    // Light from outside the gather coverage is where no photon tells of it.
+    if (leg.secondary || maps_.coverage != nullptr) return false;
+    const float r = maps_.irradiance->radius(place);
+    // Farther away than its estimate looks, the place is one of other surfaces, as beside a frame on which no photon
+    // lies: they may have a hundred times the light.
+    if ((maps_.irradiance->places()[place].position() - position).length2() > r * r) return true;
     // The estimate is a mean over its radius. Seen from nearer than that, as in corners, the mean is not good enough.
     // With mirrors or smooth glass it has to be: rays that are traced on would lose the caustics of the place, which
-    // only a ray that happens to run into the emitter could find. Light from outside the gather coverage is lost
-    // likewise.
-    return !leg.secondary && !scene_.traits().delta && maps_.coverage == nullptr &&
-           leg.distance < maps_.irradiance->radius(place);
+    // only a ray that happens to run into the emitter could find.
+    return !scene_.traits().delta && leg.distance < r;
 }
 
 Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSource& source) const {
@@ -110,7 +117,7 @@ Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSou
     const Rgb f = v.bsdf.diffuse_reflectance(back);
     const auto near = maps_.direct->direct(known.place, v.point.p, maps_.irradiance->radius(known.place));
     Rgb sum = near ? f * *near : direct_light(scene_, v, back, 1, source);
-    const bool on = too_near(leg, known.place);
+    const bool on = goes_on(leg, known.place, v.point.p);
     if (!on) {
         sum += f * known.irradiance;
     } else if (const auto next = continue_walk(v, back, From::eye, source); next && !is_specular(next->event)) {
@@ -166,15 +173,30 @@ Rgb GatherRays::global(const Vertex& v, const Vec3& back) const {
     return e.value / share_in_reach(maps_.coverage, query.region, e.radius);
 }
 
+bool GatherRays::may_be_parted(std::uint32_t place, const SurfaceRegion& region) const {
+    const float r = maps_.irradiance->radius(place);
+    if (maps_.irradiance->obstructed(place)) return true;
+    const float distance2 = (maps_.irradiance->places()[place].position() - region.position).length2();
+    return distance2 > kKnown * kKnown * r * r && maps_.patches->obstructed(region, r);
+}
+
 Rgb GatherRays::global_near(std::uint32_t place, const Vertex& v, const Vec3& back) const {
     if (maps_.global == nullptr) return Rgb(0.0);
     const PhotonQuery query = query_at(v, back, options_.max_radius, options_);
     const float r = maps_.irradiance->radius(place);
     const double share = maps_.irradiance->area_share(place);
     if (!(share > 0)) return Rgb(0.0);
-    const DensityEstimate e =
-        estimate_density(maps_.global->main_photons(), query.region, r, nullptr, reflection(v, back));
-    return e.value / (share * share_in_reach(maps_.coverage, query.region, r));
+    const PhotonMap& photons = maps_.global->main_photons();
+    const auto reflected = reflection(v, back);
+    const auto density = [&](const auto& weight) {
+        return estimate_density(photons, query.region, r, nullptr, weight).value /
+               (share * share_in_reach(maps_.coverage, query.region, r));
+    };
+    if (!may_be_parted(place, query.region)) return density(reflected);
+    return density([&, lift = sight_lift(r)](const Photon& p) {
+        const Rgb weight = reflected(p);
+        return !is_black(weight) && in_sight(scene_, query.region, lift, p.position()) ? weight : Rgb(0.0);
+    });
 }
 
 } // namespace keyhole

@@ -58,12 +58,15 @@ class GatherRays {
     struct Missing;
     struct Walk;
     Arrival trace(const Vertex& from, const Vec3& w, double pdf, const Leg& start, SampleSource& source) const;
-    /// Whether a ray from `leg.distance` away sees the estimate at a place from too near.
-    bool too_near(const Leg& leg, std::uint32_t place) const;
+    /// Whether what the estimate at a place says of `position` isn't good enough for a ray from `leg.distance` away,
+    /// so that it has to be traced on.
+    bool goes_on(const Leg& leg, std::uint32_t place, const Vec3& position) const;
     /// Radiance towards `back` that `v` reflects by its finite part.
     Rgb reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSource& source) const;
     /// What the glossy part adds to that where the rest is known: seldom, and all the more then.
     Rgb glossy(const Vertex& v, const Vec3& back, const Missing& missing, SampleSource& source) const;
+    /// Whether something may stand on a region near a place, which has the radius of that, and hide photons there.
+    bool may_be_parted(std::uint32_t place, const SurfaceRegion& region) const;
     /// What the global map says of light that `v` reflects towards `back`.
     Rgb global(const Vertex& v, const Vec3& back) const;
     /// The same near a place of the irradiance map, whose radius and surface do for `v`, too.

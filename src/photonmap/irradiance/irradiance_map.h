@@ -52,6 +52,8 @@ class IrradianceMap {
     float radius(std::uint32_t i) const { return estimates_[i].radius(); }
     /// Area of the surface in that radius over that of the disc.
     double area_share(std::uint32_t i) const { return estimates_[i].area_share(); }
+    /// Whether something may stand there that hides photons in that radius from each other.
+    bool obstructed(std::uint32_t i) const { return (estimates_[i].obstructed() & 1) != 0; }
 
     /// Memory without that of the pilot photons [bytes].
     std::size_t bytes() const { return estimates_.capacity() * sizeof(Estimate) + (grid_ ? grid_->bytes() : 0); }

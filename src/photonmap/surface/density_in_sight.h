@@ -12,7 +12,7 @@ template <class Weight>
 DensityEstimate estimate_density_in_sight(const Scene& scene, const PhotonMap& map, const SurfaceRegion& region,
                                           float r, const SurfacePatches& patches, const Weight& weight) {
     const bool obstructed = patches.obstructed(region, r);
-    const float lift = 2 * r / SurfaceRegion::kFlattening;
+    const float lift = sight_lift(r);
     // Where nothing is in sight the middle lies in a crevice, and the test says nothing.
     const double seen = obstructed ? patches.area_in_sight(region, r, lift) : 0;
     DensityEstimate e;

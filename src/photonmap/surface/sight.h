@@ -16,6 +16,9 @@ inline bool in_sight(const Scene& scene, const SurfaceRegion& region, float lift
     return p == region.position || scene.visible(region.position + above, p + above);
 }
 
+/// The height at which the middle of a region of radius `r` looks at its photons: above all that counts as its surface.
+inline float sight_lift(float r) { return 2 * r / SurfaceRegion::kFlattening; }
+
 /// The share of the region of radius `r` of which `holds(place)` says that something holds there, among those of 16
 /// places spread over it evenly of which `counts(place)`; 0 if there are none.
 template <class Counts, class Holds>

@@ -1,0 +1,83 @@
+// What gather rays make of the photons around the point that they meet.
+#include "gather/gather_rays.h"
+
+#include "gather/direct_irradiance_cache.h"
+#include "photon_support.h"
+#include "scene/material.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+namespace keyhole {
+namespace {
+
+using namespace photon_test;
+
+constexpr float kReach = 0.1f; // of lookups [m]
+
+/// A floor of 1 x 1 m with a wall across it at x = 0.5 m, and photons on it; nothing emits.
+class Floor {
+  public:
+    explicit Floor(const MaterialPtr& material) : scene_(make_scene(material)), patches_(*scene_) {}
+
+    /// Photons of power 1 W from straight above on the part of the floor between two x [m]: so many main ones, and a
+    /// pilot for each ten.
+    void throw_on(float from, float to, int count) {
+        const Rectangle part{{from, 0, 0}, {0, 0, 1}, {to - from, 0, 0}};
+        throw_photons(part, count, rng_, photons_.main_photons);
+        throw_photons(part, count / 10, rng_, photons_.pilots);
+    }
+    /// Mean of what rays from straight above find at `x` [W/(m^2 sr)].
+    double seen_at(float x) {
+        const PilotedMap global(photons_);
+        const IrradianceMap irradiance(global.pilots(), global.main_photons(),
+                                       {.k = 60, .max_radius = kReach, .patches = &patches_, .scene = scene_.get()},
+                                       {});
+        const DirectIrradianceCache direct(*scene_, irradiance.places(), {}, {});
+        const GatherRays rays(*scene_,
+                              {.global = &global, .irradiance = &irradiance, .direct = &direct, .patches = &patches_},
+                              {.max_radius = kReach, .caustic_radius = kReach}, 8);
+        RunningStats found;
+        for (float z = 0.2f; z < 0.8f; z += 0.02f) {
+            Vertex from;
+            from.point.site = Site::point;
+            from.point.p = {x, 0.25f, z};
+            found.add(luminance(rays.trace(from, {0, -1, 0}, 1, 1, rng_).indirect));
+        }
+        return found.mean();
+    }
+
+  private:
+    static std::unique_ptr<Scene> make_scene(const MaterialPtr& material) {
+        SceneDescription d;
+        d.shapes.push_back(shape_of({{0, 0, 0}, {0, 0, 1}, {1, 0, 0}}));
+        d.shapes.push_back(shape_of({{0.5f, 0, 0}, {0, 0.3f, 0}, {0, 0, 1}}));
+        for (Shape& shape : d.shapes) shape.material = material;
+        return std::make_unique<Scene>(std::move(d));
+    }
+
+    std::unique_ptr<Scene> scene_;
+    SurfacePatches patches_;
+    PhotonSet photons_;
+    Rng rng_ = make_rng(1);
+};
+
+TEST(GatherRays, SeeNoPhotonsFromBehindAWallInAShinyFloor) {
+    Floor floor(make_conductor(constant_texture(Rgb(0.8)), constant_texture(0.5), constant_texture(0.5)));
+    floor.throw_on(0.5f, 1, 2000);
+    const double alone = floor.seen_at(0.52f);
+    ASSERT_GT(alone, 0);
+    floor.throw_on(0, 0.5f, 200'000);
+    EXPECT_NEAR(floor.seen_at(0.52f), alone, 0.3 * alone);
+}
+
+TEST(GatherRays, TakeNothingFromPlacesThatLieBeyondTheirOwnEstimates) {
+    Floor floor(make_diffuse(Rgb(0.5)));
+    floor.throw_on(0.5f, 0.6f, 20'000);
+    EXPECT_NEAR(floor.seen_at(0.55f), 0.5 / kPi * 20'000 / 0.1, 0.1 * 0.5 / kPi * 20'000 / 0.1);
+    EXPECT_EQ(floor.seen_at(0.8f), 0) << "light from 0.2 m away";
+}
+
+} // namespace
+} // namespace keyhole
