@@ -74,9 +74,8 @@ TEST(DarkPlastic_Gloss, ReflectsASkyAsFresnelsEquationsSay) {
                 const double alpha = roughness * roughness;
                 const PrincipledBsdf model(black(specular, alpha));
                 const Facets facets(alpha, cosine);
-                const double exact = facets.integral([&](const LocalVec&, double c, double brdf) {
-                    return brdf * fresnel(c, index_of(specular));
-                });
+                const double exact = facets.integral(
+                    [&](const LocalVec&, double c, double brdf) { return brdf * fresnel(c, index_of(specular)); });
                 const double found = facets.integral(
                     [&](const LocalVec& l, double, double) { return model.eval(Vec3(l), Vec3(facets.out())).y; });
                 EXPECT_NEAR(found / exact, 1, 0.01) << roughness << ' ' << specular << ' ' << cosine;
