@@ -1,5 +1,6 @@
 // PrincipledBsdf: what it reflects of a sky that is white all around.
 #include "scene/bsdf.h"
+#include "scene/bsdfs/fresnel_weight.h"
 #include "scene/warp.h"
 #include "support/chi_squared.h"
 
@@ -98,14 +99,20 @@ TEST(GlossyAlbedo_Table, AgreesWithIntegrals) {
             const Vec3 to_eye = spherical(cosine, 0);
             const LocalVec o(to_eye);
             const Ggx ggx{alpha, alpha};
-            const auto lobe = [&](const Vec3& w, bool edge) {
-                if (!(w.z > 0)) return 0.0;
-                const LocalVec i(w), h = half_vector(i, o);
-                return ggx.reflection(i, o, h) * w.z * (edge ? schlick_weight(o.dot(h)) : 1.0);
+            const auto albedo = [&](const auto& reflectance) {
+                return integrate_sphere([&](const Vec3& w) {
+                    if (!(w.z > 0)) return 0.0;
+                    const LocalVec i(w), h = half_vector(i, o);
+                    return ggx.reflection(i, o, h) * w.z * reflectance(o.dot(h));
+                });
             };
-            const SplitAlbedo at = ggx_albedo(cosine, alpha);
-            EXPECT_NEAR(at.whole, integrate_sphere([&](const Vec3& w) { return lobe(w, false); }), 4e-3);
-            EXPECT_NEAR(at.edge, integrate_sphere([&](const Vec3& w) { return lobe(w, true); }), 4e-3);
+            const double whole = albedo([](double) { return 1.0; }), schlick = albedo(schlick_weight);
+            for (const double root : {0.0, 0.13, 0.2, 0.48, 0.9}) {
+                const GgxAlbedo at = ggx_albedo(cosine, alpha, root);
+                EXPECT_NEAR(at.whole, whole, 4e-3);
+                EXPECT_NEAR(at.schlick, schlick, 4e-3);
+                EXPECT_NEAR(at.dielectric, albedo(DielectricWeight(root)), 4e-3) << root;
+            }
         }
     for (const double cosine : {0.95, 0.42, 0.12}) {
         const Vec3 o = spherical(cosine, 0);

@@ -20,7 +20,7 @@ VARYING = {
 }
 COLOURS = {"Base Color"}
 IGNORED = {"Subsurface": 0, "Anisotropic Rotation": 0, "Transmission Roughness": 0}  # socket: what means nothing
-TAKEN_BY_GLOSS = 0.11  # of the base's light, at a specular of 1 and all angles: tests/blender/principled_test.py
+TAKEN_BY_GLOSS = 0.12  # of the base's light, at a specular of 1 and all angles: tests/blender/principled_test.py
 UNLINKED = "Clearcoat Normal", "Tangent"
 
 

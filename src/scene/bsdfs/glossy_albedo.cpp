@@ -1,6 +1,7 @@
 #include "scene/bsdfs/glossy_albedo.h"
 
 #include "core/vec.h"
+#include "scene/bsdfs/fresnel_weight.h"
 #include "scene/bsdfs/microfacet.h"
 
 #include <algorithm>
@@ -11,14 +12,33 @@ namespace keyhole {
 namespace {
 
 constexpr std::size_t kAlphaNodes = 33, kCosineNodes = 33;
+/// Of roots of reflectances, 0.05 apart: that of the index 1.5, by far the commonest, is one of them.
+constexpr std::size_t kRootNodes = 11;
+constexpr std::size_t kFacetNodes = 65;
+
+struct Entry {
+    std::size_t i;
+    double share; // of the next one
+};
+Entry entry_at(double x, std::size_t n) {
+    const double s = std::clamp(x, 0.0, 1.0) * static_cast<double>(n - 1);
+    const auto i = std::min(static_cast<std::size_t>(s), n - 2);
+    return {i, s - static_cast<double>(i)};
+}
+
+double between(double a, double b, double share) { return a + (b - a) * share; }
+
+/// What all facets reflect along one direction, by the cosine to each, as if they reflected all: shared out to the
+/// nodes (i / (kFacetNodes - 1))^2.
+using FacetCosines = std::array<double, kFacetNodes>;
 
 /// By visible normals over a grid, which leaves errors of some 1e-3.
-SplitAlbedo integrate_ggx(double cosine, double alpha) {
+FacetCosines integrate_ggx(double cosine, double alpha) {
     constexpr int kRadii = 32, kAngles = 12;
     const Ggx ggx{alpha, alpha};
     const LocalVec w(std::sqrt(std::max(0.0, 1 - cosine * cosine)), 0, cosine);
     const double unmasked = 1 + ggx.lambda(w);
-    SplitAlbedo sum{0, 0};
+    FacetCosines sum{};
     for (int i = 0; i < kRadii; ++i) {
         // Dense near 1, where the distribution's tail is.
         const double t = 1 - (i + 0.5) / kRadii, u0 = 1 - t * t * t, share = 3 * t * t / (kRadii * kAngles);
@@ -29,8 +49,9 @@ SplitAlbedo integrate_ggx(double cosine, double alpha) {
             const LocalVec to = h * (2 * c) - w;
             if (!(c > 0) || !(to.z > 0)) continue;
             const double weight = share * ggx.masking(w, to) * unmasked;
-            sum.whole += weight;
-            sum.edge += weight * schlick_weight(c);
+            const auto [k, next] = entry_at(std::sqrt(c), kFacetNodes);
+            sum[k] += weight * (1 - next);
+            sum[k + 1] += weight * next;
         }
     }
     return sum;
@@ -57,46 +78,70 @@ double entry_cosine(std::size_t i) {
     return root * root;
 }
 
-struct Entry {
-    std::size_t i;
-    double share; // of the next one
+/// A GgxAlbedo for each root; of one facet, its Fresnel weights and a `whole` of 1.
+struct Albedos {
+    double whole = 0, schlick = 0;
+    std::array<double, kRootNodes> dielectric{};
+
+    void add(const Albedos& other, double share) {
+        whole += share * other.whole;
+        schlick += share * other.schlick;
+        for (std::size_t r = 0; r < kRootNodes; ++r) dielectric[r] += share * other.dielectric[r];
+    }
+    GgxAlbedo at(const Entry& root) const {
+        return {whole, schlick, between(dielectric[root.i], dielectric[root.i + 1], root.share)};
+    }
 };
-Entry entry_at(double x, std::size_t n) {
-    const double s = std::clamp(x, 0.0, 1.0) * static_cast<double>(n - 1);
-    const auto i = std::min(static_cast<std::size_t>(s), n - 2);
-    return {i, s - static_cast<double>(i)};
+
+Albedos weights_at(double cosine) {
+    Albedos weights{1, schlick_weight(cosine), {}};
+    for (std::size_t r = 0; r < kRootNodes; ++r) {
+        const double root = DielectricWeight::kMostRoot * static_cast<double>(r) / (kRootNodes - 1);
+        weights.dielectric[r] = DielectricWeight(root)(cosine);
+    }
+    return weights;
 }
 
-double between(double a, double b, double share) { return a + (b - a) * share; }
-SplitAlbedo between(const SplitAlbedo& a, const SplitAlbedo& b, double share) {
-    return {between(a.whole, b.whole, share), between(a.edge, b.edge, share)};
+GgxAlbedo between(const GgxAlbedo& a, const GgxAlbedo& b, double share) {
+    return {between(a.whole, b.whole, share), between(a.schlick, b.schlick, share),
+            between(a.dielectric, b.dielectric, share)};
 }
+
+Entry root_entry(double root) { return entry_at(root / DielectricWeight::kMostRoot, kRootNodes); }
 
 struct GgxAlbedoTable {
-    std::array<std::array<SplitAlbedo, kCosineNodes>, kAlphaNodes> entries;
-    std::array<SplitAlbedo, kAlphaNodes> means;
+    std::array<std::array<Albedos, kCosineNodes>, kAlphaNodes> entries;
+    std::array<Albedos, kAlphaNodes> means;
 
     GgxAlbedoTable() {
-        for (std::size_t a = 0; a < kAlphaNodes; ++a) {
+        std::array<Albedos, kFacetNodes> weights; // the same for all entries: Fresnel's equations cost more than sums
+        for (std::size_t i = 0; i < kFacetNodes; ++i) {
+            const double root = static_cast<double>(i) / (kFacetNodes - 1);
+            weights[i] = weights_at(root * root);
+        }
+        for (std::size_t c = 0; c < kCosineNodes; ++c) entries[0][c] = weights_at(entry_cosine(c));
+        for (std::size_t a = 1; a < kAlphaNodes; ++a) {
             const double root = static_cast<double>(a) / (kAlphaNodes - 1), alpha = root * root;
             for (std::size_t c = 0; c < kCosineNodes; ++c) {
-                const double cosine = entry_cosine(c);
-                entries[a][c] = a > 0 ? integrate_ggx(cosine, alpha) : SplitAlbedo{1, schlick_weight(cosine)};
+                const FacetCosines facets = integrate_ggx(entry_cosine(c), alpha);
+                for (std::size_t i = 0; i < kFacetNodes; ++i) entries[a][c].add(weights[i], facets[i]);
             }
-            means[a] = mean(a);
         }
+        for (std::size_t a = 0; a < kAlphaNodes; ++a) means[a] = mean(a);
     }
 
-    SplitAlbedo mean(std::size_t alpha) const {
-        if (alpha == 0) return {1, 1.0 / 21};
+    Albedos mean(std::size_t alpha) const {
         constexpr int kSteps = 128;
-        SplitAlbedo sum{0, 0};
+        Albedos sum;
         for (int i = 0; i < kSteps; ++i) {
-            const double cosine = (i + 0.5) / kSteps;
+            const double cosine = (i + 0.5) / kSteps, weight = 2 * cosine / kSteps;
+            if (alpha == 0) {
+                sum.add(weights_at(cosine), weight);
+                continue;
+            }
             const auto [c, share] = entry_at(std::sqrt(cosine), kCosineNodes);
-            const SplitAlbedo x = between(entries[alpha][c], entries[alpha][c + 1], share);
-            sum.whole += 2 * cosine * x.whole / kSteps;
-            sum.edge += 2 * cosine * x.edge / kSteps;
+            sum.add(entries[alpha][c], weight * (1 - share));
+            sum.add(entries[alpha][c + 1], weight * share);
         }
         return sum;
     }
@@ -109,19 +154,26 @@ const GgxAlbedoTable& ggx_albedo_table() {
 
 } // namespace
 
-SplitAlbedo ggx_albedo(double cosine, double alpha) {
-    if (alpha == 0) return {1, schlick_weight(cosine)};
+GgxAlbedo ggx_albedo(double cosine, double alpha, double root) {
+    if (alpha == 0) return {1, schlick_weight(cosine), DielectricWeight(root)(cosine)};
     const GgxAlbedoTable& t = ggx_albedo_table();
     const auto [a, across] = entry_at(std::sqrt(alpha), kAlphaNodes);
     const auto [c, along] = entry_at(std::sqrt(cosine), kCosineNodes);
-    return between(between(t.entries[a][c], t.entries[a][c + 1], along),
-                   between(t.entries[a + 1][c], t.entries[a + 1][c + 1], along), across);
+    const Entry r = root_entry(root);
+    const Albedos *low = &t.entries[a][c], *high = &t.entries[a + 1][c];
+    const auto mixed = [&, along = along, across = across](const auto& of) {
+        return between(between(of(low[0]), of(low[1]), along), between(of(high[0]), of(high[1]), along), across);
+    };
+    return {mixed([](const Albedos& x) { return x.whole; }), mixed([](const Albedos& x) { return x.schlick; }),
+            between(mixed([&](const Albedos& x) { return x.dielectric[r.i]; }),
+                    mixed([&](const Albedos& x) { return x.dielectric[r.i + 1]; }), r.share)};
 }
 
-SplitAlbedo mean_ggx_albedo(double alpha) {
+GgxAlbedo mean_ggx_albedo(double alpha, double root) {
     const GgxAlbedoTable& t = ggx_albedo_table();
     const auto [a, share] = entry_at(std::sqrt(alpha), kAlphaNodes);
-    return between(t.means[a], t.means[a + 1], share);
+    const Entry r = root_entry(root);
+    return between(t.means[a].at(r), t.means[a + 1].at(r), share);
 }
 
 double sheen_albedo(double cosine) {

@@ -1,5 +1,6 @@
 #include "scene/bsdfs/principled.h"
 
+#include "scene/bsdfs/fresnel_weight.h"
 #include "scene/warp.h"
 
 #include <algorithm>
@@ -8,13 +9,10 @@
 namespace keyhole {
 namespace {
 
-/// Of a layer of index 1.5 along the normal.
-constexpr double kCoatReflectance = 0.04;
-
-/// No matter reflects less: what does so is meant to fade (Lagarde and de Rousiers 2014, "Moving Frostbite to PBR").
-constexpr double kLeastReflectance = 0.02;
-
-double edge_reflectance(double f0) { return std::min(1.0, f0 / kLeastReflectance); }
+/// Of the coat.
+constexpr double kCoatIndex = 1.5;
+/// Root of what it reflects along the normal.
+constexpr double kCoatRoot = (kCoatIndex - 1) / (kCoatIndex + 1);
 
 double mean_of(const Rgb& c) { return (c.x + c.y + c.z) / 3; }
 
@@ -28,7 +26,7 @@ Rgb mixed(const Rgb& a, const Rgb& b, double share) { return a * (1 - share) + b
 
 /// Of the light that one reflection by a rough metal does not let go, the share that later ones do (Kulla and Conty
 /// 2017, "Revisiting Physically Based Shading at Imageworks", with a Fresnel term for the first reflection, too).
-double multiple_reflections(double f0, const SplitAlbedo& mean) {
+double multiple_reflections(double f0, const GgxAlbedo& mean) {
     const double f = f0 + (1 - f0) / 21;
     return f * f * mean.whole / (1 - f * (1 - mean.whole));
 }
@@ -37,17 +35,17 @@ double multiple_reflections(double f0, const SplitAlbedo& mean) {
 
 PrincipledBsdf::PrincipledBsdf(const PrincipledParameters& p)
     : base_(p.base_color * (1 - p.metallic)), alpha_x_(static_cast<float>(p.alpha_x)),
-      alpha_y_(static_cast<float>(p.alpha_y)), coat_alpha_(static_cast<float>(p.coat_alpha)),
-      dielectric_f0_(p.specular), coat_(p.coat) {
+      alpha_y_(static_cast<float>(p.alpha_y)), coat_alpha_(static_cast<float>(p.coat_alpha)), metallic_(p.metallic),
+      dielectric_root_(p.metallic < 1 ? std::sqrt(p.specular) : 0), coat_(p.coat) {
     const Rgb hue = hue_of(p.base_color);
-    f0_ = shares(mixed(mixed(Rgb(1.0), hue, p.specular_tint) * p.specular, p.base_color, p.metallic));
-    f90_ = Share(edge_reflectance(p.specular) * (1 - p.metallic) + p.metallic);
+    dielectric_f0_ = shares(mixed(Rgb(1.0), hue, p.specular_tint) * (p.specular * (1 - p.metallic)));
+    metal_f0_ = shares(p.base_color * p.metallic);
     sheen_ = shares(mixed(Rgb(1.0), hue, p.sheen_tint) * (p.sheen * (1 - p.metallic)));
     if (p.metallic > 0 && !smooth()) {
-        const SplitAlbedo mean = mean_ggx_albedo(mean_alpha());
+        const GgxAlbedo mean = mean_ggx_albedo(mean_alpha(), dielectric_root_);
         Rgb again;
         for (int k = 0; k < 3; ++k) again[k] = p.metallic * multiple_reflections(p.base_color[k], mean);
-        metal_ = again;
+        metal_ = shares(again);
     }
     find_means();
 }
@@ -56,21 +54,19 @@ double PrincipledBsdf::sheen_weight() const {
     return std::max({double(sheen_[0]), double(sheen_[1]), double(sheen_[2])});
 }
 
-double PrincipledBsdf::dielectric_f90() const { return edge_reflectance(dielectric_f0_); }
-
-Rgb PrincipledBsdf::fresnel(double cosine) const {
-    const double edge = schlick_weight(cosine);
-    return rgb(f0_) * (1 - edge) + Rgb(f90_ * edge);
+Rgb PrincipledBsdf::gloss_albedo(const GgxAlbedo& gloss) const {
+    return rgb(dielectric_f0_) * (gloss.whole - gloss.dielectric) + rgb(metal_f0_) * (gloss.whole - gloss.schlick) +
+           Rgb((1 - metallic_) * gloss.dielectric + metallic_ * gloss.schlick);
 }
 
 PrincipledBsdf::Layers PrincipledBsdf::layers(double cosine) const {
     Layers at{};
     at.sheen = sheen_weight();
     if (at.sheen > 0) at.sheen *= sheen_albedo(cosine);
-    if (coat_ > 0) at.coat = coat_ * ggx_albedo(cosine, coat_alpha_)(kCoatReflectance, 1);
-    at.gloss = ggx_albedo(cosine, mean_alpha());
+    if (coat_ > 0) at.coat = coat_ * ggx_albedo(cosine, coat_alpha_, kCoatRoot).with_dielectric(kCoatRoot * kCoatRoot);
+    at.gloss = ggx_albedo(cosine, mean_alpha(), dielectric_root_);
     const double left = (1 - at.sheen) * (1 - at.coat);
-    at.base = left * std::max(0.0, 1 - at.gloss(dielectric_f0_, dielectric_f90()));
+    at.base = left * std::max(0.0, 1 - taken_from_base(at.gloss));
     at.metal = left * std::max(0.0, 1 - at.gloss.whole);
     return at;
 }
@@ -78,8 +74,8 @@ PrincipledBsdf::Layers PrincipledBsdf::layers(double cosine) const {
 /// By Gauss and Legendre's rule of eight cosines, where no table has them.
 void PrincipledBsdf::find_means() {
     if (coat_ == 0 && sheen_weight() == 0) {
-        const SplitAlbedo mean = smooth() ? SplitAlbedo{1, 1.0 / 21} : mean_ggx_albedo(mean_alpha());
-        base_mean_ = static_cast<float>(1 - mean(dielectric_f0_, dielectric_f90()));
+        const GgxAlbedo mean = mean_ggx_albedo(mean_alpha(), dielectric_root_);
+        base_mean_ = static_cast<float>(1 - taken_from_base(mean));
         metal_mean_ = static_cast<float>(1 - mean.whole);
     } else {
         struct {
@@ -100,11 +96,11 @@ void PrincipledBsdf::find_means() {
     }
     // Where nothing is left to them.
     if (!(base_mean_ > 1e-6f)) base_ = Rgb(0.0), base_mean_ = 1;
-    if (!(metal_mean_ > 1e-6f)) metal_ = Rgb(0.0), metal_mean_ = 1;
+    if (!(metal_mean_ > 1e-6f)) metal_ = {}, metal_mean_ = 1;
 }
 
 BsdfTraits PrincipledBsdf::traits() const {
-    const bool diffuse = !is_black(base_), glossy = !is_black(metal_) || sheen_weight() > 0 ||
+    const bool diffuse = !is_black(base_), glossy = !is_black(rgb(metal_)) || sheen_weight() > 0 ||
                                                     (has_gloss() && !smooth()) || (coat_ > 0 && !smooth_coat());
     return {.finite = diffuse || glossy,
             .delta = delta_ && ((has_gloss() && smooth()) || (coat_ > 0 && smooth_coat())),
@@ -131,9 +127,9 @@ PrincipledBsdf PrincipledBsdf::glossy_part() const {
 double PrincipledBsdf::glossy_albedo(const Vec3& from) const {
     const double cosine = upper(from).z;
     const Layers at = layers(cosine);
-    double sum = mean_of(Rgb(metal_)) * at.metal;
+    double sum = mean_of(rgb(metal_)) * at.metal;
     if (!smooth_coat()) sum += (1 - at.sheen) * at.coat;
-    if (!smooth()) sum += (1 - at.sheen) * (1 - at.coat) * at.gloss(mean_of(rgb(f0_)), f90_);
+    if (!smooth()) sum += (1 - at.sheen) * (1 - at.coat) * mean_of(gloss_albedo(at.gloss));
     if (at.sheen > 0) sum += mean_of(rgb(sheen_)) * sheen_albedo(cosine);
     return sum;
 }
@@ -149,26 +145,28 @@ Rgb PrincipledBsdf::glossy_value(const LocalVec& i, const LocalVec& o, const Lay
     const LocalVec h = half_vector(i, o);
     const double c = std::min(1.0, o.dot(h)), below = 1 - std::max(at_i.sheen, at_o.sheen);
     Rgb f(0.0);
-    if (!smooth()) f = fresnel(c) * (ggx().reflection(i, o, h) * (1 - std::max(at_i.coat, at_o.coat)));
+    if (!smooth())
+        f = gloss_albedo(ggx_albedo(c, 0, dielectric_root_)) *
+            (ggx().reflection(i, o, h) * (1 - std::max(at_i.coat, at_o.coat)));
     if (coat_ > 0 && !smooth_coat())
-        f += Rgb(coat_ * SplitAlbedo{1, schlick_weight(c)}(kCoatReflectance, 1) * coat_ggx().reflection(i, o, h));
+        f += Rgb(coat_ * fresnel_dielectric(c, kCoatIndex).reflectance * coat_ggx().reflection(i, o, h));
     return f * below + sheen_part(c);
 }
 
 Rgb PrincipledBsdf::diffuse_part(const Layers& at_i, const Layers& at_o) const {
     return Rgb(base_) * (at_i.base * at_o.base * kInvPi / base_mean_) +
-           Rgb(metal_) * (at_i.metal * at_o.metal * kInvPi / metal_mean_);
+           rgb(metal_) * (at_i.metal * at_o.metal * kInvPi / metal_mean_);
 }
 
 Rgb PrincipledBsdf::diffuse_albedo(const Layers& at_o) const {
-    return Rgb(base_) * at_o.base + Rgb(metal_) * at_o.metal;
+    return Rgb(base_) * at_o.base + rgb(metal_) * at_o.metal;
 }
 
 /// In proportion to the light that each lobe reflects, nearly.
 PrincipledBsdf::Choice PrincipledBsdf::choice(double cosine, const Layers& at) const {
     Choice p;
     p.coat = (1 - at.sheen) * at.coat;
-    p.gloss = (1 - at.sheen) * (1 - at.coat) * at.gloss(mean_of(rgb(f0_)), f90_);
+    p.gloss = (1 - at.sheen) * (1 - at.coat) * mean_of(gloss_albedo(at.gloss));
     p.cosine = mean_of(diffuse_albedo(at));
     if (at.sheen > 0) p.cosine += mean_of(rgb(sheen_)) * sheen_albedo(cosine);
     if (!delta_ && smooth_coat()) p.coat = 0;
@@ -225,7 +223,7 @@ std::optional<DeltaScatter> PrincipledBsdf::delta(const Vec3& from, Event event)
     if (!(probability > 0)) return std::nullopt;
     Rgb coefficient(0.0);
     if (smooth_coat()) coefficient += Rgb(at.coat);
-    if (smooth()) coefficient += fresnel(w.z) * (1 - at.coat);
+    if (smooth()) coefficient += gloss_albedo(at.gloss) * (1 - at.coat);
     return DeltaScatter{mirrored(from), coefficient * (1 - at.sheen), probability, 1.0};
 }
 

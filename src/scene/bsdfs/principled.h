@@ -27,8 +27,10 @@ struct PrincipledParameters {
 /// A metal mixed with a diffuse base under a dielectric, below a coat, below a sheen, after Burley 2012 ("Physically
 /// Based Shading at Disney"), reflecting no more than it gets and the same both ways:
 ///
-/// - Gloss is GGX with Schlick's Fresnel term; metal and dielectric differ in its reflectances only. A reflectance
-///   below 0.02, which no matter has, fades at grazing angles too.
+/// - Gloss is GGX. The dielectric's share of it, and the coat, have the Fresnel term of their index, which is of
+///   `specular` (1 + sqrt(specular)) / (1 - sqrt(specular)): as Cycles, and where Burley has Schlick's approximation.
+///   Metal's share has the latter (Schlick 1994), which follows metals within a few percent, as Burley and glTF have
+///   it. A tint colours what is reflected along the normal, not along the surface.
 /// - The diffuse base gets what its dielectric does not reflect: base (1 - A(i)) (1 - A(o)) / (pi (1 - mean A)), A
 ///   being the albedo of all that lies above (Kelemen and Szirmay-Kalos 2001). `base_color` is thus what is seen,
 ///   darkening by reflections inside the dielectric (Saunderson 1942) included.
@@ -65,7 +67,7 @@ class PrincipledBsdf {
       public:
         Share() = default;
         Share(double x) : bits_(static_cast<std::uint16_t>(x * 65535 + 0.5)) {}
-        operator double() const { return bits_ / 65535.0; }
+        operator double() const { return bits_ * (1 / 65535.0); }
 
       private:
         std::uint16_t bits_ = 0;
@@ -77,7 +79,7 @@ class PrincipledBsdf {
     /// Seen along one direction.
     struct Layers {
         double sheen, coat; ///< albedos by themselves, grey
-        SplitAlbedo gloss;  ///< by itself
+        GgxAlbedo gloss;    ///< by itself
         double base, metal; ///< what all layers above leave to the diffuse base, and to what metal scatters on
     };
     /// Probabilities of the lobes; `cosine` is the one that diffuse parts are sampled by.
@@ -87,14 +89,20 @@ class PrincipledBsdf {
 
     bool smooth() const { return alpha_x_ == 0; }
     bool smooth_coat() const { return coat_alpha_ == 0; }
-    bool has_gloss() const { return f90_ > 0; }
+    bool has_gloss() const { return metallic_ > 0 || dielectric_root_ > 0; }
     Ggx ggx() const { return {alpha_x_, alpha_y_}; }
     Ggx coat_ggx() const { return {coat_alpha_, coat_alpha_}; }
     /// Of the isotropic gloss that reflects nearly as much: within 4 % of a white metal's light.
-    double mean_alpha() const { return std::sqrt((alpha_x_ * alpha_x_ + alpha_y_ * alpha_y_) / 2); }
+    double mean_alpha() const {
+        return is_isotropic() ? alpha_x_ : std::sqrt((alpha_x_ * alpha_x_ + alpha_y_ * alpha_y_) / 2);
+    }
     double sheen_weight() const;
-    double dielectric_f90() const;
-    Rgb fresnel(double cosine) const;
+    /// What the dielectric reflects of the light to the diffuse base, itself untinted.
+    double taken_from_base(const GgxAlbedo& gloss) const {
+        return gloss.with_dielectric(dielectric_root_ * dielectric_root_);
+    }
+    /// Albedo of the gloss by itself; the Fresnel term where it is that of a smooth surface.
+    Rgb gloss_albedo(const GgxAlbedo& gloss) const;
     Layers layers(double cosine) const;
     void find_means();
     Choice choice(double cosine, const Layers& at) const;
@@ -105,11 +113,14 @@ class PrincipledBsdf {
     /// Integral of diffuse_part() times the light's cosine over all lights above.
     Rgb diffuse_albedo(const Layers& at_o) const;
 
-    StoredRgb base_, metal_;               // albedos of what is left to them, by their shares
+    StoredRgb base_;                       // albedo of what is left to it, by its share
     float base_mean_ = 1, metal_mean_ = 1; // of Layers::base and ::metal, by projected solid angle
     float alpha_x_, alpha_y_, coat_alpha_;
-    Shares f0_, sheen_; // gloss along the normal; colour of the sheen
-    Share f90_, dielectric_f0_, coat_;
+    Shares metal_;                     // as base_, of what metal scatters on
+    Shares dielectric_f0_, metal_f0_;  // gloss along the normal, by their shares
+    Shares sheen_;                     // its colour
+    Share metallic_, dielectric_root_; // the latter of the reflectance, without a tint
+    Share coat_;
     bool delta_ = true; // whether smooth layers are followed
 };
 
