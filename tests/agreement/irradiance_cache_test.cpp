@@ -9,12 +9,13 @@ namespace {
 
 void expect_agreement(Scene& scene) {
     Settings settings;
-    settings.spp = 4;
-    settings.brightness_samples = 100'000;
-    settings.importons = 50'000;
-    settings.mutations = 100'000;
-    settings.photons = 30'000;
-    constexpr int kRuns = 3;
+    settings.spp = 2;
+    settings.brightness_samples = 20'000;
+    settings.importons = 20'000;
+    settings.mutations = 30'000;
+    settings.light_paths = 30'000;
+    settings.photons = 10'000;
+    constexpr int kRuns = 4;
     const test::Blocks cached = test::render_blocks(scene, settings, kRuns, "indirect");
     settings.irradiance_cache = false;
     settings.seed = 100;

@@ -11,6 +11,8 @@
 namespace keyhole {
 namespace {
 
+constexpr int kRuns = 8;
+
 std::unique_ptr<Scene> rooms_low() {
     return std::make_unique<Scene>(load_scene(KEYHOLE_SOURCE_DIR "/tests/data/rooms_low/rooms.yaml").description);
 }
@@ -34,37 +36,38 @@ TEST_P(Mlt_AgreesWithPathTracing, BlockByBlock) {
     path.seed = 1000;
     Settings mlt;
     mlt.method = &methods::mlt;
-    mlt.spp = 8;
-    mlt.brightness_samples = 50'000;
-    mlt.chains = 400;
-    mlt.mutations = 80'000;
+    mlt.spp = 2;
+    mlt.brightness_samples = 12'000;
+    mlt.chains = 100;
+    mlt.mutations = 30'000;
     UserPathFile user_paths;
     if (GetParam().user_paths != nullptr) {
         user_paths = GetParam().user_paths(*scene);
         mlt.proposals[proposals::user_path.weight] = 1;
+        mlt.brightness_samples = 25'000;
         mlt.brightness_error = 0; // or stage one takes most of the time
         for (const ProposalKind* kind : proposal_kinds())
             if (!kind->needs_user_paths) mlt.proposals[kind->weight] /= 1.3; // their sum is 1.3
     }
-    const test::Blocks reference = test::render_blocks(*scene, path, 4);
+    const test::Blocks reference = test::render_blocks(*scene, path, kRuns);
     const test::Disagreement d =
-        test::compare(test::render_blocks(*scene, mlt, 4, "beauty", user_paths), reference, GetParam().tolerance);
+        test::compare(test::render_blocks(*scene, mlt, kRuns, "beauty", user_paths), reference, GetParam().tolerance);
     RecordProperty("ratio", std::to_string(d.ratio));
     EXPECT_EQ(d.rejected, 0) << d.report << "mean brightness ratio " << d.ratio;
     EXPECT_LT(d.largest_error, 0.5) << "the test couldn't see a difference";
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Mlt_AgreesWithPathTracing,
-                         testing::Values(MltCase{"DiffuseBox", test::diffuse_box, 20, 0.01},
-                                         MltCase{"MirrorGlassBox", [] { return test::mirror_glass_box(); }, 20, 0.01},
-                                         MltCase{"ThinLens", [] { return test::mirror_glass_box(0.1f); }, 20, 0.01},
-                                         MltCase{"TwoRooms", [] { return test::two_rooms(0.5f); }, 20, 0.01},
-                                         MltCase{"Haze", test::hazy_box, 20, 0.01},
-                                         MltCase{"Sky", test::sky_box, 20, 0.01},
-                                         MltCase{"RoomsLow", rooms_low, 20, 0.01},
-                                         MltCase{"GuidedMirrorGlassBox", [] { return test::mirror_glass_box(); }, 20,
+                         testing::Values(MltCase{"DiffuseBox", test::diffuse_box, 10, 0.01},
+                                         MltCase{"MirrorGlassBox", [] { return test::mirror_glass_box(); }, 10, 0.01},
+                                         MltCase{"ThinLens", [] { return test::mirror_glass_box(0.1f); }, 10, 0.01},
+                                         MltCase{"TwoRooms", [] { return test::two_rooms(0.5f); }, 10, 0.01},
+                                         MltCase{"Haze", test::hazy_box, 10, 0.01},
+                                         MltCase{"Sky", test::sky_box, 10, 0.01},
+                                         MltCase{"RoomsLow", rooms_low, 10, 0.01},
+                                         MltCase{"GuidedMirrorGlassBox", [] { return test::mirror_glass_box(); }, 10,
                                                  0.01, test::mirror_glass_box_paths},
-                                         MltCase{"GuidedTwoRooms", [] { return test::two_rooms(0.5f); }, 20, 0.01,
+                                         MltCase{"GuidedTwoRooms", [] { return test::two_rooms(0.5f); }, 10, 0.01,
                                                  [](const Scene& s) { return test::two_rooms_paths(s, 0.5f); }}),
                          [](const auto& info) { return std::string(info.param.name); });
 

@@ -1,20 +1,16 @@
 // An eye that sees along parallels: paths from the eye, from the light and from photons show the same picture.
 #include "methods/method.h"
 #include "methods/render.h"
-#include "support/agreement.h"
+#include "support/same_light.h"
 #include "support/test_scenes.h"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 namespace keyhole {
 namespace {
 
-constexpr int kRuns = 4;
-
-Settings base(const char* method) {
+Settings base() {
     Settings s;
-    s.method = &method_named(method);
     s.max_depth = 8;
     s.spp = 8;
     s.brightness_samples = 150'000;
@@ -27,32 +23,24 @@ Settings base(const char* method) {
 }
 
 TEST(ParallelSight_Light, IsTheSameByEveryMethod) {
-    const auto scene = test::parallel_sight_box();
-    scene->set_window({48, 32, 0});
     // Both ends: what few paths from the eye alone find of caustics is noise.
-    Settings paths = base("bdpt");
-    paths.spp = 200;
-    paths.seed = 1000;
-    const test::Blocks reference = test::render_blocks(*scene, paths, kRuns);
-    for (const char* method : {"path", "mlt", "mmlt", "pm", "ipm", "mps"}) {
-        Settings s = base(method);
-        if (s.method == &methods::path) s.spp = 400;
-        const test::Disagreement d = test::compare(test::render_blocks(*scene, s, kRuns), reference, 0.03);
-        EXPECT_EQ(d.rejected, 0) << fmt::format("{}\n{}mean brightness ratio {}", method, d.report, d.ratio);
-        EXPECT_NEAR(d.ratio, 1, 0.03) << method;
-        fmt::print("{}: ratio {:.4f}, worst {:.4f}, largest error {:.4f}\n", method, d.ratio, d.worst, d.largest_error);
-    }
+    Settings paths = base();
+    paths.method = &methods::bdpt;
+    paths.spp = 100;
+    std::vector<Settings> others = test::by_methods(base(), {"path", "mlt", "mmlt", "pm", "ipm", "mps"});
+    others[0].spp = 200;
+    test::expect_same_light(*test::parallel_sight_box(), paths, others, 4);
 }
 
 /// The room's rear wall is 3.9 m from the plane, behind what a pinhole 1800 m away measures.
 TEST(ParallelSight_Depth, IsCountedFromItsPlane) {
-    for (const char* method : {"path", "ipm"}) {
-        const auto scene = test::parallel_sight_box();
-        scene->set_window({12, 8, 0});
-        Settings s = base(method);
-        s.spp = 4;
+    const auto scene = test::parallel_sight_box();
+    scene->set_window({12, 8, 0});
+    Settings rest = base();
+    rest.spp = 4;
+    for (const Settings& s : test::by_methods(rest, {"path", "ipm"})) {
         const RenderResult result = render(*scene, s, {});
-        EXPECT_NEAR(result.picture.layers.at("depth").at(5, 1)[0], 3.9, 0.02) << method;
+        EXPECT_NEAR(result.picture.layers.at("depth").at(5, 1)[0], 3.9, 0.02) << name_of(*s.method);
     }
 }
 

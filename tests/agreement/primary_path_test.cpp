@@ -26,13 +26,13 @@ struct Variant {
     MisHeuristic mis;
 };
 
-constexpr int kRuns = 4;
+constexpr int kRuns = 8;
 
 Settings base() {
     Settings s;
     s.max_depth = 8;
-    s.brightness_samples = 30'000;
-    s.chains = 200;
+    s.brightness_samples = 8'000;
+    s.chains = 50;
     return s;
 }
 
@@ -43,7 +43,7 @@ TEST_P(PrimarySampleSpace_AgreesWithPathTracing, BlockByBlock) {
     const auto scene = scene_case.make();
     Settings independent = base();
     independent.method = &methods::path;
-    independent.spp = 32;
+    independent.spp = 8;
     independent.seed = 1000;
     const test::Blocks reference = test::render_blocks(*scene, independent, kRuns);
 
@@ -65,8 +65,8 @@ TEST_P(PrimarySampleSpace_AgreesWithPathTracing, BlockByBlock) {
         s.builder = v.builder;
         s.failures = v.failures;
         s.mis = v.mis;
-        s.spp = 6;
-        s.mutations = 60'000;
+        s.spp = 2;
+        s.mutations = 15'000;
         const test::Disagreement d = test::compare(test::render_blocks(*scene, s, kRuns), reference, 0.03);
         EXPECT_EQ(d.rejected, 0) << fmt::format("{} {} {} {}\n{}mean brightness ratio {}", name_of(*v.method),
                                                 word_of(v.builder), word_of(v.failures), word_of(v.mis), d.report,

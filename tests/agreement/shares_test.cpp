@@ -20,7 +20,8 @@ class Shares : public testing::TestWithParam<const char*> {
         s.method = &method_named(GetParam());
         s.passes = 4;
         s.spp = 2;
-        s.brightness_samples = 10'000;
+        s.brightness_samples = 2'000; // more than one round of them
+        s.brightness_error = 0.05;
         s.importons = 5'000;
         s.chains = 40;
         s.chain_groups = 3;
@@ -33,6 +34,7 @@ class Shares : public testing::TestWithParam<const char*> {
         RenderResult result;
         with_threads(threads, [&] {
             const auto scene = test::mirror_glass_box();
+            scene->set_window({24, 16, 0});
             result = render(*scene, s, {}, {}, share);
         });
         for (const auto& [key, value] :

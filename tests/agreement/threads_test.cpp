@@ -14,12 +14,13 @@ TEST_P(Picture_IsTheSameOnAnyNumberOfThreads, BitForBit) {
     Settings settings;
     settings.method = &method_named(GetParam());
     settings.spp = 2;
-    settings.brightness_samples = 50'000;
+    settings.brightness_samples = 5'000; // more than one round of them
+    settings.brightness_error = 0.05;
     settings.importons = 20'000;
     settings.chains = 100;
-    settings.mutations = 50'000;
+    settings.mutations = 20'000;
     settings.light_paths = 20'000;
-    settings.photons = 10'000; // fewer than the chains would store: the ceiling is part of the test
+    settings.photons = 4'000; // fewer than the chains would store: the ceiling is part of the test
     std::vector<Picture> pictures;
     for (const int threads : {1, 2, 3}) {
         with_threads(threads, [&] {

@@ -40,13 +40,14 @@ Settings settings(const std::string& method) {
     s.method = &method_named(method);
     s.spp = s.method->samples_pixels ? 4 : 1;
     s.gather_rays = 1;
-    s.mutations = method == "mlt" || method == "pssmlt" ? 20'000 : method == "mps" ? 200'000 : 40'000;
+    s.mutations = method == "mlt" ? 12'000 : method == "pssmlt" ? 20'000 : method == "mps" ? 100'000 : 40'000;
     s.chains = 100;
     s.light_paths = 20'000;
     // Photons of chains are right in the limit only, of many importons and of small lookups.
-    s.photons = method == "mps" ? 50'000 : 10'000;
-    s.importons = method == "mps" ? 80'000 : 20'000;
+    s.photons = method == "mps" ? 25'000 : 10'000;
+    s.importons = method == "mps" ? 40'000 : 20'000;
     s.brightness_samples = 10'000;
+    if (method != "auto") s.cache_rays = 100; // what it decides by them would be noise
     return s;
 }
 

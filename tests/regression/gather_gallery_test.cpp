@@ -17,6 +17,7 @@ Settings small_settings() {
     s.brightness_samples = 50'000;
     s.importons = 50'000;
     s.mutations = 200'000;
+    s.light_paths = 200'000;
     s.photons = 40'000;
     return s;
 }

@@ -39,7 +39,7 @@ struct Start {
         const GuidedPaths guides(c.scene, c.user_paths, set, c.rule.depth);
         const StageOneSettings first{.set = set,
                                      .max_scatterings = c.rule.depth,
-                                     .samples = 40'000,
+                                     .samples = 10'000,
                                      .seed = seed,
                                      .guides = c.user_paths.empty() ? nullptr : &guides};
         seeds = choose_chain_seeds(c.scene, first, run_stage_one(c.scene, first, {}), 1000);
@@ -51,12 +51,12 @@ struct Start {
 /// Photons of one share of a run, thinned to a ceiling below what arrives.
 Photons combine(const Case& c, const Start& start, double share, std::uint64_t seed) {
     const int depth = c.rule.depth;
-    const auto steps = static_cast<std::int64_t>(share * 60'000);
-    const auto paths = static_cast<std::int64_t>((1 - share) * 40'000);
+    const auto steps = static_cast<std::int64_t>(share * 15'000);
+    const auto paths = static_cast<std::int64_t>((1 - share) * 10'000);
     const Mixture<Path> mixture = make_mixture({&c.scene, start.set, depth, &c.user_paths}, Settings{});
     const TechniqueWeights weights(start.guide(), {&start.user_paths, nullptr},
                                    static_cast<double>(steps) / (static_cast<double>(paths) * start.seeds.brightness));
-    MapStores stores(20'000, 10'000, {}, seed);
+    MapStores stores(5'000, 2'500, {}, seed);
     double scale = 1;
     if (steps > 0) {
         const PhotonChains chains = run_photon_chains(
@@ -68,14 +68,14 @@ Photons combine(const Case& c, const Start& start, double share, std::uint64_t s
              .set = start.set,
              .max_scatterings = depth,
              .weights = &weights},
-            {.mutations = steps, .global_photons = 20'000, .caustic_photons = 10'000, .seed = seed}, stores, {});
+            {.mutations = steps, .global_photons = 5'000, .caustic_photons = 2'500, .seed = seed}, stores, {});
         scale = paths > 0 ? emission_scale(paths) : 1;
         stores.settle(chains.global_scale, chains.caustic_scale, scale);
     }
     if (paths > 0)
         scale = emit_photons(c.scene, start.guide(),
                              {.paths = paths,
-                              .photons = 30'000,
+                              .photons = 7'500,
                               .rule = c.rule.storage(),
                               .seed = seed,
                               .user_paths = start.user_paths,
@@ -89,10 +89,10 @@ void expect_energy(const Case& c) {
     const Energy traced = by_light_tracing(c.scene, c.rule, 200'000);
     const SurfacePatches patches(c.scene);
     EnergyByShare both;
-    for (std::uint64_t seed = 100; seed < 108; ++seed) {
+    for (std::uint64_t seed = 100; seed < 112; ++seed) {
         const Start start(
             c, patches, seed,
-            trace_importance(c.scene, {.samples = 20'000, .max_scatterings = c.rule.depth, .seed = seed}, {}));
+            trace_importance(c.scene, {.samples = 10'000, .max_scatterings = c.rule.depth, .seed = seed}, {}));
         for (std::size_t i = 0; i < kShares.size(); ++i) add_run(c.scene, combine(c, start, kShares[i], seed), both[i]);
     }
     for (std::size_t i = 0; i < kShares.size(); ++i) {

@@ -28,6 +28,7 @@ TEST_P(PhotonMemory_StaysUnderItsCeiling, AtEverySize) {
         for (const std::int64_t kib : {256, 1024, 4096, 16384}) {
             SCOPED_TRACE(testing::Message() << kib << " KiB" << (specular ? ", with caustics" : ""));
             const auto scene = specular ? test::mirror_glass_box() : test::diffuse_box();
+            scene->set_window({24, 16, 0});
             const RenderStats stats = render(*scene, settings_for(GetParam(), kib * 1024), {}).stats;
             EXPECT_LE(stats.photon_bytes, static_cast<std::uint64_t>(kib) * 1024);
             const auto photons = stats.photons_global + stats.photons_caustic;

@@ -1,0 +1,30 @@
+#include "support/same_light.h"
+
+#include "methods/method.h"
+#include "support/agreement.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+namespace keyhole::test {
+
+std::vector<Settings> by_methods(const Settings& settings, const std::vector<const char*>& methods) {
+    std::vector<Settings> all(methods.size(), settings);
+    for (std::size_t i = 0; i < methods.size(); ++i) all[i].method = &method_named(methods[i]);
+    return all;
+}
+
+void expect_same_light(Scene& scene, Settings reference, const std::vector<Settings>& settings, int runs) {
+    scene.set_window({48, 32, 0});
+    reference.seed = 1000; // far from the others' seeds
+    const Blocks expected = render_blocks(scene, reference, runs);
+    for (const Settings& s : settings) {
+        const auto name = name_of(*s.method);
+        const Disagreement d = compare(render_blocks(scene, s, runs), expected, 0.03);
+        EXPECT_EQ(d.rejected, 0) << fmt::format("{}\n{}mean brightness ratio {}", name, d.report, d.ratio);
+        EXPECT_NEAR(d.ratio, 1, 0.03) << name;
+        fmt::print("{}: ratio {:.4f}, worst {:.4f}, largest error {:.4f}\n", name, d.ratio, d.worst, d.largest_error);
+    }
+}
+
+} // namespace keyhole::test
