@@ -34,7 +34,11 @@ TEST_P(Passes, ConvergeToPathTracing) {
     path.spp = 64;
     path.seed = 1000;
     Settings passes = settings();
-    passes.passes = 6;
+    passes.passes = 3;
+    // With a quarter of the photons mps is 1 % too dark: they leave the dark corners of the box to chance.
+    passes.photon_memory *= 4;
+    passes.light_paths *= 4;
+    passes.mutations *= 4;
     const test::Disagreement d =
         test::compare(test::render_blocks(*scene, passes, 8), test::render_blocks(*scene, path, 8), 0.01);
     EXPECT_EQ(d.rejected, 0) << d.report << "mean brightness ratio " << d.ratio;
