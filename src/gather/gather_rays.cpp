@@ -44,7 +44,7 @@ struct GatherRays::Missing {
 struct GatherRays::Leg {
     float distance;  ///< from the vertex before [m]
     int scatterings; ///< between the eye and the vertex it led to, that one included
-    bool secondary;  ///< a ray that was traced on from a near one
+    bool secondary;  ///< a ray that was traced on from where another one ended
 };
 
 /// The walk along a gather ray, through specular vertices. It ends where the maps are asked: its last vertex is d2, so
@@ -89,16 +89,15 @@ GatherRays::Arrival GatherRays::trace(const Vertex& from, const Vec3& w, double 
 }
 
 bool GatherRays::goes_on(const Leg& leg, std::uint32_t place, const Vec3& position) const {
-    // Light from outside the gather coverage is where no photon tells of it.
+    // Where the gather coverage ends, light from beyond it would be lost.
     if (leg.secondary || maps_.coverage != nullptr) return false;
-    const float r = maps_.irradiance->radius(place);
     // Farther away than its estimate looks, the place is one of other surfaces, as beside a frame on which no photon
     // lies: they may have a hundred times the light.
-    if ((maps_.irradiance->places()[place].position() - position).length2() > r * r) return true;
+    if (!maps_.irradiance->is_near(place, position)) return true;
     // The estimate is a mean over its radius. Seen from nearer than that, as in corners, the mean is not good enough.
     // With mirrors or smooth glass it has to be: rays that are traced on would lose the caustics of the place, which
     // only a ray that happens to run into the emitter could find.
-    return !scene_.traits().delta && leg.distance < r;
+    return !scene_.traits().delta && leg.distance < maps_.irradiance->radius(place);
 }
 
 Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSource& source) const {
@@ -174,10 +173,9 @@ Rgb GatherRays::global(const Vertex& v, const Vec3& back) const {
 }
 
 bool GatherRays::may_be_parted(std::uint32_t place, const SurfaceRegion& region) const {
-    const float r = maps_.irradiance->radius(place);
-    if (maps_.irradiance->obstructed(place)) return true;
-    const float distance2 = (maps_.irradiance->places()[place].position() - region.position).length2();
-    return distance2 > kKnown * kKnown * r * r && maps_.patches->obstructed(region, r);
+    const IrradianceMap& map = *maps_.irradiance;
+    return map.obstructed(place) ||
+           (!map.is_near(place, region.position, kKnown) && maps_.patches->obstructed(region, map.radius(place)));
 }
 
 Rgb GatherRays::global_near(std::uint32_t place, const Vertex& v, const Vec3& back) const {
@@ -193,10 +191,7 @@ Rgb GatherRays::global_near(std::uint32_t place, const Vertex& v, const Vec3& ba
                (share * share_in_reach(maps_.coverage, query.region, r));
     };
     if (!may_be_parted(place, query.region)) return density(reflected);
-    return density([&, lift = sight_lift(r)](const Photon& p) {
-        const Rgb weight = reflected(p);
-        return !is_black(weight) && in_sight(scene_, query.region, lift, p.position()) ? weight : Rgb(0.0);
-    });
+    return density(weight_in_sight(scene_, query.region, r, reflected));
 }
 
 } // namespace keyhole

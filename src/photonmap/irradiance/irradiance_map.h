@@ -52,6 +52,11 @@ class IrradianceMap {
     float radius(std::uint32_t i) const { return estimates_[i].radius(); }
     /// Area of the surface in that radius over that of the disc.
     double area_share(std::uint32_t i) const { return estimates_[i].area_share(); }
+    /// Whether a position is within that radius of it, times `share`.
+    bool is_near(std::uint32_t i, const Vec3& position, float share = 1) const {
+        const float reach = share * radius(i);
+        return (pilots_[i].position() - position).length2() <= reach * reach;
+    }
     /// Whether something may stand there that hides photons in that radius from each other.
     bool obstructed(std::uint32_t i) const { return (estimates_[i].obstructed() & 1) != 0; }
 

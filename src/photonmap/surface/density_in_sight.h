@@ -6,20 +6,26 @@
 
 namespace keyhole {
 
+/// `weight` of the photons that the middle of a region of radius `r` sees, and 0 of the others. Refers to all it is
+/// given.
+template <class Weight>
+auto weight_in_sight(const Scene& scene, const SurfaceRegion& region, float r, const Weight& weight) {
+    return [&, lift = sight_lift(r)](const Photon& p) {
+        return in_sight(scene, region, lift, p.position()) ? weight(p) : decltype(weight(p))(0.0);
+    };
+}
+
 /// estimate_density() over a region of radius `r` from what its middle sees, where something stands on it that could
 /// hide photons of the other side.
 template <class Weight>
 DensityEstimate estimate_density_in_sight(const Scene& scene, const PhotonMap& map, const SurfaceRegion& region,
                                           float r, const SurfacePatches& patches, const Weight& weight) {
     const bool obstructed = patches.obstructed(region, r);
-    const float lift = sight_lift(r);
     // Where nothing is in sight the middle lies in a crevice, and the test says nothing.
-    const double seen = obstructed ? patches.area_in_sight(region, r, lift) : 0;
+    const double seen = obstructed ? patches.area_in_sight(region, r, sight_lift(r)) : 0;
     DensityEstimate e;
     if (seen > 0) {
-        e = estimate_density(map, region, r, nullptr, [&](const Photon& p) {
-            return in_sight(scene, region, lift, p.position()) ? weight(p) : decltype(weight(p))(0.0);
-        });
+        e = estimate_density(map, region, r, nullptr, weight_in_sight(scene, region, r, weight));
         e.value *= e.area / seen;
         e.area = seen;
     } else {
