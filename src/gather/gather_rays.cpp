@@ -29,7 +29,7 @@ constexpr double kLeastGlossy = 0.05;
 constexpr float kKnown = 0.25f;
 
 /// Caustics are the lesser part of the light where they are below this share of the rest; least probability with which
-/// they are looked at there.
+/// they are looked at there. Where something stands near, or the scene is fine, a look takes a hundred rays.
 constexpr double kLesserCaustic = 0.1, kLeastLook = 0.1;
 
 } // namespace
@@ -142,18 +142,22 @@ Rgb GatherRays::caustic(const Vertex& v, const Vec3& back, double besides, Sampl
     const PhotonQuery query = query_at(v, back, options_.caustic_radius, options_);
     const float r = piloted_radius(maps_.caustic->pilots(), query);
     const PhotonMap& photons = maps_.caustic->main_photons();
-    const double p = maps_.patches->takes_rays() ? chance_of_caustic(v, back, query.region, r, besides) : 1;
+    const double p = chance_of_caustic(v, back, query.region, r, besides);
     if (!(p > 0) || (p < 1 && !(source.next() < p))) return Rgb(0.0);
     return estimate_density_in_sight(scene_, photons, query.region, r, *maps_.patches, reflection(v, back)).value / p;
 }
 
 double GatherRays::chance_of_caustic(const Vertex& v, const Vec3& back, const SurfaceRegion& region, float r,
                                      double besides) const {
-    const Rgb irradiance =
-        estimate_density(maps_.caustic->main_photons(), region, r, nullptr, [](const Photon&) { return 1.0; }).value;
-    if (!(luminance(irradiance) > 0)) return 0;
-    const double about = luminance(irradiance * v.bsdf.eval(facing(v.bsdf.shading_normal(), back), back));
-    return std::clamp(about / (kLesserCaustic * besides), kLeastLook, 1.0);
+    const double f = luminance(v.bsdf.eval(facing(v.bsdf.shading_normal(), back), back));
+    const double lesser = kLesserCaustic * besides * kPi * static_cast<double>(r) * r;
+    double power = 0; // of the photons so far [W]
+    const bool enough = maps_.caustic->main_photons().any_within(region, r, [&](const Photon& photon) {
+        power += luminance(photon.power());
+        return power * f >= lesser;
+    });
+    if (enough) return 1;
+    return power > 0 ? std::max(kLeastLook, power * f / lesser) : 0;
 }
 
 double GatherRays::unconfirmed_caustic(const Vertex& v, const Vec3& back) const {

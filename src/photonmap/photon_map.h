@@ -4,6 +4,7 @@
 #include "photonmap/photon.h"
 #include "photonmap/surface/surface_region.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -57,6 +58,10 @@ class PhotonMap {
     /// Visits all photons of the region within `radius` [m], in the order of the tree.
     template <class Visit> void for_each_within(const SurfaceRegion& region, float radius, const Visit& visit) const {
         for (const std::uint32_t i : within(region, radius)) visit((*this)[i]);
+    }
+    /// The same until `visit` returns true. Returns whether it did.
+    template <class Visit> bool any_within(const SurfaceRegion& region, float radius, const Visit& visit) const {
+        return std::ranges::any_of(within(region, radius), [&](std::uint32_t i) { return visit((*this)[i]); });
     }
 
     /// The nearest photon of the region within `max_radius` [m], finite: what nearest() finds for k = 1, several times

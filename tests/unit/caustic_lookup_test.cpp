@@ -21,7 +21,6 @@ TEST(CausticLookup, IsRightOnAverageWhereItIsDoneByChance) {
     d.window.width = d.window.height = 8;
     const auto scene = std::make_unique<Scene>(std::move(d));
     const SurfacePatches patches(*scene);
-    ASSERT_TRUE(patches.takes_rays());
     Rng rng = make_rng(1);
     const PilotedMap map({.pilots = throw_photons(floor, 500, rng), .main_photons = throw_photons(floor, 2000, rng)});
     const GatherRays rays(*scene, {.caustic = &map, .patches = &patches},
