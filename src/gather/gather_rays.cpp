@@ -29,7 +29,7 @@ constexpr double kLeastGlossy = 0.05;
 constexpr float kKnown = 0.25f;
 
 /// Caustics are the lesser part of the light where they are below this share of the rest; least probability with which
-/// they are looked at there. Where something stands near, or the scene is fine, a look takes a hundred rays.
+/// they are looked at there.
 constexpr double kLesserCaustic = 0.1, kLeastLook = 0.1;
 
 } // namespace
@@ -142,7 +142,9 @@ Rgb GatherRays::caustic(const Vertex& v, const Vec3& back, double besides, Sampl
     const PhotonQuery query = query_at(v, back, options_.caustic_radius, options_);
     const float r = piloted_radius(maps_.caustic->pilots(), query);
     const PhotonMap& photons = maps_.caustic->main_photons();
-    const double p = chance_of_caustic(v, back, query.region, r, besides);
+    // Areas, and what is in sight of what, take a hundred rays then.
+    const bool dear = maps_.patches->takes_rays() || maps_.patches->obstructed(query.region, r);
+    const double p = dear ? chance_of_caustic(v, back, query.region, r, besides) : 1;
     if (!(p > 0) || (p < 1 && !(source.next() < p))) return Rgb(0.0);
     return estimate_density_in_sight(scene_, photons, query.region, r, *maps_.patches, reflection(v, back)).value / p;
 }

@@ -35,6 +35,9 @@ class SurfacePatches {
     /// where there are too many.
     bool obstructed(const SurfaceRegion& region, double r) const;
 
+    /// Whether the scene is too fine for a tree of its triangles, so that every area takes rays.
+    bool takes_rays() const { return !has_tree_; }
+
     /// Triangles in a region that are added up one by one.
     static constexpr int kMostTriangles = 64;
 
