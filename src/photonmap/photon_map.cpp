@@ -34,9 +34,11 @@ void replace_top(std::vector<Neighbour>& heap, const Neighbour& item) {
     heap[hole] = item;
 }
 
-/// The nearest of a region. Trees go by Euclidean distance, which bounds the region's own from below.
+/// The nearest of a region.
 class NearestInRegion {
   public:
+    static constexpr bool kFlat = false;
+
     NearestInRegion(const PhotonQuery& query, const Photon* photons, std::vector<Neighbour>& heap)
         : region_(query.region), photons_(photons), heap_(heap), k_(static_cast<std::size_t>(query.k)),
           bound_(query.max_radius * query.max_radius) {}
@@ -67,8 +69,10 @@ class NearestInRegion {
 
 /// The nearest photon that is accepted; asks only about those that are nearer than the best so far. With one photon
 /// wanted there is no heap to be kept.
-template <class Accept> class NearestOne {
+template <class Accept, PhotonMap::Expected expected> class NearestOne {
   public:
+    static constexpr bool kFlat = expected == PhotonMap::Expected::none;
+
     NearestOne(const SurfaceRegion& region, float max_radius, const Photon* photons, const Accept& accept)
         : region_(region), photons_(photons),
           accept_(accept), best_{max_radius * max_radius, std::numeric_limits<std::uint32_t>::max()} {}
@@ -96,6 +100,8 @@ template <class Accept> class NearestOne {
 /// Every photon of a region.
 class AllInRegion {
   public:
+    static constexpr bool kFlat = false;
+
     AllInRegion(const SurfaceRegion& region, float radius, const Photon* photons, std::vector<std::uint32_t>& found)
         : region_(region), photons_(photons), found_(found), radius2_(radius * radius) {}
 
@@ -135,12 +141,12 @@ struct PhotonMap::Index {
     /// Offers the photons that the region may accept.
     template <class Result> void search(const SurfaceRegion& region, Result& result) const {
         for (std::size_t facet = 0; facet < facets.size(); ++facet)
-            if (facet_faces(facet, region.normal)) facets[facet].search(region.position, result);
+            if (facet_faces(facet, region.normal)) facets[facet].search(region, result);
     }
 
-    template <class Accept>
+    template <Expected expected, class Accept>
     std::optional<Neighbour> nearest_one(const SurfaceRegion& region, float max_radius, const Accept& accept) const {
-        NearestOne<Accept> result(region, max_radius, photons.data(), accept);
+        NearestOne<Accept, expected> result(region, max_radius, photons.data(), accept);
         search(region, result);
         return result.found();
     }
@@ -165,13 +171,16 @@ std::size_t PhotonMap::bytes() const {
 
 double PhotonMap::index_bytes_per_photon(Wanted wanted) { return KdTree::bytes_per_photon(leaf_size(wanted)); }
 
-std::optional<Neighbour> PhotonMap::nearest_one(const SurfaceRegion& region, float max_radius) const {
-    return index_->nearest_one(region, max_radius, [](const Photon&) { return true; });
+std::optional<Neighbour> PhotonMap::nearest_one(const SurfaceRegion& region, float max_radius,
+                                                Expected expected) const {
+    const auto any = [](const Photon&) { return true; };
+    return expected == Expected::none ? index_->nearest_one<Expected::none>(region, max_radius, any)
+                                      : index_->nearest_one<Expected::some>(region, max_radius, any);
 }
 
 std::optional<Neighbour> PhotonMap::nearest_accepted(const SurfaceRegion& region, float max_radius,
                                                      const std::function<bool(const Photon&)>& accept) const {
-    return index_->nearest_one(region, max_radius, accept);
+    return index_->nearest_one<Expected::none>(region, max_radius, accept);
 }
 
 std::span<const std::uint32_t> PhotonMap::within(const SurfaceRegion& region, float radius) const {

@@ -64,9 +64,13 @@ class PhotonMap {
         return std::ranges::any_of(within(region, radius), [&](std::uint32_t i) { return visit((*this)[i]); });
     }
 
+    /// What is to be expected of a search: most find a photon near by, or many find none in all of their region.
+    enum class Expected { some, none };
+
     /// The nearest photon of the region within `max_radius` [m], finite: what nearest() finds for k = 1, several times
-    /// as fast.
-    std::optional<Neighbour> nearest_one(const SurfaceRegion& region, float max_radius) const;
+    /// as fast. The answer doesn't depend on what is expected.
+    std::optional<Neighbour> nearest_one(const SurfaceRegion& region, float max_radius,
+                                         Expected expected = Expected::some) const;
     /// The nearest of those that `accept` accepts. It is asked only about photons that are nearer than the best so far.
     std::optional<Neighbour> nearest_accepted(const SurfaceRegion& region, float max_radius,
                                               const std::function<bool(const Photon&)>& accept) const;

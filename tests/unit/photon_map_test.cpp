@@ -81,10 +81,13 @@ TEST(PhotonMap, FindsTheNearestOneByItself) {
             const auto all = nearest_by_trying_all(map, q);
             const auto one = map.nearest_one(q.region, q.max_radius);
             ASSERT_EQ(one.has_value(), !all.empty());
+            const auto flat = map.nearest_one(q.region, q.max_radius, PhotonMap::Expected::none);
+            ASSERT_EQ(flat.has_value(), one.has_value());
             if (!one) continue;
             ++found;
             EXPECT_EQ(one->index, all[0].index);
             EXPECT_EQ(one->distance2, all[0].distance2);
+            EXPECT_EQ(flat->index, one->index);
             const auto first =
                 std::find_if(all.begin(), all.end(), [&](const Neighbour& n) { return red(map[n.index]); });
             const auto accepted = map.nearest_accepted(q.region, q.max_radius, red);

@@ -15,6 +15,10 @@ constexpr unsigned kLevels = 8;
 /// Distance of a place over the largest radius of estimates. Farther than the estimates themselves look: where photons
 /// are rare, most places have none that near, and to call them dark would take light away.
 constexpr float kFarthest = 4;
+/// After so many places that are hidden, only one in so many of those that follow is tested for sight: in a crevice
+/// none is seen, and there may be thousands in reach. Behind a wall those of this side may be few.
+constexpr int kTestedAll = 32;
+constexpr std::uint32_t kTestedThen = 4;
 /// Size of a cell for which one place will do, over the radius of its estimate.
 constexpr float kMostOfRadius = 1;
 
@@ -73,7 +77,7 @@ IrradianceMap::Count IrradianceMap::estimate(std::uint32_t i, const PhotonMap& m
 }
 
 SurfaceLookupGrid::Found IrradianceMap::place_for_cell(const Vec3& middle, const Vec3& normal) const {
-    const auto near = pilots_.nearest_one({middle, normal}, kFarthest * max_radius_);
+    const auto near = pilots_.nearest_one({middle, normal}, kFarthest * max_radius_, PhotonMap::Expected::none);
     if (!near) return {SurfaceLookupGrid::kNothing, max_radius_};
     return {near->index, kMostOfRadius * radius(near->index)};
 }
@@ -96,7 +100,15 @@ IrradianceMap::Answer IrradianceMap::answer(std::uint32_t place, const SurfaceRe
         return in_sight(*scene_, region, lift, p.position());
     };
     if (may_be_hidden(place, region.position) && !visible(pilots_[place])) {
-        const auto other = pilots_.nearest_accepted(region, kFarthest * max_radius_, visible);
+        int hidden = 0;
+        const auto accept = [&](const Photon& p) {
+            const auto i = static_cast<std::uint32_t>(&p - pilots_.photons().data());
+            if (hidden >= kTestedAll && i % kTestedThen != 0) return false;
+            const bool seen = visible(p);
+            hidden += seen ? 0 : 1;
+            return seen;
+        };
+        const auto other = pilots_.nearest_accepted(region, kFarthest * max_radius_, accept);
         if (!other) return {};
         place = other->index;
     }

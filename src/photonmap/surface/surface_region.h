@@ -23,8 +23,10 @@ struct SurfaceRegion {
     float distance2(const Vec3& p) const {
         const Vec3 d = p - position;
         const float height = d.dot(normal);
-        return d.length2() + (kFlattening * kFlattening - 1) * height * height;
+        return d.length2() + height_term(height);
     }
+    /// What a height above or below the surface adds to the squared distance [m^2].
+    static float height_term(float height) { return (kFlattening * kFlattening - 1) * height * height; }
 
     /// Whether a normal of any length is close to that of the region.
     bool accepts(const Vec3& n) const {
