@@ -1,7 +1,7 @@
 #include "methods/learned_direct_light_scope.h"
 
 #include "methods/method.h"
-#include "sampling/guidance/look_for_direct_light.h"
+#include "sampling/guidance/learned/look_for_direct_light.h"
 #include "session/stage_clock.h"
 
 #include <fmt/format.h>

@@ -4,7 +4,7 @@
 #include "core/progress.h"
 #include "core/render_stats.h"
 #include "core/settings.h"
-#include "sampling/guidance/learned_direct_light.h"
+#include "sampling/guidance/learned/learned_direct_light.h"
 #include "scene/scene.h"
 
 namespace keyhole {

@@ -6,6 +6,7 @@
 #include "sampling/guidance/guided_light.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace keyhole {
@@ -16,12 +17,14 @@ struct EmissionBlock {
     MapBuffers pilots, main_photons;
     PhotonWeights weights;
     std::uint64_t arrivals = 0;
+    double cut = 0; // visible power of what was too bright [W]
 
     void learn(const EmissionBlock& o) {
         weights += o.weights;
         arrivals += o.arrivals;
+        cut += o.cut;
     }
-    auto parts() { return std::tie(pilots, main_photons, weights, arrivals); }
+    auto parts() { return std::tie(pilots, main_photons, weights, arrivals, cut); }
 };
 
 /// Receives the arrivals of one light path after the other.
@@ -66,9 +69,15 @@ class Collector {
     EmissionBlock block;
 
   private:
-    void store(PhotonKind kind, const Vertex& v, const Vec3& to_light, const Rgb& power) {
+    void store(PhotonKind kind, const Vertex& v, const Vec3& to_light, Rgb power) {
         if (!(luminance(power) > 0)) return;
-        const PhotonWeighing::Weight weight = weighing_(kind, v, to_light, power);
+        PhotonWeighing::Weight weight = weighing_(kind, v, to_light, power);
+        if (const double most = weighing_.most_visible;
+            kind == PhotonKind::global && weight.known && weight.value > most) {
+            block.cut += weight.value - most;
+            power *= most / weight.value;
+            weight.value = most;
+        }
         const double share = techniques_ != nullptr ? techniques_->of_light_path(weight, expected_) : 1;
         ++block.arrivals;
         block.weights.add(kind, weight, luminance(power));
@@ -100,15 +109,28 @@ class Collector {
 
 constexpr std::int64_t kPathsOfBlock = 64; // paths
 constexpr std::int64_t kPilot = 8192;      // paths
+constexpr double kOutlier = 2;             // times the root of their number and their mean visible power
+
+/// Visible power that a photon may have, where `paths` are traced of which `known` left these weights. A mean of n
+/// samples whose tail is heavy is nearest to the truth where they are cut off at about the root of n times the mean
+/// (Catoni 2012); with more paths, nothing is.
+double most_visible(const PhotonWeights& weights, std::int64_t known, std::int64_t paths) {
+    const auto seen = static_cast<double>(weights.seen);
+    if (!(seen > 0)) return std::numeric_limits<double>::infinity();
+    const double in_all = seen * static_cast<double>(paths) / static_cast<double>(known);
+    return kOutlier * weights.known() / seen * std::sqrt(in_all);
+}
 
 void trace_one(const Scene& scene, const EmissionOptions& options, Rng& rng, Collector& collector) {
     const int depth = options.rule.max_scatterings;
-    if (options.learned == nullptr || !options.user_paths.empty()) {
-        trace_light_path(scene, options.user_paths, depth, rng, collector);
-    } else if (const auto light = options.learned->sample(rng)) {
-        collector.emit(scene, *light);
+    if (!options.user_paths.empty()) return trace_light_path(scene, options.user_paths, depth, rng, collector);
+    const auto light = options.learned != nullptr ? options.learned->sample(rng) : emit_light(scene, rng);
+    if (!light) return;
+    collector.emit(scene, *light);
+    if (options.scattering != nullptr)
+        trace_light_path(scene, *light, depth, rng, collector, *options.scattering);
+    else
         trace_light_path(scene, *light, depth, rng, collector);
-    }
 }
 
 EmissionBlock trace_block(const Scene& scene, const EmissionOptions& options, Range paths, Collector collector) {
@@ -137,10 +159,13 @@ EmissionBlock learn_from_pilot(const Scene& scene, const EmissionGuide& guide, c
                                const RunContext& context) {
     const double infinity = std::numeric_limits<double>::infinity();
     const MapStores::Thresholds never{infinity, infinity};
+    const std::vector<EmissionBlock> blocks = trace_blocks(scene, options, {0, std::min(kPilot, options.paths)},
+                                                           Collector({guide, 1}, never, never, options.rule), context);
+    // Without the one that found most: an outlier would raise the bound that is to cut it off.
+    const auto most = std::ranges::max_element(blocks, {}, [](const EmissionBlock& b) { return b.weights.known(); });
     EmissionBlock sum;
-    for (const EmissionBlock& b : trace_blocks(scene, options, {0, std::min(kPilot, options.paths)},
-                                               Collector({guide, 1}, never, never, options.rule), context))
-        sum.learn(b);
+    for (auto b = blocks.begin(); b != blocks.end(); ++b)
+        if (b != most || blocks.size() == 1) sum.learn(*b);
     sum.arrivals = 0;
     return sum;
 }
@@ -149,6 +174,7 @@ EmissionBlock learn_from_pilot(const Scene& scene, const EmissionGuide& guide, c
 Emission trace_and_store(const Scene& scene, const EmissionGuide& guide, const EmissionOptions& options,
                          EmissionBlock learnt, MapStores& stores, const RunContext& context) {
     Emission out;
+    const std::int64_t known = std::min(kPilot, options.paths); // paths that `learnt` is about
     // In rounds, so that buffers stay small beside the stores, and thresholds follow what is stored.
     const std::int64_t round =
         std::clamp<std::int64_t>(static_cast<std::int64_t>(options.photons) / 32 / kPathsOfBlock, 4, 512) *
@@ -156,7 +182,10 @@ Emission trace_and_store(const Scene& scene, const EmissionGuide& guide, const E
     context.begin("photons", static_cast<std::uint64_t>(options.paths), "light paths");
     while (out.paths < options.paths && !(context.stopped() && out.paths > 0)) {
         const Range range{out.paths, std::min(options.paths, out.paths + round)};
-        const PhotonWeighing weighing{guide, learnt.weights.unknown_scale()};
+        const PhotonWeighing weighing{guide, learnt.weights.unknown_scale(),
+                                      options.cut_outliers
+                                          ? most_visible(learnt.weights, known + out.paths, options.paths)
+                                          : std::numeric_limits<double>::infinity()};
         const Collector collector(weighing, stores.thresholds(PhotonRole::pilot),
                                   stores.thresholds(PhotonRole::main_photon), options.rule, options.weights,
                                   options.observer);
@@ -170,6 +199,7 @@ Emission trace_and_store(const Scene& scene, const EmissionGuide& guide, const E
     }
     context.end();
     out.arrivals = learnt.arrivals;
+    if (learnt.weights.known() > 0) out.cut = learnt.cut / learnt.weights.known();
     return out;
 }
 

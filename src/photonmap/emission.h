@@ -7,7 +7,8 @@
 #include "photonmap/photons.h"
 #include "photonmap/power/technique_weights.h"
 #include "sampling/guidance/guided_subpath.h"
-#include "sampling/guidance/learned_emission.h"
+#include "sampling/guidance/learned/learned_emission.h"
+#include "sampling/guidance/learned/learned_scattering.h"
 #include "scene/scene.h"
 
 #include <cstdint>
@@ -19,16 +20,21 @@ struct EmissionOptions {
     std::size_t photons; ///< ceiling for both maps together; they share it as they share the weight of what arrives
     StorageRule rule{};
     std::uint64_t seed;
-    LightGuides user_paths{};                  ///< that half of the light paths follow, where there are any
-    const LearnedEmission* learned = nullptr;  ///< where light paths begin if there are no user paths; null: by power
+    LightGuides user_paths{};                 ///< that half of the light paths follow, where there are any
+    const LearnedEmission* learned = nullptr; ///< where light paths begin if there are no user paths; null: by power
+    const LearnedScattering* scattering =
+        nullptr;                               ///< where they go on, likewise; null: by BSDFs alone. Not with weights
     const TechniqueWeights* weights = nullptr; ///< where chains make photons of the same maps; null: they don't
-    PhotonObserver* observer = nullptr;        ///< null: nobody watches
+    bool cut_outliers =
+        false; ///< whether photons whose visible power stands for that of thousands lose what is too much
+    PhotonObserver* observer = nullptr; ///< null: nobody watches
 };
 
 /// What light tracing has done.
 struct Emission {
     std::int64_t paths = 0;
     std::uint64_t arrivals = 0; ///< photons that could have been stored
+    double cut = 0;             ///< share of the visible power that outliers lost
 
     double scale() const; ///< of the weights that were stored
 };

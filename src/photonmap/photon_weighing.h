@@ -6,6 +6,8 @@
 #include "sampling/paths/light_tracer.h"
 
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 
 namespace keyhole {
 
@@ -44,6 +46,7 @@ struct StorageRule {
 struct PhotonWeighing {
     EmissionGuide guide;
     double unknown_scale = 0; ///< weight of a photon of unknown importance over the luminance of its power
+    double most_visible = std::numeric_limits<double>::infinity(); ///< that a photon of the global map may have [W]
 
     struct Weight {
         double value;
@@ -57,8 +60,10 @@ struct PhotonWeighing {
 struct PhotonWeights {
     double known_global = 0, known_caustic = 0; ///< weight
     double unknown = 0;                         ///< luminance of power [W]
+    std::uint64_t seen = 0;                     ///< how many have a known weight that isn't 0
 
     void add(PhotonKind kind, const PhotonWeighing::Weight& weight, double power) {
+        seen += weight.known && weight.value > 0 ? 1 : 0;
         (!weight.known                ? unknown
          : kind == PhotonKind::global ? known_global
                                       : known_caustic) += weight.known ? weight.value : power;
@@ -67,6 +72,7 @@ struct PhotonWeights {
         known_global += o.known_global;
         known_caustic += o.known_caustic;
         unknown += o.unknown;
+        seen += o.seen;
         return *this;
     }
     double known() const { return known_global + known_caustic; }

@@ -1,7 +1,7 @@
 // Next-event estimation that has learned: densities that are those of the samples, light that arrives in full, and far
 // less noise where light comes through a window or from few of many lamps.
 #include "core/statistics.h"
-#include "sampling/guidance/look_for_direct_light.h"
+#include "sampling/guidance/learned/look_for_direct_light.h"
 #include "sampling/paths/direct_light.h"
 #include "scene/bsdfs/diffuse.h"
 #include "scene/emitters/emitters.h"

@@ -1,7 +1,7 @@
 // Light paths that begin where their light will be asked for: densities that are those of the samples, power that
 // arrives in full, and far more of the paths where they count.
 #include "core/statistics.h"
-#include "sampling/guidance/learned_emission.h"
+#include "sampling/guidance/learned/learned_emission.h"
 #include "scene/emitters/emitters.h"
 #include "support/chi_squared.h"
 #include "support/test_scenes.h"
@@ -74,6 +74,10 @@ std::unique_ptr<Scene> room_in_a_yard() {
     return m.build();
 }
 
+LearnedEmission learn(const Scene& scene, std::int64_t paths) {
+    return {scene, look_for_light(scene, {.paths = paths, .max_scatterings = kDepth}, {}).ends};
+}
+
 /// Power that arrives at some walls, by the path.
 struct Arrivals {
     RunningStats floor, ceiling, inside;
@@ -114,7 +118,7 @@ class LearnedEmissionInARoom : public testing::Test {
   protected:
     static constexpr int kPlainPaths = 2'000'000, kLearnedPaths = 200'000;
     const std::unique_ptr<Scene> scene = room_in_a_yard();
-    const LearnedEmission learned{*scene, {.paths = 16'384, .max_scatterings = kDepth}, {}};
+    const LearnedEmission learned = learn(*scene, 16'384);
 };
 
 TEST_F(LearnedEmissionInARoom, BringsAllPowerAndFindsTheWindow) {
@@ -147,7 +151,7 @@ TEST(LearnedEmission, ChoosesTheLampsThatShineWhereTheEyeIs) {
     }
     m.camera({0, 0, 1.9f}, {0, 0, 0}, 60).window(32, 24);
     const auto scene = m.build();
-    const LearnedEmission learned(*scene, {.paths = 2048, .max_scatterings = kDepth}, {});
+    const LearnedEmission learned = learn(*scene, 2048);
     EXPECT_LT(learned.effective_emitters(), 5);
     Rng rng(7, StreamPurpose::test, 0);
     int first = 0;
@@ -170,7 +174,7 @@ TEST(LearnedEmission, IsForLightFromInfinity) {
 
 TEST(LearnedEmission, KnowsNothingWhereNoLightWasSeenAndBringsItStill) {
     const auto scene = room_in_a_yard();
-    const LearnedEmission nothing(*scene, {.paths = 0, .max_scatterings = kDepth}, {});
+    const LearnedEmission nothing = learn(*scene, 0);
     const Arrivals plain = trace(*scene, 400'000, 21, [&](Rng& rng) { return emit_light(*scene, rng); });
     const Arrivals same = trace(*scene, 400'000, 22, [&](Rng& rng) { return nothing.sample(rng); });
     EXPECT_LT(std::abs(z_score(plain.inside, same.inside)), 4);

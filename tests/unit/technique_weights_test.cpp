@@ -89,7 +89,8 @@ TEST(LightPathPower, CountsLearnedEmission) {
     m.emitter(make_distant_emitter(Vec3(0.2f, -0.6f, 0.7f).normalized(), Rgb(8)));
     m.camera({1.5f, 1.3f, 2.9f}, {1.5f, 1.2f, 0}, 60).window(32, 24);
     const auto scene = m.build();
-    const LearnedEmission learned(*scene, {.paths = 20'000, .max_scatterings = kDepth}, {});
+    const LearnedEmission learned(*scene,
+                                  look_for_light(*scene, {.paths = 20'000, .max_scatterings = kDepth}, {}).ends);
     expect_replay(*scene, &learned);
 }
 

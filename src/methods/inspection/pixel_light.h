@@ -3,7 +3,7 @@
 
 #include "gather/gather_rays.h"
 #include "photonmap/irradiance/irradiance_map.h"
-#include "sampling/guidance/learned_direct_light.h"
+#include "sampling/guidance/learned/learned_direct_light.h"
 
 #include <cstdint>
 #include <vector>

@@ -3,7 +3,7 @@
 #include "methods/chain_report.h"
 #include "methods/method.h"
 #include "methods/photons/chain_importance.h"
-#include "methods/photons/learn_emission.h"
+#include "methods/photons/learn_light_paths.h"
 #include "methods/photons/memory_plan.h"
 #include "methods/photons/radii.h"
 #include "methods/photons/trials/combination_trial.h"
@@ -47,12 +47,12 @@ class CombinedSampler final : public PhotonSampler {
         const ImportanceGuide caustic(importance.at_d1.map(), radius, c_.patches, &c_.scene, context);
         stats.importon_bytes += global.bytes() + caustic.bytes();
         clock.reset();
-        if (!learned_) learned_ = learn_emission(c_, stats, context);
+        if (!learned_) learned_ = learn_light_paths(c_, stats, context);
 
         const EmissionGuide guide{&global, c_.caustics ? &caustic : nullptr};
         const double steps = static_cast<double>(chains_), paths = static_cast<double>(light_paths_);
         const double odds = seeds.brightness > 0 ? steps / (shares_.correlation * paths * seeds.brightness) : 0;
-        const TechniqueWeights weights(guide, {&user_paths_, learned_ ? &*learned_ : nullptr}, odds);
+        const TechniqueWeights weights(guide, {&user_paths_, learned_->emission_or_null()}, odds);
         const std::size_t of_caustic = one.brightness.mean() > 0 ? photons_for_caustic(c_, one, plan.photons) : 0;
         MapStores stores(plan.photons - of_caustic, of_caustic, {}, seed);
         const Pass pass{seed, plan.photons, weights, stores};
@@ -109,7 +109,7 @@ class CombinedSampler final : public PhotonSampler {
                                                 .rule = c_.storage(),
                                                 .seed = pass.seed,
                                                 .user_paths = user_paths_,
-                                                .learned = learned_ ? &*learned_ : nullptr,
+                                                .learned = learned_->emission_or_null(),
                                                 .weights = &pass.weights,
                                                 .observer = c_.observer},
                                                pass.stores, context);
@@ -125,7 +125,7 @@ class CombinedSampler final : public PhotonSampler {
     PathSet set_;
     GuidedPaths guides_;
     LightGuides user_paths_;
-    std::optional<LearnedEmission> learned_;
+    std::optional<LearnedLightPaths> learned_; ///< of which p(X) knows where light paths begin
     ChainReports reports_;
 };
 

@@ -2,7 +2,7 @@
 // for.
 #include "methods/method.h"
 #include "methods/photons/guides.h"
-#include "methods/photons/learn_emission.h"
+#include "methods/photons/learn_light_paths.h"
 #include "methods/photons/memory_plan.h"
 #include "methods/photons/photon_sampler.h"
 #include "photonmap/emission.h"
@@ -22,7 +22,7 @@ class EmissionSampler final : public PhotonSampler {
             plan_memory(c_.settings, by_importance_ ? ImportanceUse::guide : ImportanceUse::none, c_.caustics ? 2 : 1);
         Guides guides;
         if (by_importance_) guides = make_guides(c_, seed, plan.importons, stats, context);
-        if (by_importance_ && !learned_) learned_ = learn_emission(c_, stats, context);
+        if (by_importance_ && !learned_) learned_ = learn_light_paths(c_, stats, context);
 
         const StageClock clock(stats, stages::photons_of_light_paths);
         EmittedPhotons photons =
@@ -32,10 +32,13 @@ class EmissionSampler final : public PhotonSampler {
                           .rule = c_.storage(),
                           .seed = seed,
                           .user_paths = by_importance_ ? LightGuides(c_.scene, c_.user_paths) : LightGuides(),
-                          .learned = learned_ ? &*learned_ : nullptr,
+                          .learned = learned_ ? learned_->emission_or_null() : nullptr,
+                          .scattering = learned_ ? learned_->scattering_or_null() : nullptr,
+                          .cut_outliers = by_importance_ && c_.settings.passes == 1,
                           .observer = c_.observer},
                          context);
         stats.values["light paths"] += static_cast<double>(photons.paths);
+        if (photons.cut > 0) stats.values["photon power, share cut off outliers"] = photons.cut;
         stats.values["photons before storing"] += static_cast<double>(photons.arrivals);
         stats.photon_bytes = std::max<std::uint64_t>(stats.photon_bytes, photons.bytes + stats.importon_bytes);
         return photons;
@@ -44,7 +47,7 @@ class EmissionSampler final : public PhotonSampler {
   private:
     SamplerContext c_;
     bool by_importance_;
-    std::optional<LearnedEmission> learned_;
+    std::optional<LearnedLightPaths> learned_;
 };
 
 } // namespace

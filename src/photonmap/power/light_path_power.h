@@ -2,7 +2,7 @@
 #pragma once
 
 #include "sampling/guidance/guided_subpath.h"
-#include "sampling/guidance/learned_emission.h"
+#include "sampling/guidance/learned/learned_emission.h"
 #include "scene/scene.h"
 
 #include <optional>

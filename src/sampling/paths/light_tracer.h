@@ -32,10 +32,20 @@ struct LightPast {
     }
 };
 
+/// How light paths go on that know nothing of where they are wanted.
+struct ScatterByBsdf {
+    /// `reference`: luminance that roulette keeps a path's power near [W].
+    static std::optional<Continuation> continue_walk(const Vertex& v, const Vec3& to_light, SampleSource& source,
+                                                     double& /*reference*/) {
+        return keyhole::continue_walk(v, to_light, From::light, source);
+    }
+};
+
 /// The hooks of trace_light_path().
-template <class Sink> struct LightTracing : WalkHooks {
+template <class Sink, class Scattering> struct LightTracing : WalkHooks {
     Sink& sink;
-    const double emitted; // luminance [W]
+    const Scattering& scattering;
+    double reference; // luminance that roulette keeps power near: what was emitted [W]
     LastTwoVertices vertices{};
     LightPast past{};
 
@@ -43,12 +53,15 @@ template <class Sink> struct LightTracing : WalkHooks {
     bool arrive(Vertex& v, const WalkRay& ray) {
         return v.point.site != Site::infinite && sink.arrival(v, -ray.w, ray.throughput, past);
     }
+    std::optional<Continuation> go_on(const Vertex& v, const Vec3& back, From /*from*/, SampleSource& source) {
+        return scattering.continue_walk(v, back, source, reference);
+    }
     bool leave(const Vertex& v, const Continuation& /*next*/, const WalkRay& ray) {
         past.meet(v, -ray.w);
         return true;
     }
     bool survives(Rgb& power, SampleSource& source) const {
-        return play_roulette(photon_survival(power, emitted), power, source);
+        return play_roulette(photon_survival(power, reference), power, source);
     }
 };
 
@@ -58,13 +71,14 @@ template <class Sink> struct LightTracing : WalkHooks {
 ///   sink.arrival(vertex, to_light, power, past): light of RGB `power` [W] arrived at `vertex`, which lies on
 ///     a surface, from direction `to_light` (unit); `past`: a LightPast. False ends the path.
 ///   sink.sets_out(x0, guided), where it has that: light leaves emitter point x0; `guided`: along a user path.
-/// The expected sum of power over the arrivals in a region is the flux that arrives there.
-template <class Sink>
+/// The expected sum of power over the arrivals in a region is the flux that arrives there. `scattering` chooses where
+/// light goes on.
+template <class Sink, class Scattering = ScatterByBsdf>
 void trace_light_path(const Scene& scene, const EmittedLight& light, int max_scatterings, SampleSource& source,
-                      Sink& sink) {
+                      Sink& sink, const Scattering& scattering = {}) {
     if (is_black(light.power)) return;
     if constexpr (requires { sink.sets_out(light.x0, false); }) sink.sets_out(light.x0, false);
-    LightTracing<Sink> tracing{{}, sink, luminance(light.power)};
+    LightTracing<Sink, Scattering> tracing{{}, sink, scattering, luminance(light.power)};
     random_walk(scene, From::light, {&light.ray.origin, &light.x0, light.ray.w, light.power}, max_scatterings, source,
                 tracing);
 }

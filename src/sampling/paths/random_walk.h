@@ -19,6 +19,10 @@ namespace keyhole {
 struct WalkHooks {
     /// The ray met nothing; the vertex that was last made isn't one.
     static void lost() {}
+    /// Where the walk goes on from `v`, which it reached along `back`.
+    static std::optional<Continuation> go_on(const Vertex& v, const Vec3& back, From from, SampleSource& source) {
+        return continue_walk(v, back, from, source);
+    }
     /// Nothing goes on from `v`.
     static void absorbed(const Vertex& /*v*/) {}
     /// The walk goes on from `v`, whose event is chosen; `ray` is still that which led there. False ends it.
@@ -37,7 +41,7 @@ void random_walk(const Scene& scene, From from, WalkRay ray, int most, SampleSou
         ray.clear = scene.transmittance(*ray.last, v.point);
         ray.throughput *= ray.clear;
         if (!hooks.arrive(v, std::as_const(ray)) || n == most) return;
-        const auto next = continue_walk(v, -ray.w, from, source);
+        const auto next = hooks.go_on(v, -ray.w, from, source);
         if (!next) return hooks.absorbed(v);
         v.event = next->event;
         if (!hooks.leave(v, *next, std::as_const(ray))) return;

@@ -25,9 +25,12 @@ inline double subpath_survival(const Rgb& carried, std::size_t vertices) {
     return std::clamp(luminance(carried), 0.1, 0.95);
 }
 
-/// Light that leaves photons: what survives keeps about the power that was emitted, of luminance `emitted` [W], so that
-/// photons are alike (Jensen 2001, section 5.2).
-inline double photon_survival(const Rgb& power, double emitted) { return std::min(1.0, luminance(power) / emitted); }
+/// Light that leaves photons: what survives keeps about `reference` [W], the luminance of what was emitted, so that
+/// photons are alike (Jensen 2001, section 5.2); where directions were learned, that of what BSDFs would have made of
+/// it.
+inline double photon_survival(const Rgb& power, double reference) {
+    return std::min(1.0, luminance(power) / reference);
+}
 
 /// Whether a walk survives what it does with probability `survival`; no number is drawn where that is certain. Its
 /// throughput is divided by it.

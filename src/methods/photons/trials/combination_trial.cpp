@@ -3,7 +3,7 @@
 #include "core/parallel.h"
 #include "methods/method.h"
 #include "methods/photons/chain_importance.h"
-#include "methods/photons/learn_emission.h"
+#include "methods/photons/learn_light_paths.h"
 #include "methods/photons/radii.h"
 #include "methods/photons/trials/trial_measures.h"
 #include "photonmap/importance/importance_tracing.h"
@@ -208,8 +208,8 @@ WorkShares try_shares(const SamplerContext& c, const RunContext& run) {
     const ImportanceGuide caustic(importance.at_d1.map(), radius, c.patches, &c.scene, run);
     const EmissionGuide guide{&global, c.caustics ? &caustic : nullptr};
     const LightGuides user_paths(c.scene, c.user_paths);
-    const std::optional<LearnedEmission> learned = learn_emission(c, kLearning, run);
-    const LightPathSampling sampling{&user_paths, learned ? &*learned : nullptr};
+    const LearnedLightPaths learned = learn_light_paths(c, kLearning, run);
+    const LightPathSampling sampling{&user_paths, learned.emission_or_null()};
     Trial trial;
     try_light_paths(c, guide, sampling, trial, run);
     try_chains(c, guide, sampling, trial, run);

@@ -1,21 +1,11 @@
-#include "sampling/guidance/learned_emission.h"
+#include "sampling/guidance/learned/learned_emission.h"
 
-#include "core/shared_work.h"
-#include "sampling/paths/image_lattice.h"
-#include "sampling/paths/independent_paths.h"
 #include "scene/emitters/sphere_map.h"
 
 #include <algorithm>
 #include <array>
 
 namespace keyhole {
-
-struct SeenLight {
-    std::uint32_t emitter;
-    Vec3 towards;  ///< unit, where the emitter is; for one at infinity
-    Vec3 p;        ///< where its light first arrives
-    double weight; ///< luminance in the picture
-};
 
 namespace {
 
@@ -76,41 +66,6 @@ std::vector<double> light_by_cell(const Emitter& emitter, int side) {
     return share;
 }
 
-/// Keeps what paths from the eye met whose light is for photon maps.
-struct Eye {
-    std::vector<SeenLight>& seen;
-    template <class MakePath> void contribution(const Rgb& value, PhotonKind kind, const MakePath& make_path) {
-        const double y = luminance(value);
-        if (kind == PhotonKind::none || !(y > 0) || !std::isfinite(y)) return;
-        const Path path = make_path();
-        const SurfacePoint& x0 = path.x[0].point;
-        seen.push_back({x0.emitter, x0.p, path.x[1].point.p, y});
-    }
-};
-
-std::vector<SeenLight> look_for_light(const Scene& scene, const EmissionLearning& learning, const RunContext& context) {
-    constexpr std::int64_t kBlock = 256;
-    const std::int64_t blocks = (learning.paths + kBlock - 1) / kBlock;
-    std::vector<std::vector<SeenLight>> parts(static_cast<std::size_t>(blocks));
-    const std::size_t most = learning.most_bytes / sizeof(SeenLight) / std::max<std::size_t>(parts.size(), 1);
-    context.begin("emission", static_cast<std::uint64_t>(learning.paths), "paths");
-    parallel_for(blocks, context, [&](std::int64_t b) {
-        std::vector<SeenLight>& seen = parts[static_cast<std::size_t>(b)];
-        Eye eye{seen};
-        const std::int64_t end = std::min(learning.paths, (b + 1) * kBlock);
-        for (std::int64_t i = b * kBlock; i < end && seen.size() < most; ++i) {
-            Rng rng(learning.seed, StreamPurpose::learned_emission, static_cast<std::uint64_t>(i));
-            const Vec2 image = lattice_image_point(learning.seed, StreamPurpose::learned_emission, i);
-            trace_independent(Technique::path, scene, image, {learning.max_scatterings, learning.set}, rng, eye);
-        }
-        context.advance(kBlock);
-    });
-    context.end();
-    std::vector<SeenLight> all;
-    for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
-    return all;
-}
-
 SurfacePoint point_on(std::uint32_t emitter, SurfacePoint point) {
     point.emitter = emitter;
     return point;
@@ -123,9 +78,8 @@ bool LearnedEmission::can_learn(const Scene& scene) {
            std::ranges::any_of(scene.emitters(), [](const auto& e) { return e->site() == Site::infinite; });
 }
 
-LearnedEmission::LearnedEmission(const Scene& scene, const EmissionLearning& learning, const RunContext& context)
+LearnedEmission::LearnedEmission(const Scene& scene, std::vector<SeenLight> seen)
     : scene_(&scene), skies_(scene.emitters().size()) {
-    std::vector<SeenLight> seen = look_for_light(scene, learning, context);
     choose_emitters(seen);
     std::ranges::stable_sort(seen, {}, &SeenLight::emitter);
     for (std::size_t begin = 0, end = 0; begin < seen.size(); begin = end) {

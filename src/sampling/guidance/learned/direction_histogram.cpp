@@ -1,4 +1,4 @@
-#include "sampling/guidance/direction_histogram.h"
+#include "sampling/guidance/learned/direction_histogram.h"
 
 #include "scene/emitters/sphere_map.h"
 

@@ -1,4 +1,4 @@
-#include "sampling/guidance/learned_direct_light.h"
+#include "sampling/guidance/learned/learned_direct_light.h"
 
 #include "core/kronecker.h"
 #include "core/parallel.h"

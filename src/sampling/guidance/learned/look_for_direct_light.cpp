@@ -1,4 +1,4 @@
-#include "sampling/guidance/look_for_direct_light.h"
+#include "sampling/guidance/learned/look_for_direct_light.h"
 
 #include "core/shared_work.h"
 #include "sampling/paths/direct_light.h"

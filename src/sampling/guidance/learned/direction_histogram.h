@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/vec.h"
-#include "sampling/guidance/plane_histogram.h"
+#include "sampling/guidance/learned/plane_histogram.h"
 
 #include <optional>
 #include <span>

@@ -2,8 +2,8 @@
 // the sky.
 #pragma once
 
-#include "sampling/guidance/direction_histogram.h"
-#include "sampling/guidance/surface_cells.h"
+#include "sampling/guidance/learned/direction_histogram.h"
+#include "sampling/guidance/learned/surface_cells.h"
 #include "scene/scene.h"
 
 #include <cstdint>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/progress.h"
-#include "sampling/guidance/learned_direct_light.h"
+#include "sampling/guidance/learned/learned_direct_light.h"
 
 #include <cstdint>
 #include <limits>

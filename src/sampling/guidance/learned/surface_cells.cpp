@@ -1,4 +1,4 @@
-#include "sampling/guidance/surface_cells.h"
+#include "sampling/guidance/learned/surface_cells.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "sampling/guidance/plane_histogram.h"
+#include "sampling/guidance/learned/plane_histogram.h"
 
 #include <algorithm>
 #include <limits>

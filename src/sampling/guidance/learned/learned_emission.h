@@ -2,26 +2,14 @@
 // picture.
 #pragma once
 
-#include "core/progress.h"
-#include "sampling/guidance/plane_histogram.h"
+#include "sampling/guidance/learned/look_for_light.h"
+#include "sampling/guidance/learned/plane_histogram.h"
 #include "sampling/paths/light_tracer.h"
-#include "sampling/paths/path_set.h"
 
 #include <cstdint>
 #include <vector>
 
 namespace keyhole {
-
-/// What learning takes.
-struct EmissionLearning {
-    std::int64_t paths;  ///< from the eye
-    int max_scatterings; ///< of a path
-    PathSet set{};       ///< what photons are stored for
-    std::uint64_t seed = 1;
-    std::size_t most_bytes = 16 << 20;
-};
-
-struct SeenLight; // an end at an emitter of a path from the eye
 
 /// A choice of emitters and, for those at infinity, of directions and places, that follows the light which photon maps
 /// hold: learned from paths traced from the eye, which don't count in any picture. (Jensen 1995 aims by the same
@@ -30,8 +18,8 @@ struct SeenLight; // an end at an emitter of a path from the eye
 /// so that light arrives from everywhere with the power that it has. Immutable and thread-safe.
 class LearnedEmission {
   public:
-    /// @throws Interrupted
-    LearnedEmission(const Scene& scene, const EmissionLearning& learning, const RunContext& context);
+    /// @param seen in any order; there may be nothing
+    LearnedEmission(const Scene& scene, std::vector<SeenLight> seen);
 
     /// Whether it pays: where light comes from infinity, or from many lamps. Among few of these, paths from the eye
     /// find too little of the light that is hardest to find for what is to be gained.

@@ -1,0 +1,46 @@
+#include "methods/photons/learn_light_paths.h"
+
+#include "session/stage_clock.h"
+
+#include <algorithm>
+
+namespace keyhole {
+namespace {
+
+/// Light paths for each path that learns where they are to begin, and the bounds of these.
+constexpr std::int64_t kPathsOfLearning = 16, kLeastPaths = 2048, kMostPaths = 1 << 16;
+constexpr std::size_t kMemoryOfLearning = 5;
+
+/// Along user paths light goes as they say.
+bool is_worth_it(const SamplerContext& c) { return c.user_paths.empty() && LearnedEmission::can_learn(c.scene); }
+
+} // namespace
+
+LearnedLightPaths learn_light_paths(const SamplerContext& c, std::int64_t paths, const RunContext& run) {
+    LearnedLightPaths learned;
+    if (!is_worth_it(c)) return learned;
+    FoundLightPaths found =
+        look_for_light(c.scene,
+                       {.paths = paths,
+                        .max_scatterings = static_cast<int>(c.settings.max_depth),
+                        .set = c.path_set(),
+                        .seed = static_cast<std::uint64_t>(c.settings.seed),
+                        .most_bytes = static_cast<std::size_t>(c.settings.photon_memory) / kMemoryOfLearning},
+                       run);
+    learned.emission.emplace(c.scene, std::move(found.ends));
+    learned.scattering.emplace(found.scatterings);
+    if (!learned.scattering->helps()) learned.scattering.reset();
+    return learned;
+}
+
+LearnedLightPaths learn_light_paths(const SamplerContext& c, RenderStats& stats, const RunContext& run) {
+    if (!is_worth_it(c)) return {};
+    const StageClock clock(stats, stages::emission);
+    LearnedLightPaths learned =
+        learn_light_paths(c, std::clamp(c.settings.light_paths / kPathsOfLearning, kLeastPaths, kMostPaths), run);
+    stats.values["emitters that matter"] = learned.emission->effective_emitters();
+    stats.values["light scattered as it was learned"] = learned.scattering ? learned.scattering->helped_share() : 0;
+    return learned;
+}
+
+} // namespace keyhole

@@ -1,0 +1,75 @@
+#include "sampling/guidance/learned/look_for_light.h"
+
+#include "core/shared_work.h"
+#include "sampling/paths/image_lattice.h"
+#include "sampling/paths/independent_paths.h"
+#include "sampling/paths/measure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace keyhole {
+namespace {
+
+/// Light that `v` scatters from the vertex before it to the one behind it; none where that is a choice without a
+/// density, or one among such.
+std::optional<SeenScattering> scattering_at(const Path& path, std::size_t i, double weight) {
+    const Vertex& v = path.x[i];
+    if (v.specular() || v.bsdf.traits().delta) return std::nullopt;
+    const Vec3 to_light = direction(v.point, path.x[i - 1].point), towards = direction(v.point, path.x[i + 1].point);
+    const double pdf = scatter(v.point, v.bsdf, Event::finite, to_light, towards).pdf_to_eye;
+    if (!(pdf > 0)) return std::nullopt;
+    return SeenScattering{{v.point.p, facing(v.point.ng, to_light)}, towards, pdf, weight};
+}
+
+/// Keeps what paths from the eye met whose light is for photon maps.
+struct Eye {
+    FoundLightPaths& found;
+    SampleSource& source;
+
+    template <class MakePath> void contribution(const Rgb& value, PhotonKind kind, const MakePath& make_path) {
+        const double y = luminance(value);
+        if (kind == PhotonKind::none || !(y > 0) || !std::isfinite(y)) return;
+        const Path path = make_path();
+        const SurfacePoint& x0 = path.x[0].point;
+        found.ends.push_back({x0.emitter, x0.p, path.x[1].point.p, y});
+        // Any of the vertices before that which stores; all together would fill the memory with what is alike.
+        const int before = storage_point(diffuse_vertices(path), kind).vertex - 1;
+        if (before < 1) return;
+        const auto i = 1 + std::min(static_cast<int>(source.next() * before), before - 1);
+        if (const auto seen = scattering_at(path, static_cast<std::size_t>(i), y * before))
+            found.scatterings.push_back(*seen);
+    }
+};
+
+} // namespace
+
+FoundLightPaths look_for_light(const Scene& scene, const LightSearch& search, const RunContext& context) {
+    constexpr std::int64_t kBlock = 256;
+    const std::int64_t blocks = (search.paths + kBlock - 1) / kBlock;
+    std::vector<FoundLightPaths> parts(static_cast<std::size_t>(blocks));
+    const std::size_t most =
+        search.most_bytes / (sizeof(SeenLight) + sizeof(SeenScattering)) / std::max<std::size_t>(parts.size(), 1);
+    context.begin("emission", static_cast<std::uint64_t>(search.paths), "paths");
+    parallel_for(blocks, context, [&](std::int64_t b) {
+        FoundLightPaths& found = parts[static_cast<std::size_t>(b)];
+        const std::int64_t end = std::min(search.paths, (b + 1) * kBlock);
+        for (std::int64_t i = b * kBlock; i < end && found.ends.size() < most; ++i) {
+            Rng rng(search.seed, StreamPurpose::learned_emission, static_cast<std::uint64_t>(i));
+            Eye eye{found, rng};
+            const Vec2 image = lattice_image_point(search.seed, StreamPurpose::learned_emission, i);
+            trace_independent(Technique::path, scene, image, {search.max_scatterings, search.set}, rng, eye);
+        }
+        context.advance(kBlock);
+    });
+    context.end();
+    FoundLightPaths all;
+    for (const FoundLightPaths& part : parts) {
+        all.ends.insert(all.ends.end(), part.ends.begin(), part.ends.end());
+        all.scatterings.insert(all.scatterings.end(), part.scatterings.begin(), part.scatterings.end());
+    }
+    return all;
+}
+
+} // namespace keyhole
