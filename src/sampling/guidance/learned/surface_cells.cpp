@@ -60,9 +60,10 @@ bool SurfaceCells::split(std::span<Place> points, std::size_t least, Node& node,
         std::ranges::nth_element(points, middle, {}, at);
         node.split = at(*middle);
         node.axis = static_cast<std::int8_t>(extent.axis);
-        const auto right = std::ranges::partition(points, [&](const Place& place) { return at(place) < node.split; });
-        left = points.size() - right.size();
-        if (left >= least && right.size() >= least) return true;
+        const auto right =
+            std::partition(points.begin(), points.end(), [&](const Place& place) { return at(place) < node.split; });
+        left = static_cast<std::size_t>(right - points.begin());
+        if (left >= least && points.size() - left >= least) return true;
     }
     return false;
 }
