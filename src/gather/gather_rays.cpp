@@ -110,8 +110,10 @@ Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSou
     // Photons may be near, but none that this place sees: those of the other side of a wall.
     if (!known.known) return direct_light(scene_, v, back, 1, source);
     if (!v.bsdf.traits().diffuse) {
-        const Rgb direct = direct_light(scene_, v, back, 1, source);
-        return direct + global_near(known.place, v, back);
+        Vertex lobe = v;
+        lobe.bsdf = v.bsdf.widened(options_.least_alpha);
+        const Rgb direct = direct_light(scene_, lobe, back, 1, source);
+        return direct + global_near(known.place, lobe, back);
     }
     const Rgb f = v.bsdf.diffuse_reflectance(back);
     const auto near = maps_.direct->direct(known.place, v.point.p, maps_.irradiance->radius(known.place));
@@ -130,7 +132,7 @@ Rgb GatherRays::glossy(const Vertex& v, const Vec3& back, const Missing& missing
     const double p = std::max(kLeastGlossy, v.bsdf.glossy_probability(back));
     if (!(source.next() < p)) return Rgb(0.0);
     Vertex lobe = v;
-    lobe.bsdf = v.bsdf.glossy_part();
+    lobe.bsdf = v.bsdf.glossy_part().widened(options_.least_alpha);
     Rgb sum(0.0);
     if (missing.direct) sum += direct_light(scene_, lobe, back, 1, source);
     if (missing.indirect) sum += global_near(missing.place, lobe, back);
@@ -141,12 +143,16 @@ Rgb GatherRays::caustic(const Vertex& v, const Vec3& back, double besides, Sampl
     if (maps_.caustic == nullptr) return Rgb(0.0);
     const PhotonQuery query = query_at(v, back, options_.caustic_radius, options_);
     const float r = piloted_radius(maps_.caustic->pilots(), query);
+    double p = chance_of_caustic(v, back, query.region, r, besides);
+    if (!(p > 0)) return Rgb(0.0);
+    const bool obstructed = maps_.patches->obstructed(query.region, r);
+    // By chance only where areas, and what is in sight of what, take a hundred rays.
+    if (!obstructed && !maps_.patches->takes_rays()) p = 1;
+    if (p < 1 && !(source.next() < p)) return Rgb(0.0);
     const PhotonMap& photons = maps_.caustic->main_photons();
-    // Areas, and what is in sight of what, take a hundred rays then.
-    const bool dear = maps_.patches->takes_rays() || maps_.patches->obstructed(query.region, r);
-    const double p = dear ? chance_of_caustic(v, back, query.region, r, besides) : 1;
-    if (!(p > 0) || (p < 1 && !(source.next() < p))) return Rgb(0.0);
-    return estimate_density_in_sight(scene_, photons, query.region, r, *maps_.patches, reflection(v, back)).value / p;
+    return estimate_density_in_sight(scene_, photons, query.region, r, *maps_.patches, obstructed, reflection(v, back))
+               .value /
+           p;
 }
 
 double GatherRays::chance_of_caustic(const Vertex& v, const Vec3& back, const SurfaceRegion& region, float r,

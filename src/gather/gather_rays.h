@@ -22,6 +22,9 @@ struct LookupOptions {
     float max_radius;     ///< of a lookup in the global map [m]
     float caustic_radius; ///< of a lookup in the caustic map [m]
     float shrink = 1;     ///< of lookup regions, as in PhotonQuery
+    /// Roughness that glossy lobes have at least where gather rays end: what a narrow one sends to a few of a thousand
+    /// rays is noise, and a wider one sends as much to more of them.
+    double least_alpha = 0;
 };
 
 /// Immutable and thread-safe. All arguments by reference or pointer must outlive it.

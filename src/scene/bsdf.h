@@ -27,7 +27,7 @@ struct BlackBsdf {
 /// A model in its shading frame. All directions are unit, in world space, and point away from the surface.
 /// To add a model: a file in bsdfs/ with these five members, and its name here. One with a diffuse part has
 /// diffuse_reflectance() and diffuse_weight() besides; if it has a glossy part as well, also glossy_part(),
-/// glossy_albedo() and glossy_probability().
+/// glossy_albedo() and glossy_probability(). One with rough lobes has widened().
 class Bsdf {
   public:
     using Model = std::variant<BlackBsdf, DiffuseBsdf, DiffuseTransmissionBsdf, MirrorBsdf, ConductorBsdf,
@@ -122,6 +122,17 @@ class Bsdf {
                         return m.glossy_part();
                     else if constexpr (kIsPartlyDiffuse<M>)
                         return BlackBsdf{};
+                    else
+                        return m;
+                })};
+    }
+
+    /// The same with no rough lobe narrower than `alpha`: what it reflects goes where it goes, in a wider cone, by the
+    /// same Fresnel terms. For BSDFs without a diffuse part: that of a coat is left as it is.
+    Bsdf widened(double alpha) const {
+        return {frame_, visit([alpha]<class M>(const M& m) -> Model {
+                    if constexpr (requires { m.widened(alpha); })
+                        return m.widened(alpha);
                     else
                         return m;
                 })};

@@ -136,5 +136,76 @@ TEST(Bsdf_GlossyPart, IsDrawnFromWithTheProbabilityThatIsSaid) {
         }
 }
 
+/// What comes of light along `from`, in whatever direction it goes on, by samples of the finite part.
+RunningStats albedo(const Bsdf& bsdf, const Vec3& from) {
+    Rng rng(12, StreamPurpose::test, 0);
+    RunningStats sum;
+    for (int i = 0; i < 20000; ++i) {
+        const auto s = bsdf.sample(from, rng);
+        const bool lost = !s || is_specular(s->event);
+        sum.add(lost ? 0 : bsdf.eval(s->to, from).y * std::abs(static_cast<double>(s->to.z)) / bsdf.pdf(from, s->to));
+    }
+    return sum;
+}
+
+/// What a rough metal sends below the surface by single reflections is made up for on average over directions; a coat
+/// loses a little of the little that it reflects.
+TEST(Bsdf_Widened, ReflectsAsMuch) {
+    constexpr double kAlpha = 0.2, kLoss = 0.03;
+    for (const BsdfCase& c : bsdf_cases())
+        for (const Vec3& from : looks()) {
+            const Bsdf rest = bsdf_of(c).glossy_part(), wide = rest.widened(kAlpha);
+            EXPECT_EQ(wide.traits().delta, rest.traits().delta);
+            if (!rest.traits().finite || !(std::abs(from.z) > 0.4f)) continue;
+            SCOPED_TRACE(c.name + " from z = " + std::to_string(from.z));
+            const RunningStats before = albedo(rest, from), after = albedo(wide, from);
+            const double noise = 4 * std::hypot(before.standard_error(), after.standard_error());
+            EXPECT_NEAR(after.mean(), before.mean(), kLoss * before.mean() + noise);
+        }
+}
+
+TEST(Bsdf_Widened, IsNowhereBrighterThanItsRoughnessAllows) {
+    const Bsdf narrow(Frame(), RoughConductorBsdf{{Rgb(1.5), Rgb(4.0)}, 0.01f, 0.4f});
+    const Vec3 from = spherical(0.8, 0.3), mirrored(-from.x, -from.y, from.z);
+    const Bsdf both(Frame(), RoughConductorBsdf{{Rgb(1.5), Rgb(4.0)}, 0.2f, 0.4f});
+    EXPECT_NEAR(narrow.widened(0.2).eval(mirrored, from).y / both.eval(mirrored, from).y, 1, 0.05);
+    EXPECT_EQ(narrow.widened(0.005).eval(mirrored, from), narrow.eval(mirrored, from));
+    EXPECT_LT(both.eval(mirrored, from).y, 0.1 * narrow.eval(mirrored, from).y);
+}
+
+TEST(Bsdf_Widened, LeavesDiffusePartsAndSmoothLobes) {
+    for (const BsdfCase& c : bsdf_cases()) {
+        const Bsdf bsdf = bsdf_of(c), wide = bsdf.widened(0.3);
+        const Vec3 from = spherical(0.7, 1);
+        SCOPED_TRACE(c.name);
+        EXPECT_EQ(wide.diffuse_reflectance(from), bsdf.diffuse_reflectance(from));
+        for (const Event e : {Event::reflect, Event::transmit}) {
+            const auto before = bsdf.delta(from, e), after = wide.delta(from, e);
+            ASSERT_EQ(before.has_value(), after.has_value());
+            if (before) {
+                EXPECT_EQ(before->coefficient, after->coefficient);
+            }
+        }
+    }
+}
+
+TEST(Bsdf_Widened, SampleFollowsPdf) {
+    std::uint64_t stream = 5000;
+    const int tests = static_cast<int>(bsdf_cases().size() * looks().size());
+    for (const BsdfCase& c : bsdf_cases())
+        for (const Vec3& from : looks()) {
+            const Bsdf wide = bsdf_of(c).glossy_part().widened(0.3);
+            if (!wide.traits().finite) continue;
+            SCOPED_TRACE(c.name + " from z = " + std::to_string(from.z));
+            const auto sample = [&](SampleSource& source) -> std::optional<Vec3> {
+                const auto s = wide.sample(from, source);
+                if (!s || is_specular(s->event)) return std::nullopt;
+                return s->to;
+            };
+            const auto pdf = [&](const Vec3& to) { return wide.pdf(from, to); };
+            EXPECT_GT(direction_histogram(sample, pdf, stream++).p_value(), sidak_threshold(tests));
+        }
+}
+
 } // namespace
 } // namespace keyhole::test

@@ -6,6 +6,7 @@
 #include "methods/photons/radii.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace keyhole {
@@ -15,14 +16,24 @@ namespace {
 constexpr double kForSamples = 0.25;
 /// Rays that records get in the end over those they have first, at most.
 constexpr double kMostMoreRays = 16;
+/// Rays of a record across the reflection of a glossy surface that they meet, at least.
+constexpr double kRaysAcrossLobe = 4;
 
 const PilotedMap* null_if_empty(const PilotedMap& map) { return map.main_photons().photons().empty() ? nullptr : &map; }
+
+/// Roughness that lobes have at least where gather rays end. One of N rays stands for a cone of half-angle 1 / sqrt(N);
+/// the reflection of a lobe of roughness alpha fills one of about 2 alpha.
+double least_alpha(const Settings& settings, const Radii& radii) {
+    const auto rays = static_cast<double>(std::max<std::int64_t>(1, settings.cache_rays));
+    return kRaysAcrossLobe / 2 / std::sqrt(rays) * radii.shrink;
+}
 
 LookupOptions lookups(const Settings& settings, const Radii& radii) {
     return {.nearest = static_cast<int>(settings.nearest),
             .max_radius = radii.global,
             .caustic_radius = radii.caustic,
-            .shrink = radii.shrink};
+            .shrink = radii.shrink,
+            .least_alpha = least_alpha(settings, radii)};
 }
 
 } // namespace

@@ -87,6 +87,14 @@ CoatedDiffuseBsdf CoatedDiffuseBsdf::glossy_part() const {
     return coat;
 }
 
+CoatedDiffuseBsdf CoatedDiffuseBsdf::widened(double alpha) const {
+    CoatedDiffuseBsdf wide = *this;
+    if (traits().diffuse) return wide; // for what its coat lets through depends on the roughness
+    wide.alpha_x_ = widened_alpha(alpha_x_, alpha);
+    wide.alpha_y_ = widened_alpha(alpha_y_, alpha);
+    return wide;
+}
+
 double CoatedDiffuseBsdf::glossy_albedo(const Vec3& from) const {
     return smooth() ? 0.0 : interface_->reflectance(upper(from).z, alpha());
 }

@@ -37,6 +37,7 @@ class CoatedDiffuseBsdf {
     double diffuse_weight(const Vec3& to_light) const;
     /// The coat's reflection.
     CoatedDiffuseBsdf glossy_part() const;
+    CoatedDiffuseBsdf widened(double alpha) const;
     double glossy_albedo(const Vec3& from) const;
     double glossy_probability(const Vec3& from) const;
 

@@ -1,11 +1,15 @@
 #include "scene/bsdfs/conductor.h"
 
+#include "scene/bsdfs/glossy_albedo.h"
+
+#include <cmath>
+
 namespace keyhole {
 
 Rgb RoughConductorBsdf::eval(const Vec3& to_light, const Vec3& to_eye) const {
     if (!(to_light.z * to_eye.z > 0)) return Rgb(0.0);
     const LocalVec i = upper(to_light), o = upper(to_eye), h = half_vector(i, o);
-    return fresnel_conductor(o.dot(h), index) * Ggx{alpha_x, alpha_y}.reflection(i, o, h);
+    return fresnel_conductor(o.dot(h), index) * (scale * Ggx{alpha_x, alpha_y}.reflection(i, o, h));
 }
 
 double RoughConductorBsdf::pdf(const Vec3& from, const Vec3& to) const {
@@ -19,6 +23,16 @@ std::optional<BsdfSample> RoughConductorBsdf::sample(const Vec3& from, double u0
     if (!up) return std::nullopt;
     const Vec3 to = on_side_of(from, *up);
     return finite_sample(to, pdf(from, to));
+}
+
+RoughConductorBsdf RoughConductorBsdf::widened(double alpha) const {
+    RoughConductorBsdf wide{index, widened_alpha(alpha_x, alpha), widened_alpha(alpha_y, alpha), scale};
+    if (wide.alpha_x == alpha_x && wide.alpha_y == alpha_y) return wide;
+    const auto albedo = [](const RoughConductorBsdf& b) {
+        return mean_ggx_albedo(std::sqrt((b.alpha_x * b.alpha_x + b.alpha_y * b.alpha_y) / 2), 0).whole;
+    };
+    wide.scale *= static_cast<float>(albedo(*this) / albedo(wide));
+    return wide;
 }
 
 } // namespace keyhole

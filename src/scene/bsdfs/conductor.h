@@ -49,6 +49,7 @@ struct ConductorBsdf {
 struct RoughConductorBsdf {
     ComplexIndex index;
     float alpha_x, alpha_y; ///< at least kSmoothAlpha / 10
+    float scale = 1;        ///< of the value: what widened() loses by single reflections, on average
 
     static constexpr BsdfTraits traits() { return {.finite = true, .glossy = true}; }
 
@@ -56,6 +57,7 @@ struct RoughConductorBsdf {
     double pdf(const Vec3& from, const Vec3& to) const;
     std::optional<BsdfSample> sample(const Vec3& from, double u0, double u1, double u2) const;
     static std::optional<DeltaScatter> delta(const Vec3& /*from*/, Event /*event*/) { return std::nullopt; }
+    RoughConductorBsdf widened(double alpha) const;
 };
 
 } // namespace keyhole

@@ -3,6 +3,7 @@
 
 #include "core/vec.h"
 
+#include <algorithm>
 #include <optional>
 
 namespace keyhole {
@@ -36,6 +37,11 @@ struct Ggx {
     /// The factor D G / (4 cos cos) of a BRDF.
     double reflection(const LocalVec& a, const LocalVec& b, const LocalVec& h) const;
 };
+
+/// The roughness of a lobe that is to be at least so wide; a smooth one stays smooth.
+inline float widened_alpha(float alpha, double least) {
+    return alpha == 0 ? alpha : std::max(alpha, static_cast<float>(least));
+}
 
 /// Unit half vector of two directions, neither opposite to the other.
 inline LocalVec half_vector(const LocalVec& a, const LocalVec& b) { return (a + b).normalized(); }

@@ -123,6 +123,17 @@ PrincipledBsdf PrincipledBsdf::glossy_part() const {
     return part;
 }
 
+PrincipledBsdf PrincipledBsdf::widened(double alpha) const {
+    PrincipledBsdf wide = *this;
+    if (!is_black(base_)) return wide; // for what the layers above leave to it depends on their roughness
+    wide.alpha_x_ = widened_alpha(alpha_x_, alpha);
+    wide.alpha_y_ = widened_alpha(alpha_y_, alpha);
+    wide.coat_alpha_ = widened_alpha(coat_alpha_, alpha);
+    const bool same = wide.alpha_x_ == alpha_x_ && wide.alpha_y_ == alpha_y_ && wide.coat_alpha_ == coat_alpha_;
+    if (!same && !is_black(rgb(metal_))) wide.find_means();
+    return wide;
+}
+
 /// Of what is not a delta lobe.
 double PrincipledBsdf::glossy_albedo(const Vec3& from) const {
     const double cosine = upper(from).z;

@@ -55,6 +55,7 @@ class PrincipledBsdf {
     double diffuse_weight(const Vec3& to_light) const;
     /// All but the base and delta lobes.
     PrincipledBsdf glossy_part() const;
+    PrincipledBsdf widened(double alpha) const;
     double glossy_albedo(const Vec3& from) const;
     double glossy_probability(const Vec3& from) const;
 
