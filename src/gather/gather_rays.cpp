@@ -144,15 +144,11 @@ Rgb GatherRays::caustic(const Vertex& v, const Vec3& back, double besides, Sampl
     const PhotonQuery query = query_at(v, back, options_.caustic_radius, options_);
     const float r = piloted_radius(maps_.caustic->pilots(), query);
     double p = chance_of_caustic(v, back, query.region, r, besides);
-    if (!(p > 0)) return Rgb(0.0);
-    const bool obstructed = maps_.patches->obstructed(query.region, r);
     // By chance only where areas, and what is in sight of what, take a hundred rays.
-    if (!obstructed && !maps_.patches->takes_rays()) p = 1;
-    if (p < 1 && !(source.next() < p)) return Rgb(0.0);
+    if (p > 0 && p < 1 && !maps_.patches->takes_rays() && !maps_.patches->obstructed(query.region, r)) p = 1;
+    if (!(p > 0) || (p < 1 && !(source.next() < p))) return Rgb(0.0);
     const PhotonMap& photons = maps_.caustic->main_photons();
-    return estimate_density_in_sight(scene_, photons, query.region, r, *maps_.patches, obstructed, reflection(v, back))
-               .value /
-           p;
+    return estimate_density_in_sight(scene_, photons, query.region, r, *maps_.patches, reflection(v, back)).value / p;
 }
 
 double GatherRays::chance_of_caustic(const Vertex& v, const Vec3& back, const SurfaceRegion& region, float r,

@@ -65,10 +65,10 @@ IrradianceMap::Count IrradianceMap::estimate(std::uint32_t i, const PhotonMap& m
         squares += power * power;
         return 1.0;
     };
-    DensityEstimate e = options.scene != nullptr
-                            ? estimate_density_in_sight(*options.scene, main_photons, query.region, r, *options.patches,
-                                                        options.patches->obstructed(query.region, r), one)
-                            : estimate_density(main_photons, query.region, r, options.patches, one);
+    DensityEstimate e =
+        options.scene != nullptr
+            ? estimate_density_in_sight(*options.scene, main_photons, query.region, r, *options.patches, one)
+            : estimate_density(main_photons, query.region, r, options.patches, one);
     e.value /= share_in_reach(options.coverage, query.region, r);
     const double disc = kPi * static_cast<double>(r) * r;
     estimates_[i] = Estimate(e.value, r, disc > 0 ? e.area / disc : 0.0,

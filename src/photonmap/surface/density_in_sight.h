@@ -16,11 +16,11 @@ auto weight_in_sight(const Scene& scene, const SurfaceRegion& region, float r, c
 }
 
 /// estimate_density() over a region of radius `r` from what its middle sees, where something stands on it that could
-/// hide photons of the other side: where it is `obstructed`, as `patches` say.
+/// hide photons of the other side.
 template <class Weight>
 DensityEstimate estimate_density_in_sight(const Scene& scene, const PhotonMap& map, const SurfaceRegion& region,
-                                          float r, const SurfacePatches& patches, bool obstructed,
-                                          const Weight& weight) {
+                                          float r, const SurfacePatches& patches, const Weight& weight) {
+    const bool obstructed = patches.obstructed(region, r);
     // Where nothing is in sight the middle lies in a crevice, and the test says nothing.
     const double seen = obstructed ? patches.area_in_sight(region, r, sight_lift(r)) : 0;
     DensityEstimate e;
