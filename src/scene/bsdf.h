@@ -27,7 +27,7 @@ struct BlackBsdf {
 /// A model in its shading frame. All directions are unit, in world space, and point away from the surface.
 /// To add a model: a file in bsdfs/ with these five members, and its name here. One with a diffuse part has
 /// diffuse_reflectance() and diffuse_weight() besides; if it has a glossy part as well, also glossy_part(),
-/// glossy_albedo() and glossy_probability(). One with rough lobes has widened().
+/// glossy_albedo() and glossy_probability(). One whose rough lobes may be wider has widened().
 class Bsdf {
   public:
     using Model = std::variant<BlackBsdf, DiffuseBsdf, DiffuseTransmissionBsdf, MirrorBsdf, ConductorBsdf,
@@ -127,8 +127,9 @@ class Bsdf {
                 })};
     }
 
-    /// The same with no rough lobe narrower than `alpha`: what it reflects goes where it goes, in a wider cone, by the
-    /// same Fresnel terms. For BSDFs without a diffuse part: that of a coat is left as it is.
+    /// The same with no lobe of rough metal, or of a rough coat without its base, narrower than `alpha`: it reflects as
+    /// much, nearly, in a wider cone. All others are left as they are: what a diffuse base gets depends on the coat's
+    /// roughness, and wider lobes of ground glass and coated metal would lose light.
     Bsdf widened(double alpha) const {
         return {frame_, visit([alpha]<class M>(const M& m) -> Model {
                     if constexpr (requires { m.widened(alpha); })

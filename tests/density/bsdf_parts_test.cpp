@@ -102,22 +102,26 @@ TEST(Bsdf_Parts, WeightsOfSmoothGlassAreBounded) {
     }
 }
 
-TEST(Bsdf_GlossyPart, SampleFollowsPdf) {
-    std::uint64_t stream = 1000;
+/// That the finite part of what `of` makes of each case is drawn from as its pdf says.
+template <class Of> void expect_samples_follow_pdf(const Of& of, std::uint64_t stream) {
     const int tests = static_cast<int>(bsdf_cases().size() * looks().size());
     for (const BsdfCase& c : bsdf_cases())
         for (const Vec3& from : looks()) {
-            const Bsdf rest = bsdf_of(c).glossy_part();
-            if (!rest.traits().finite) continue;
+            const Bsdf part = of(bsdf_of(c));
+            if (!part.traits().finite) continue;
             SCOPED_TRACE(c.name + " from z = " + std::to_string(from.z));
             const auto sample = [&](SampleSource& source) -> std::optional<Vec3> {
-                const auto s = rest.sample(from, source);
+                const auto s = part.sample(from, source);
                 if (!s || is_specular(s->event)) return std::nullopt;
                 return s->to;
             };
-            const auto pdf = [&](const Vec3& to) { return rest.pdf(from, to); };
+            const auto pdf = [&](const Vec3& to) { return part.pdf(from, to); };
             EXPECT_GT(direction_histogram(sample, pdf, stream++).p_value(), sidak_threshold(tests));
         }
+}
+
+TEST(Bsdf_GlossyPart, SampleFollowsPdf) {
+    expect_samples_follow_pdf([](const Bsdf& bsdf) { return bsdf.glossy_part(); }, 1000);
 }
 
 TEST(Bsdf_GlossyPart, IsDrawnFromWithTheProbabilityThatIsSaid) {
@@ -190,21 +194,7 @@ TEST(Bsdf_Widened, LeavesDiffusePartsAndSmoothLobes) {
 }
 
 TEST(Bsdf_Widened, SampleFollowsPdf) {
-    std::uint64_t stream = 5000;
-    const int tests = static_cast<int>(bsdf_cases().size() * looks().size());
-    for (const BsdfCase& c : bsdf_cases())
-        for (const Vec3& from : looks()) {
-            const Bsdf wide = bsdf_of(c).glossy_part().widened(0.3);
-            if (!wide.traits().finite) continue;
-            SCOPED_TRACE(c.name + " from z = " + std::to_string(from.z));
-            const auto sample = [&](SampleSource& source) -> std::optional<Vec3> {
-                const auto s = wide.sample(from, source);
-                if (!s || is_specular(s->event)) return std::nullopt;
-                return s->to;
-            };
-            const auto pdf = [&](const Vec3& to) { return wide.pdf(from, to); };
-            EXPECT_GT(direction_histogram(sample, pdf, stream++).p_value(), sidak_threshold(tests));
-        }
+    expect_samples_follow_pdf([](const Bsdf& bsdf) { return bsdf.glossy_part().widened(0.3); }, 5000);
 }
 
 } // namespace

@@ -2,8 +2,6 @@
 
 #include "scene/bsdfs/glossy_albedo.h"
 
-#include <cmath>
-
 namespace keyhole {
 
 Rgb RoughConductorBsdf::eval(const Vec3& to_light, const Vec3& to_eye) const {
@@ -29,7 +27,7 @@ RoughConductorBsdf RoughConductorBsdf::widened(double alpha) const {
     RoughConductorBsdf wide{index, widened_alpha(alpha_x, alpha), widened_alpha(alpha_y, alpha), scale};
     if (wide.alpha_x == alpha_x && wide.alpha_y == alpha_y) return wide;
     const auto albedo = [](const RoughConductorBsdf& b) {
-        return mean_ggx_albedo(std::sqrt((b.alpha_x * b.alpha_x + b.alpha_y * b.alpha_y) / 2), 0).whole;
+        return mean_ggx_albedo(mean_alpha(b.alpha_x, b.alpha_y), 0).whole;
     };
     wide.scale *= static_cast<float>(albedo(*this) / albedo(wide));
     return wide;

@@ -49,7 +49,7 @@ struct ConductorBsdf {
 struct RoughConductorBsdf {
     ComplexIndex index;
     float alpha_x, alpha_y; ///< at least kSmoothAlpha / 10
-    float scale = 1;        ///< of the value: what widened() loses by single reflections, on average
+    float scale = 1;        ///< of the value: makes up for what a wider lobe loses by single reflections, on average
 
     static constexpr BsdfTraits traits() { return {.finite = true, .glossy = true}; }
 

@@ -169,6 +169,10 @@ GgxAlbedo ggx_albedo(double cosine, double alpha, double root) {
                     mixed([&](const Albedos& x) { return x.dielectric[r.i + 1]; }), r.share)};
 }
 
+double mean_alpha(float alpha_x, float alpha_y) {
+    return alpha_x == alpha_y ? alpha_x : std::sqrt((alpha_x * alpha_x + alpha_y * alpha_y) / 2);
+}
+
 GgxAlbedo mean_ggx_albedo(double alpha, double root) {
     const GgxAlbedoTable& t = ggx_albedo_table();
     const auto [a, share] = entry_at(std::sqrt(alpha), kAlphaNodes);

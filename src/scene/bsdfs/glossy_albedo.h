@@ -17,6 +17,9 @@ struct GgxAlbedo {
 /// `root`, all in [0,1]. Interpolated elsewhere, within some 1e-3.
 GgxAlbedo ggx_albedo(double cosine, double alpha, double root);
 
+/// Roughness of the isotropic lobe that reflects nearly as much as one of these: within 4 % of a white metal's light.
+double mean_alpha(float alpha_x, float alpha_y);
+
 /// Its mean over the hemisphere, weighted by the cosine.
 GgxAlbedo mean_ggx_albedo(double alpha, double root);
 

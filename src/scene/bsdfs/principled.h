@@ -93,10 +93,7 @@ class PrincipledBsdf {
     bool has_gloss() const { return metallic_ > 0 || dielectric_root_ > 0; }
     Ggx ggx() const { return {alpha_x_, alpha_y_}; }
     Ggx coat_ggx() const { return {coat_alpha_, coat_alpha_}; }
-    /// Of the isotropic gloss that reflects nearly as much: within 4 % of a white metal's light.
-    double mean_alpha() const {
-        return is_isotropic() ? alpha_x_ : std::sqrt((alpha_x_ * alpha_x_ + alpha_y_ * alpha_y_) / 2);
-    }
+    double mean_alpha() const { return keyhole::mean_alpha(alpha_x_, alpha_y_); }
     double sheen_weight() const;
     /// What the dielectric reflects of the light to the diffuse base, itself untinted.
     double taken_from_base(const GgxAlbedo& gloss) const {
