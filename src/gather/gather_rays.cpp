@@ -2,6 +2,7 @@
 
 #include "gather/direct_light.h"
 #include "photonmap/confirmation.h"
+#include "photonmap/few_photons.h"
 #include "photonmap/surface/density_in_sight.h"
 #include "sampling/paths/direct_light.h"
 #include "sampling/paths/gather_coverage.h"
@@ -31,6 +32,10 @@ constexpr float kKnown = 0.25f;
 /// Caustics are the lesser part of the light where they are below this share of the rest; least probability with which
 /// they are looked at there.
 constexpr double kLesserCaustic = 0.1, kLeastLook = 0.1;
+
+/// Photons of a caustic that are tested for sight, and photons that a lobe at the end of a gather ray is asked about.
+/// The error that a few more would save is one of this sample alone, and small beside its others.
+constexpr int kSights = 8, kPhotonsOfLobe = 16;
 
 } // namespace
 
@@ -113,7 +118,7 @@ Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSou
         Vertex lobe = v;
         lobe.bsdf = v.bsdf.widened(options_.least_alpha);
         const Rgb direct = direct_light(scene_, lobe, back, 1, source);
-        return direct + global_near(known.place, lobe, back);
+        return direct + global_near(known.place, lobe, back, source);
     }
     const Rgb f = v.bsdf.diffuse_reflectance(back);
     const auto near = maps_.direct->direct(known.place, v.point.p, maps_.irradiance->radius(known.place));
@@ -135,20 +140,29 @@ Rgb GatherRays::glossy(const Vertex& v, const Vec3& back, const Missing& missing
     lobe.bsdf = v.bsdf.glossy_part().widened(options_.least_alpha);
     Rgb sum(0.0);
     if (missing.direct) sum += direct_light(scene_, lobe, back, 1, source);
-    if (missing.indirect) sum += global_near(missing.place, lobe, back);
+    if (missing.indirect) sum += global_near(missing.place, lobe, back, source);
     return sum / p;
 }
 
 Rgb GatherRays::caustic(const Vertex& v, const Vec3& back, double besides, SampleSource& source) const {
     if (maps_.caustic == nullptr) return Rgb(0.0);
     const PhotonQuery query = query_at(v, back, options_.caustic_radius, options_);
-    const float r = piloted_radius(maps_.caustic->pilots(), query);
+    const PilotedRegion piloted = piloted_region(maps_.caustic->pilots(), query);
+    const float r = piloted.radius;
     double p = chance_of_caustic(v, back, query.region, r, besides);
-    // By chance only where areas, and what is in sight of what, take a hundred rays.
-    if (p > 0 && p < 1 && !maps_.patches->takes_rays() && !maps_.patches->obstructed(query.region, r)) p = 1;
-    if (!(p > 0) || (p < 1 && !(source.next() < p))) return Rgb(0.0);
+    if (!(p > 0)) return Rgb(0.0);
+    const Surroundings around = maps_.caustic_surroundings->around(query.region, piloted);
+    // By chance only where a look takes rays.
+    if (p < 1 && !maps_.patches->takes_rays() && !around.parted) p = 1;
+    if (!(around.area > 0) || (p < 1 && !(source.next() < p))) return Rgb(0.0);
     const PhotonMap& photons = maps_.caustic->main_photons();
-    return estimate_density_in_sight(scene_, photons, query.region, r, *maps_.patches, reflection(v, back)).value / p;
+    const auto reflected = reflection(v, back);
+    const double area = around.area * p;
+    if (!around.parted) return estimate_density(photons, query.region, r, area, reflected).value;
+    const auto all = [&](const Photon& photon) { return luminance(reflected(photon) * photon.power()); };
+    const auto seen = weight_in_sight(scene_, query.region, r, reflected);
+    const auto light = [&](const Photon& photon) { return seen(photon) * photon.power(); };
+    return sum_over_few(photons, query.region, r, kSights, all, light, source) / area;
 }
 
 double GatherRays::chance_of_caustic(const Vertex& v, const Vec3& back, const SurfaceRegion& region, float r,
@@ -186,20 +200,23 @@ bool GatherRays::may_be_parted(std::uint32_t place, const SurfaceRegion& region)
            (!map.is_near(place, region.position, kKnown) && maps_.patches->obstructed(region, map.radius(place)));
 }
 
-Rgb GatherRays::global_near(std::uint32_t place, const Vertex& v, const Vec3& back) const {
+Rgb GatherRays::global_near(std::uint32_t place, const Vertex& v, const Vec3& back, SampleSource& source) const {
     if (maps_.global == nullptr) return Rgb(0.0);
     const PhotonQuery query = query_at(v, back, options_.max_radius, options_);
     const float r = maps_.irradiance->radius(place);
     const double share = maps_.irradiance->area_share(place);
     if (!(share > 0)) return Rgb(0.0);
     const PhotonMap& photons = maps_.global->main_photons();
-    const auto reflected = reflection(v, back);
-    const auto density = [&](const auto& weight) {
-        return estimate_density(photons, query.region, r, nullptr, weight).value /
-               (share * share_in_reach(maps_.coverage, query.region, r));
+    const double area = kPi * static_cast<double>(r) * r * share * share_in_reach(maps_.coverage, query.region, r);
+    const auto few = [&](const auto& weight) {
+        return sum_over_few(
+                   photons, query.region, r, kPhotonsOfLobe, [](const Photon& p) { return luminance(p.power()); },
+                   [&](const Photon& p) { return weight(p) * p.power(); }, source) /
+               area;
     };
-    if (!may_be_parted(place, query.region)) return density(reflected);
-    return density(weight_in_sight(scene_, query.region, r, reflected));
+    const auto reflected = reflection(v, back);
+    if (!may_be_parted(place, query.region)) return few(reflected);
+    return few(weight_in_sight(scene_, query.region, r, reflected));
 }
 
 } // namespace keyhole

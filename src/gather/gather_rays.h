@@ -3,6 +3,7 @@
 
 #include "gather/direct_irradiance_cache.h"
 #include "photonmap/irradiance/irradiance_map.h"
+#include "photonmap/pilot_surroundings.h"
 #include "sampling/paths/walk.h"
 
 namespace keyhole {
@@ -13,6 +14,7 @@ struct GatherMaps {
     const IrradianceMap* irradiance = nullptr;     ///< of the global map
     const DirectIrradianceCache* direct = nullptr; ///< direct light where `irradiance` is known; null only if that is
     const PilotedMap* caustic = nullptr;
+    const PilotSurroundings* caustic_surroundings = nullptr; ///< of its pilots; null only if that is
     const SurfacePatches* patches = nullptr;
     const GatherCoverage* coverage = nullptr; ///< where light is gathered: of the rest the caustic map knows; null: all
 };
@@ -73,7 +75,7 @@ class GatherRays {
     /// What the global map says of light that `v` reflects towards `back`.
     Rgb global(const Vertex& v, const Vec3& back) const;
     /// The same near a place of the irradiance map, whose radius and surface do for `v`, too.
-    Rgb global_near(std::uint32_t place, const Vertex& v, const Vec3& back) const;
+    Rgb global_near(std::uint32_t place, const Vertex& v, const Vec3& back, SampleSource& source) const;
 
     const Scene& scene_;
     GatherMaps maps_;

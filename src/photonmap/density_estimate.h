@@ -54,13 +54,14 @@ DensityEstimate estimate_density(const PhotonMap& map, const PhotonQuery& query,
     return e;
 }
 
-/// The same over a region of radius `radius` [m] that doesn't follow from the photons of `map`.
+/// The same over a region of radius `radius` [m] that doesn't follow from the photons of `map`, in which `area` [m^2]
+/// of surface lies.
 template <class Weight>
-DensityEstimate estimate_density(const PhotonMap& map, const SurfaceRegion& region, float radius,
-                                 const SurfacePatches* patches, Weight&& weight) {
+DensityEstimate estimate_density(const PhotonMap& map, const SurfaceRegion& region, float radius, double area,
+                                 Weight&& weight) {
     DensityEstimate e;
     e.radius = radius;
-    e.area = patches != nullptr ? patches->area(region, radius) : kPi * static_cast<double>(radius) * radius;
+    e.area = area;
     if (!(e.area > 0)) return e;
     map.for_each_within(region, radius, [&](const Photon& photon) {
         e.value += weight(photon) * photon.power();
@@ -68,6 +69,14 @@ DensityEstimate estimate_density(const PhotonMap& map, const SurfaceRegion& regi
     });
     e.value /= e.area;
     return e;
+}
+
+/// The same with the area that `patches` tell; null: that of the disc.
+template <class Weight>
+DensityEstimate estimate_density(const PhotonMap& map, const SurfaceRegion& region, float radius,
+                                 const SurfacePatches* patches, Weight&& weight) {
+    const double area = patches != nullptr ? patches->area(region, radius) : kPi * static_cast<double>(radius) * radius;
+    return estimate_density(map, region, radius, area, std::forward<Weight>(weight));
 }
 
 } // namespace keyhole

@@ -4,7 +4,10 @@
 #include "photonmap/density_estimate.h"
 #include "photonmap/photons.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <optional>
 #include <utility>
 
 namespace keyhole {
@@ -23,13 +26,26 @@ class PilotedMap {
     PhotonMap pilots_, main_photons_;
 };
 
-/// Radius of the region in which about `k` main photons are to be expected [m]: up to the pilot photon that has so many
-/// pilot photons nearer, and at most max_radius. `own`: pilot photons to leave out because the region was put where
-/// they are.
-inline float piloted_radius(const PhotonMap& pilots, const PhotonQuery& query, int own = 0) {
+/// A region's radius, and the pilot photon nearest to its middle.
+struct PilotedRegion {
+    float radius;                         ///< [m]
+    std::optional<std::uint32_t> nearest; ///< its index, where one is in reach of the query
+};
+
+/// Region in which about `k` main photons are to be expected: up to the pilot photon that has so many pilot photons
+/// nearer, and at most max_radius. `own`: pilot photons to leave out because the region was put where they are.
+inline PilotedRegion piloted_region(const PhotonMap& pilots, const PhotonQuery& query, int own = 0) {
     PhotonQuery among = query;
     among.k = std::max(1, query.k / (kPilotEvery - 1)) + own;
-    return query.shrink * std::sqrt(pilots.nearest(among).radius2);
+    const Neighbourhood near = pilots.nearest(among);
+    PilotedRegion region{query.shrink * std::sqrt(near.radius2), std::nullopt};
+    if (!near.found.empty()) region.nearest = std::min_element(near.found.begin(), near.found.end())->index;
+    return region;
+}
+
+/// Its radius alone.
+inline float piloted_radius(const PhotonMap& pilots, const PhotonQuery& query, int own = 0) {
+    return piloted_region(pilots, query, own).radius;
 }
 
 /// estimate_density() over the main photons in a region that the pilot photons decide. Its expectation is the mean

@@ -23,7 +23,8 @@ TEST(CausticLookup, IsRightOnAverageWhereItIsDoneByChance) {
     const SurfacePatches patches(*scene);
     Rng rng = make_rng(1);
     const PilotedMap map({.pilots = throw_photons(floor, 500, rng), .main_photons = throw_photons(floor, 2000, rng)});
-    const GatherRays rays(*scene, {.caustic = &map, .patches = &patches},
+    const PilotSurroundings surroundings(map.pilots(), patches, 40, 0.3f, 1);
+    const GatherRays rays(*scene, {.caustic = &map, .caustic_surroundings = &surroundings, .patches = &patches},
                           {.nearest = 40, .max_radius = 0.3f, .caustic_radius = 0.3f}, 5);
     for (const Vec2& image : {Vec2(0.5f, 0.5f), Vec2(0.72f, 0.55f)}) {
         const auto seen = visible_point(rays, image, rng);

@@ -60,14 +60,19 @@ PassGather::PassGather(const SamplerContext& c, const RenderPlan& plan, std::int
         direct_irradiance_.emplace(c.scene, irradiance_->places(), DirectIrradianceOptions{.seed = seed}, context);
     }
     if (plan.photons)
+        caustic_surroundings_.emplace(caustic_.pilots(), c.patches, static_cast<int>(s.nearest), radii.caustic,
+                                      radii.shrink);
+    if (plan.photons)
         stats.photon_bytes = std::max<std::uint64_t>(
             stats.photon_bytes, global_.bytes() + caustic_.bytes() +
-                                    (irradiance_ ? irradiance_->bytes() + direct_irradiance_->bytes() : 0));
+                                    (irradiance_ ? irradiance_->bytes() + direct_irradiance_->bytes() : 0) +
+                                    (caustic_surroundings_ ? caustic_surroundings_->bytes() : 0));
     rays_.emplace(c.scene,
                   GatherMaps{.global = null_if_empty(global_),
                              .irradiance = irradiance_ ? &*irradiance_ : nullptr,
                              .direct = direct_irradiance_ ? &*direct_irradiance_ : nullptr,
                              .caustic = null_if_empty(caustic_),
+                             .caustic_surroundings = caustic_surroundings_ ? &*caustic_surroundings_ : nullptr,
                              .patches = &c.patches,
                              .coverage = c.coverage},
                   lookups(s, radii), static_cast<int>(s.max_depth));

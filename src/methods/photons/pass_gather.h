@@ -9,6 +9,7 @@
 #include "methods/photons/plan.h"
 #include "photonmap/irradiance/irradiance_map.h"
 #include "photonmap/photons.h"
+#include "photonmap/pilot_surroundings.h"
 #include "photonmap/piloted_map.h"
 
 #include <cstdint>
@@ -49,6 +50,7 @@ class PassGather {
     PilotedMap global_, caustic_;
     std::optional<IrradianceMap> irradiance_;
     std::optional<DirectIrradianceCache> direct_irradiance_;
+    std::optional<PilotSurroundings> caustic_surroundings_;
     std::optional<GatherRays> rays_;
     std::optional<IrradianceCache> cache_;
     std::optional<FinalGather> gather_;

@@ -1,0 +1,41 @@
+// What surface lies around pilot photons, for lookups near them.
+#pragma once
+
+#include "photonmap/piloted_map.h"
+#include "photonmap/surface/density_in_sight.h"
+
+#include <atomic>
+#include <vector>
+
+namespace keyhole {
+
+/// Remembers what surroundings_of() says around each pilot photon of a map, relative to the radius of the region there.
+/// A lookup takes the answer of the pilot photon nearest to it in place of its own, which takes eight to hundreds of
+/// rays on fine meshes, and there are hundreds of lookups for each pilot photon. Thread-safe: what is remembered
+/// depends on the pilot photon alone, whoever asks first.
+class PilotSurroundings {
+  public:
+    /// Refers to `pilots` and `patches`. The regions are those of queries for `k` photons within `max_radius` [m] that
+    /// shrink by `shrink` (PhotonQuery).
+    PilotSurroundings(const PhotonMap& pilots, const SurfacePatches& patches, int k, float max_radius, float shrink);
+
+    /// Around the region of a lookup that the pilot photons have sized. At an edge of the surface its own area is
+    /// measured: the pilot photons near by lie farther from the edge than a lookup at it.
+    Surroundings around(const SurfaceRegion& region, const PilotedRegion& piloted) const;
+
+    std::size_t bytes() const { return known_.size() * sizeof(known_[0]); }
+
+  private:
+    /// Share of the disc in steps of 1/255, and two flags; 0: nobody asked yet.
+    using Packed = std::uint16_t;
+    Packed at(std::uint32_t pilot) const;
+    Packed measure(const Photon& pilot) const;
+
+    const PhotonMap& pilots_;
+    const SurfacePatches& patches_;
+    int k_;
+    float max_radius_, shrink_;
+    mutable std::vector<std::atomic<Packed>> known_;
+};
+
+} // namespace keyhole
