@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 namespace keyhole {
 namespace {
@@ -21,6 +23,8 @@ constexpr Stage kOpenings{"openings"};
 constexpr std::int64_t kPaths = 1024; // from either end
 constexpr double kTimeOfLooking = 0.02;
 constexpr std::int64_t kLightPathsOfPair = 8, kMostPairs = std::int64_t{1} << 20, kLeastPairs = 4096;
+/// That learn where light paths would begin without openings.
+constexpr std::int64_t kPathsOfLearning = 4096;
 
 bool has_emitters_with_a_place(const Scene& scene) {
     return std::ranges::any_of(scene.emitters(), [](const auto& e) { return e->site() != Site::infinite; });
@@ -44,6 +48,19 @@ OpeningSearch search_of(const Settings& settings, const RunContext& context) {
     return search;
 }
 
+/// Where light paths begin that aren't led, if that can be learned: many lamps are far away, and openings between them
+/// and the eye are only worth having if paths from those that matter don't find through.
+std::optional<LearnedEmission> emission_without_openings(const Scene& scene, const Settings& settings,
+                                                         const RunContext& context) {
+    if (!LearnedEmission::can_learn(scene)) return std::nullopt;
+    FoundLightPaths found = look_for_light(scene,
+                                           {.paths = kPathsOfLearning,
+                                            .max_scatterings = static_cast<int>(settings.max_depth),
+                                            .seed = static_cast<std::uint64_t>(settings.seed)},
+                                           context);
+    return std::optional<LearnedEmission>(std::in_place, scene, std::move(found.ends));
+}
+
 } // namespace
 
 RenderPaths::RenderPaths(const Scene& scene, const Settings& settings, const UserPathFile& given,
@@ -53,7 +70,7 @@ RenderPaths::RenderPaths(const Scene& scene, const Settings& settings, const Use
         !has_emitters_with_a_place(scene) || (!paths_.empty() && !has_openings(paths_)))
         return;
     const StageClock clock(own_, kOpenings);
-    const OpeningSearch search = search_of(settings, context);
+    OpeningSearch search = search_of(settings, context);
     const TransportEnds ends = trace_transport_ends(scene, kPaths, search.seed, context);
     if (light_finds_its_way(scene, ends, search.seed, context)) return;
     if (!paths_.empty()) {
@@ -62,6 +79,8 @@ RenderPaths::RenderPaths(const Scene& scene, const Settings& settings, const Use
             std::max(1.0, gain_by_guides(scene, guides, ends.eye, search.seed, context));
         return;
     }
+    const std::optional<LearnedEmission> learned = emission_without_openings(scene, settings, context);
+    if (learned) search.learned = &*learned;
     const OpeningsFound found = find_openings(scene, ends, search, context);
     if (found.paths.paths.empty()) return;
     paths_ = bind_user_paths(scene, found.paths);

@@ -115,7 +115,7 @@ OpeningsFound find_openings(const Scene& scene, const TransportEnds& ends, const
     OpeningsFound result{std::move(paths.file), paths.openings()};
     if (result.paths.paths.empty()) return {};
     const LightGuides guides(scene, bind_user_paths(scene, result.paths));
-    result.gain = gain_by_guides(scene, guides, ends.eye, search.seed, context);
+    result.gain = gain_by_guides(scene, guides, ends.eye, search.seed, context, search.learned);
     if (!(result.gain >= search.least_gain)) result.paths.paths.clear();
     return result;
 }

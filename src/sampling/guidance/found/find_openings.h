@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sampling/guidance/found/transport_ends.h"
+#include "sampling/guidance/learned/learned_emission.h"
 #include "scene/load/yaml/user_path_file.h"
 #include "scene/scene.h"
 
@@ -15,7 +16,8 @@ struct OpeningSearch {
     double seconds = std::numeric_limits<double>::infinity(); ///< for these, about
     int max_scatterings = 24;                                 ///< of light, on its way through an opening
     std::size_t most = 4;                                     ///< openings
-    double least_gain = 1.5; ///< as gain_by_guides(), with which paths are worth having
+    double least_gain = 1.5;                  ///< as gain_by_guides(), with which paths are worth having
+    const LearnedEmission* learned = nullptr; ///< where light paths would begin else; null: by power
     std::uint64_t seed = 1;
 };
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <utility>
 
 namespace keyhole {
 namespace {
@@ -35,12 +36,11 @@ class Cells {
     float size_;
 };
 
-/// Moments of the power that arrives in a cell.
+/// Second moments of the power that arrives in a cell.
 struct Moments {
-    double first = 0, led = 0, free = 0; // led and free: second ones
+    double led = 0, free = 0;
 
     void operator+=(const Moments& o) {
-        first += o.first;
         led += o.led;
         free += o.free;
     }
@@ -51,11 +51,25 @@ using MomentsByCell = std::map<Cells::Cell, Moments>;
 struct MomentSink {
     const Cells& cells;
     MomentsByCell& moments;
+    const LearnedEmission* learned;
+    SurfacePoint x0{};     // where the path under way began
+    bool has_left = false; // and whether it is known where to
+    double ratio = 1;      // density with which free paths begin so, over that of those by power
 
+    void sets_out(const SurfacePoint& from, bool /*guided*/) {
+        x0 = from;
+        has_left = false;
+        ratio = 1;
+    }
+    void passes(const Vertex& v) {
+        if (learned != nullptr && !std::exchange(has_left, true))
+            ratio = learned->density_ratio(x0, direction(x0, v.point), v.point.p);
+    }
     bool arrival(const Vertex& v, const Vec3& to_light, const Rgb& carried, const LightPast& past) {
+        passes(v);
         if (!v.bsdf.traits().finite) return true;
         const double power = luminance(carried), square = power * power;
-        moments[cells(v.point.p, facing(v.point.ng, to_light))] += {power, square, square * past.density};
+        moments[cells(v.point.p, facing(v.point.ng, to_light))] += {square, square * past.density / ratio};
         return true;
     }
 };
@@ -63,11 +77,11 @@ struct MomentSink {
 } // namespace
 
 double gain_by_guides(const Scene& scene, const LightGuides& guides, const std::vector<TransportEnd>& eye,
-                      std::uint64_t seed, const RunContext& context) {
+                      std::uint64_t seed, const RunContext& context, const LearnedEmission* learned) {
     const Cells cells(scene);
     std::vector<MomentsByCell> parts(kLightPaths / kPathsOfPart);
     parallel_for(static_cast<std::int64_t>(parts.size()), context, [&](std::int64_t part) {
-        MomentSink sink{cells, parts[static_cast<std::size_t>(part)]};
+        MomentSink sink{cells, parts[static_cast<std::size_t>(part)], learned};
         for (std::int64_t i = part * kPathsOfPart; i < (part + 1) * kPathsOfPart; ++i) {
             Rng rng(seed, StreamPurpose::guidance_gain, static_cast<std::uint64_t>(i));
             trace_guided_light_path(scene, guides, kMostScatterings, rng, sink);
@@ -78,15 +92,14 @@ double gain_by_guides(const Scene& scene, const LightGuides& guides, const std::
         for (const auto& [cell, moments] : part) all[cell] += moments;
     std::map<Cells::Cell, double> importance;
     for (const TransportEnd& end : eye) importance[cells(end.point.p, end.n)] += end.weight;
-    double free = 0, led = 0;
+    double sum = 0, weights = 0;
     for (const auto& [cell, weight] : importance) {
         const auto found = all.find(cell);
-        if (found == all.end()) continue;
-        const Moments& m = found->second;
-        free += weight * m.free / (m.first * m.first);
-        led += weight * m.led / (m.first * m.first);
+        if (found == all.end() || !(found->second.led > 0)) continue;
+        sum += weight * std::log(found->second.free / found->second.led);
+        weights += weight;
     }
-    return led > 0 && std::isfinite(free) ? free / led : 1;
+    return weights > 0 ? std::exp(sum / weights) : 1;
 }
 
 } // namespace keyhole
