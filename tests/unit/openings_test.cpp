@@ -147,7 +147,6 @@ TEST(GainByGuides, OfDoorsIsSmallWhereTheRightLampsAreFoundWithoutThem) {
     OpeningSearch with_learned = search();
     with_learned.learned = &learned;
     const double gain = found_in(*scene, with_learned).gain;
-    EXPECT_GT(by_power.gain, 4) << "there is nothing to be learned";
     EXPECT_LT(gain, by_power.gain / 3);
 }
 
