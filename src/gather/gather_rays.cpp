@@ -162,7 +162,7 @@ Rgb GatherRays::caustic(const Vertex& v, const Vec3& back, double besides, Sampl
     const auto all = [&](const Photon& photon) { return luminance(reflected(photon) * photon.power()); };
     const auto seen = weight_in_sight(scene_, query.region, r, reflected);
     const auto light = [&](const Photon& photon) { return seen(photon) * photon.power(); };
-    return sum_over_few(photons, query.region, r, kSights, all, light, source) / area;
+    return sum_over_few(photons, {query.region, r, kSights}, all, light, source) / area;
 }
 
 double GatherRays::chance_of_caustic(const Vertex& v, const Vec3& back, const SurfaceRegion& region, float r,
@@ -210,7 +210,7 @@ Rgb GatherRays::global_near(std::uint32_t place, const Vertex& v, const Vec3& ba
     const double area = kPi * static_cast<double>(r) * r * share * share_in_reach(maps_.coverage, query.region, r);
     const auto few = [&](const auto& weight) {
         return sum_over_few(
-                   photons, query.region, r, kPhotonsOfLobe, [](const Photon& p) { return luminance(p.power()); },
+                   photons, {query.region, r, kPhotonsOfLobe}, [](const Photon& p) { return luminance(p.power()); },
                    [&](const Photon& p) { return weight(p) * p.power(); }, source) /
                area;
     };

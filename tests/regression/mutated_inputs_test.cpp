@@ -188,6 +188,7 @@ class Inputs {
     dup2(err, STDOUT_FILENO);
     const rlimit seconds{kMostSeconds, kMostSeconds + 1};
     setrlimit(RLIMIT_CPU, &seconds);
+    std::signal(SIGINT, SIG_IGN); // once the program is done it is too late for Ctrl-C
     std::signal(SIGPROF, [](int) { std::raise(SIGINT); });
     const itimerval timer{{}, {0, 250'000}};
     setitimer(ITIMER_PROF, &timer, nullptr);

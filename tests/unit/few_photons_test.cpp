@@ -39,7 +39,7 @@ TEST(FewPhotons, HaveTheSumOfAllOnAverage) {
         SCOPED_TRACE(few);
         std::array<RunningStats, 3> found;
         for (int i = 0; i < 200'000; ++i) {
-            const Rgb sum = sum_over_few(map, kMiddle, 0.4f, few, power, light, rng);
+            const Rgb sum = sum_over_few(map, {kMiddle, 0.4f, few}, power, light, rng);
             for (std::size_t c = 0; c < 3; ++c) found[c].add(sum[static_cast<int>(c)]);
         }
         for (std::size_t c = 0; c < 3; ++c) expect_mean(found[c], expected[static_cast<int>(c)]);
@@ -53,7 +53,7 @@ TEST(FewPhotons, AreExactWhereLightIsWhatTheyAreDrawnBy) {
     Rng rng = make_rng(3);
     for (int i = 0; i < 100; ++i) {
         const Rgb sum = sum_over_few(
-            map, kMiddle, 0.4f, 8, power, [](const Photon& p) { return p.power(); }, rng);
+            map, {kMiddle, 0.4f, 8}, power, [](const Photon& p) { return p.power(); }, rng);
         EXPECT_NEAR(luminance(sum), expected, 1e-9 * expected);
     }
 }
@@ -61,8 +61,8 @@ TEST(FewPhotons, AreExactWhereLightIsWhatTheyAreDrawnBy) {
 TEST(FewPhotons, AreAllOfThemWhereThereAreNoMore) {
     const PhotonMap map = unequal_photons(10);
     Rng rng = make_rng(4);
-    EXPECT_EQ(sum_over_few(map, kMiddle, 0.4f, 10, power, light, rng), whole_sum(map));
-    EXPECT_EQ(sum_over_few(map, kMiddle, 0.0f, 10, power, light, rng), Rgb(0.0));
+    EXPECT_EQ(sum_over_few(map, {kMiddle, 0.4f, 10}, power, light, rng), whole_sum(map));
+    EXPECT_EQ(sum_over_few(map, {kMiddle, 0.0f, 10}, power, light, rng), Rgb(0.0));
 }
 
 } // namespace
