@@ -151,10 +151,12 @@ Rgb GatherRays::caustic(const Vertex& v, const Vec3& back, double besides, Sampl
     const float r = piloted.radius;
     double p = chance_of_caustic(v, back, query.region, r, besides);
     if (!(p > 0)) return Rgb(0.0);
-    const Surroundings around = maps_.caustic_surroundings->around(query.region, piloted);
+    const PilotSurroundings& surroundings = *maps_.caustic_surroundings;
     // By chance only where a look takes rays.
-    if (p < 1 && !maps_.patches->takes_rays() && !around.parted) p = 1;
-    if (!(around.area > 0) || (p < 1 && !(source.next() < p))) return Rgb(0.0);
+    if (p < 1 && !maps_.patches->takes_rays() && !surroundings.parted(query.region, piloted)) p = 1;
+    if (p < 1 && !(source.next() < p)) return Rgb(0.0);
+    const Surroundings around = surroundings.around(query.region, piloted);
+    if (!(around.area > 0)) return Rgb(0.0);
     const PhotonMap& photons = maps_.caustic->main_photons();
     const auto reflected = reflection(v, back);
     const double area = around.area * p;

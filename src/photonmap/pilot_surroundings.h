@@ -19,6 +19,8 @@ class PilotSurroundings {
     /// shrink by `shrink` (PhotonQuery).
     PilotSurroundings(const PhotonMap& pilots, const SurfacePatches& patches, int k, float max_radius, float shrink);
 
+    /// Whether only what the middle of a region sees counts there.
+    bool parted(const SurfaceRegion& region, const PilotedRegion& piloted) const;
     /// Around the region of a lookup that the pilot photons have sized. At an edge of the surface its own area is
     /// measured: the pilot photons near by lie farther from the edge than a lookup at it.
     Surroundings around(const SurfaceRegion& region, const PilotedRegion& piloted) const;
@@ -26,10 +28,11 @@ class PilotSurroundings {
     std::size_t bytes() const { return known_.size() * sizeof(known_[0]); }
 
   private:
-    /// Share of the disc in steps of 1/255, and two flags; 0: nobody asked yet.
+    /// Share of the disc in steps of 1/255, and a flag; 0: nobody asked yet.
     using Packed = std::uint16_t;
     Packed at(std::uint32_t pilot) const;
     Packed measure(const Photon& pilot) const;
+    Surroundings own(const SurfaceRegion& region, float r) const;
 
     const PhotonMap& pilots_;
     const SurfacePatches& patches_;

@@ -2,27 +2,36 @@
 #include "gather/gather_rays.h"
 #include "gather/visible_point.h"
 #include "photon_support.h"
+#include "sampling/paths/walk.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>
+
+#include <array>
 
 namespace keyhole {
 namespace {
 
 using namespace photon_test;
 
-TEST(CausticLookup, IsRightOnAverageWhereItIsDoneByChance) {
-    const Rectangle floor{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}};
+const Rectangle kFloor{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}};
+
+/// That floor, so finely cut that areas take rays, with a wall on it, seen from above.
+std::unique_ptr<Scene> fine_floor() {
     SceneDescription d;
-    d.shapes.push_back(shape_of(floor, 300));
+    d.shapes.push_back(shape_of(kFloor, 300));
     d.shapes.push_back(shape_of({{0.5f, 0, 0.4f}, {0, 0.3f, 0}, {0, 0, 0.6f}}));
     for (Shape& shape : d.shapes) shape.material = make_diffuse(Rgb(0.5));
     d.camera = {.origin = {0.5f, 2, 0.5f}, .right = {1, 0, 0}, .up = {0, 0, -1}, .forward = {0, -1, 0}};
     d.window.width = d.window.height = 8;
-    const auto scene = std::make_unique<Scene>(std::move(d));
+    return std::make_unique<Scene>(std::move(d));
+}
+
+TEST(CausticLookup, IsRightOnAverageWhereItIsDoneByChance) {
+    const auto scene = fine_floor();
     const SurfacePatches patches(*scene);
     Rng rng = make_rng(1);
-    const PilotedMap map({.pilots = throw_photons(floor, 500, rng), .main_photons = throw_photons(floor, 2000, rng)});
+    const PilotedMap map({.pilots = throw_photons(kFloor, 500, rng), .main_photons = throw_photons(kFloor, 2000, rng)});
     const PilotSurroundings surroundings(map.pilots(), patches, 40, 0.3f, 1);
     const GatherRays rays(*scene, {.caustic = &map, .caustic_surroundings = &surroundings, .patches = &patches},
                           {.nearest = 40, .max_radius = 0.3f, .caustic_radius = 0.3f}, 5);
@@ -38,6 +47,40 @@ TEST(CausticLookup, IsRightOnAverageWhereItIsDoneByChance) {
             EXPECT_TRUE(test::has_mean(found, whole));
             EXPECT_GT(found.variance(), 0) << "it was always looked at";
         }
+    }
+}
+
+/// Irradiance of 20 kW/m^2 everywhere, by photons of 1 W. Close to the wall a part of the region is out of sight, and
+/// few photons are asked for the rest.
+TEST(CausticLookup, TellsWhatFallsOnTheFloorBesideAWall) {
+    const auto scene = fine_floor();
+    const SurfacePatches patches(*scene);
+    const std::array places{0.2512f, 0.7512f, 0.5112f, 0.5312f};
+    std::array<RunningStats, places.size()> found;
+    for (std::uint64_t i = 0; i < 40; ++i) {
+        Rng rng = make_rng(i);
+        const PilotedMap map(
+            {.pilots = throw_photons(kFloor, 5000, rng), .main_photons = throw_photons(kFloor, 20'000, rng)});
+        const PilotSurroundings surroundings(map.pilots(), patches, 200, 0.3f, 1);
+        const GatherRays rays(*scene, {.caustic = &map, .caustic_surroundings = &surroundings, .patches = &patches},
+                              {.nearest = 200, .max_radius = 0.3f, .caustic_radius = 0.3f}, 5);
+        for (std::size_t k = 0; k < places.size(); ++k) {
+            RunningStats of_map;
+            for (float z = 0.5007f; z < 0.95f; z += 0.02f) {
+                SurfacePoint above;
+                above.site = Site::point;
+                above.p = {places[k], 1, z};
+                const auto seen = next_vertex(*scene, above, {0, -1, 0});
+                of_map.add(luminance(rays.caustic(seen.value(), {0, 1, 0}, 0, rng)));
+            }
+            found[k].add(of_map.mean());
+        }
+    }
+    const double expected = 0.5 / kPi * 20'000;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        SCOPED_TRACE(places[k]);
+        EXPECT_NEAR(found[k].mean(), expected, 0.04 * expected + 3 * found[k].standard_error());
+        EXPECT_LT(found[k].standard_error(), 0.02 * expected);
     }
 }
 

@@ -59,14 +59,13 @@ PassGather::PassGather(const SamplerContext& c, const RenderPlan& plan, std::int
         report_lookups(*irradiance_, photons_in_region, stats);
         direct_irradiance_.emplace(c.scene, irradiance_->places(), DirectIrradianceOptions{.seed = seed}, context);
     }
-    if (plan.photons)
+    if (plan.photons) {
         caustic_surroundings_.emplace(caustic_.pilots(), c.patches, static_cast<int>(s.nearest), radii.caustic,
                                       radii.shrink);
-    if (plan.photons)
         stats.photon_bytes = std::max<std::uint64_t>(
-            stats.photon_bytes, global_.bytes() + caustic_.bytes() +
-                                    (irradiance_ ? irradiance_->bytes() + direct_irradiance_->bytes() : 0) +
-                                    (caustic_surroundings_ ? caustic_surroundings_->bytes() : 0));
+            stats.photon_bytes, global_.bytes() + caustic_.bytes() + caustic_surroundings_->bytes() +
+                                    (irradiance_ ? irradiance_->bytes() + direct_irradiance_->bytes() : 0));
+    }
     rays_.emplace(c.scene,
                   GatherMaps{.global = null_if_empty(global_),
                              .irradiance = irradiance_ ? &*irradiance_ : nullptr,

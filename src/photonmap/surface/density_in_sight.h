@@ -17,17 +17,16 @@ auto weight_in_sight(const Scene& scene, const SurfaceRegion& region, float r, c
 
 /// What a density estimate over a region divides by.
 struct Surroundings {
-    double area = 0;         ///< of the surface in the region, or of what of it the middle sees [m^2]
-    bool obstructed = false; ///< something stands on the region that could hide photons of the other side
-    bool parted = false;     ///< only photons in sight of the middle count, and `area` is what it sees
+    double area = 0;     ///< of the surface in the region, or of what of it the middle sees [m^2]
+    bool parted = false; ///< only photons in sight of the middle count, and `area` is what it sees
 };
 
-/// Those of a region of radius `r`.
-inline Surroundings surroundings_of(const SurfacePatches& patches, const SurfaceRegion& region, float r) {
-    const bool obstructed = patches.obstructed(region, r);
+/// Those of a region of radius `r`; `obstructed`: what `patches` say of it.
+inline Surroundings surroundings_of(const SurfacePatches& patches, const SurfaceRegion& region, float r,
+                                    bool obstructed) {
     // Where nothing is in sight the middle lies in a crevice, and the test says nothing.
     const double seen = obstructed ? patches.area_in_sight(region, r, sight_lift(r)) : 0;
-    return {seen > 0 ? seen : patches.area(region, r), obstructed, seen > 0};
+    return {seen > 0 ? seen : patches.area(region, r), seen > 0};
 }
 
 /// estimate_density() over a region of radius `r` from what its middle sees, where something stands on it that could
@@ -35,11 +34,12 @@ inline Surroundings surroundings_of(const SurfacePatches& patches, const Surface
 template <class Weight>
 DensityEstimate estimate_density_in_sight(const Scene& scene, const PhotonMap& map, const SurfaceRegion& region,
                                           float r, const SurfacePatches& patches, const Weight& weight) {
-    const Surroundings around = surroundings_of(patches, region, r);
+    const bool obstructed = patches.obstructed(region, r);
+    const Surroundings around = surroundings_of(patches, region, r, obstructed);
     DensityEstimate e = around.parted
                             ? estimate_density(map, region, r, around.area, weight_in_sight(scene, region, r, weight))
                             : estimate_density(map, region, r, around.area, weight);
-    e.obstructed = around.obstructed;
+    e.obstructed = obstructed;
     return e;
 }
 

@@ -99,7 +99,7 @@ double gain_by_guides(const Scene& scene, const LightGuides& guides, const std::
         sum += weight * std::log(found->second.free / found->second.led);
         weights += weight;
     }
-    return weights > 0 ? std::exp(sum / weights) : 1;
+    return weights > 0 && std::isfinite(sum) ? std::exp(sum / weights) : 1;
 }
 
 } // namespace keyhole
