@@ -35,7 +35,7 @@ TEST(FewPhotons, HaveTheSumOfAllOnAverage) {
     const PhotonMap map = unequal_photons(300);
     const Rgb expected = whole_sum(map);
     Rng rng = make_rng(2);
-    for (const int few : {1, 4, 16}) {
+    for (const int few : {1, 4, 16, 64}) {
         SCOPED_TRACE(few);
         std::array<RunningStats, 3> found;
         for (int i = 0; i < 200'000; ++i) {
