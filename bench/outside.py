@@ -2,14 +2,15 @@
 """Every method, and what `auto` makes of the time, on scenes that other people made.
 
 usage: bench/outside.py [--keyhole build/keyhole] [--shared ../shared] [--own] [--scenes coffee,...] [--times 5,15,60]
-                        [--methods auto,path,...] [--best N] [--seed 1] [--reference-seconds 240] [-j 2] [--out outside]
-                        [--at-most 1.25]
+                        [--methods auto,path,...] [--best N] [--seed 1] [--denoise off] [--reference-seconds 240] [-j 2]
+                        [--out outside] [--at-most 1.25]
 
 Renders each scene at the size of its given reference, one thread a render, by `--cpu-time`. The error is the trimmed relative
 squared error free of the references' own noise (`keyhole diff`, cross_trim), against two independent long renders of our own,
 which stay in OUT/references; how far their blocks are from the reference that was given stands in OUT/references.json. Results
 stay in OUT/results.json, so that a run that was interrupted goes on, and more scenes, times or methods add to it. --best N
 leaves out, at all times but the shortest, methods that were not among the N best of the scene at the time before.
+--denoise exr measures pictures as the filter at the end leaves them.
 --own takes the scenes of this project instead, those where methods fail among them. With --at-most the status is 1 if auto
 has more than so many times the error of the best method anywhere.
 The table has a row for each scene and time; the last columns are the best method by name and auto over it.
@@ -55,11 +56,12 @@ def scene_file(shared, name):
     return f"{shared}/scenes/{name}.pbrt" if name.startswith("mps/") else f"{shared}/scenes/{name}/scene.pbrt"
 
 
-def render(args, name, picture, seconds, method, seed):
+def render(args, name, picture, seconds, method, seed, denoise="off"):
     """Renders; returns the CPU seconds that the process took and its statistics. Runs in a thread of its own."""
     stats = f"{picture}.json"
     command = [args.keyhole, "render", scene_file(args.shared, name), "-q", "-t", "1", "--no-png", "-o", picture, "--stats", stats,
-               "--resolution", SCENES[name][0], "--method", method, "--seed", str(seed), "--cpu-time", str(seconds)]
+               "--resolution", SCENES[name][0], "--method", method, "--seed", str(seed), "--cpu-time", str(seconds),
+               "--denoise", denoise]
     child = subprocess.Popen(command)
     usage = os.wait4(child.pid, 0)
     if usage[1] != 0:
@@ -110,7 +112,7 @@ def make_references(args, folder, pool):
 def measure(args, results, folder, name, seconds, method):
     picture = str(folder / f"{name.replace('/', '-')}-{seconds:g}-{method}.exr")
     start = time.monotonic()
-    used, told = render(args, name, picture, seconds, method, args.seed)
+    used, told = render(args, name, picture, seconds, method, args.seed, args.denoise)
     e = diff(args, picture, *references(args, folder.parent / "references", name))
     results.add(f"{name} {seconds:g} {method}",
                 {"error": e["cross_trim"], "ratio": e["ratio"], "block": e["block"], "bad": e["bad"], "seconds": used,
@@ -156,6 +158,7 @@ def main():
     parser.add_argument("--methods", default=METHODS)
     parser.add_argument("--best", type=int, default=0)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--denoise", default="off", help="off, or exr: of pictures that were filtered")
     parser.add_argument("--reference-seconds", type=float, default=240)
     parser.add_argument("-j", "--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--out", default="outside")

@@ -58,11 +58,11 @@ class KeyholeEngine(bpy.types.RenderEngine):
         layer = depsgraph.view_layer
         if any(passes.mattes(layer)):
             command += ["-D", "cryptomatte=true"]
-        passes.add_all(self, layer)
+        passes.add_all(self, depsgraph.scene, layer)
         run = Run(command)
         self.follow(run, live, layer, chosen.time if chosen.effort == "TIME" else None, shown)
         live.close()
-        self.finish(run, layer, output, shown)
+        self.finish(run, depsgraph.scene, layer, output, shown)
 
     def follow(self, run, live, layer, seconds, shown):
         """Until the program has ended: progress, pictures, cancelling."""
@@ -82,12 +82,12 @@ class KeyholeEngine(bpy.types.RenderEngine):
                 passes.put_picture(self, layer, picture, shown)
             time.sleep(POLL)
 
-    def finish(self, run, layer, output, shown):
+    def finish(self, run, scene, layer, output, shown):
         code = run.finish()
         for line in run.warnings():
             self.warn(line)
         if os.path.exists(output):
-            passes.put(self, layer, exr.read(output), passes.manifests(output, layer), shown)
+            passes.put(self, scene, layer, exr.read(output), passes.manifests(output, layer), shown)
         elif run.interrupted is None:
             self.fail("\n".join(run.errors()) or f"keyhole ended with code {code}")
 

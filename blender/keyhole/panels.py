@@ -34,6 +34,7 @@ class KEYHOLE_PT_effort(KeyholePanel, bpy.types.Panel):
         column.prop(chosen, "method")
         column.row().prop(chosen, "effort", expand=True)
         column.prop(chosen, {"TIME": "time", "QUALITY": "quality", "ERROR": "target_error"}[chosen.effort])
+        column.prop(chosen, "denoise")
         column.prop(chosen, "seed")
 
 
@@ -72,17 +73,18 @@ class KEYHOLE_PT_user_paths(KeyholePanel, bpy.types.Panel):
             column.label(text="Custom properties: bounces, weight, beta", icon="PROPERTIES")
 
 
-class KEYHOLE_PT_mattes(KeyholePanel, bpy.types.Panel):
-    bl_label = "Cryptomatte"
+class KEYHOLE_PT_passes(KeyholePanel, bpy.types.Panel):
+    bl_label = "Passes"
     bl_context = "view_layer"
 
     def draw(self, context):
         column = self.column()
-        column.prop(context.view_layer, "use_pass_cryptomatte_object", text="Objects")
-        column.prop(context.view_layer, "use_pass_cryptomatte_material", text="Materials")
+        column.prop(context.scene.keyhole, "noise_passes")
+        column.prop(context.view_layer, "use_pass_cryptomatte_object", text="Cryptomatte of objects")
+        column.prop(context.view_layer, "use_pass_cryptomatte_material", text="of materials")
 
 
-CLASSES = KEYHOLE_PT_effort, KEYHOLE_PT_resources, KEYHOLE_PT_user_paths, KEYHOLE_PT_mattes
+CLASSES = KEYHOLE_PT_effort, KEYHOLE_PT_resources, KEYHOLE_PT_user_paths, KEYHOLE_PT_passes
 
 
 def shared_panels():

@@ -15,6 +15,9 @@ PASSES = [
     ("Indirect", "RGB", "COLOR", ["indirect.R", "indirect.G", "indirect.B"]),
     ("Caustics", "RGB", "COLOR", ["caustic.R", "caustic.G", "caustic.B"]),
 ]
+UNFILTERED = [("Unfiltered", "RGB", "COLOR", ["unfiltered.R", "unfiltered.G", "unfiltered.B"])]
+NOISE = [(f"Noise {name}", letters, kind, [f"noise.{channel}" for channel in channels])
+         for name, letters, kind, channels in PASSES]
 MATTES = {"CryptoObject": "use_pass_cryptomatte_object", "CryptoMaterial": "use_pass_cryptomatte_material"}
 MATTE_LAYERS = 3  # of two names each
 
@@ -28,20 +31,21 @@ def mattes(layer):
                 yield name, "rgba", "COLOR", [f"{name}.{letter}" for letter in "RGBA"]
 
 
-def of_layer(layer):
-    return PASSES + list(mattes(layer))
+def of_layer(scene, layer):
+    chosen = scene.keyhole
+    return PASSES + UNFILTERED * chosen.denoise + NOISE * chosen.noise_passes + list(mattes(layer))
 
 
 def register_all(engine, scene, layer):
     """Tells Blender's compositor what a render has."""
     engine.register_pass(scene, layer, "Combined", 4, "RGBA", "COLOR")
-    for name, letters, kind, _ in of_layer(layer):
+    for name, letters, kind, _ in of_layer(scene, layer):
         engine.register_pass(scene, layer, name, len(letters), letters, kind)
 
 
-def add_all(engine, layer):
+def add_all(engine, scene, layer):
     """Makes room for them; Blender makes it for its own passes where they are asked for."""
-    for name, letters, _, _ in of_layer(layer):
+    for name, letters, _, _ in of_layer(scene, layer):
         engine.add_pass(name, len(letters), letters, layer=layer.name)
 
 
@@ -71,11 +75,11 @@ def put_picture(engine, layer, channels, file):
     engine.end_result(result)
 
 
-def put(engine, layer, channels, attributes, file):
+def put(engine, scene, layer, channels, attributes, file):
     """Hands all passes of a view layer to Blender, in the same way: `channels` maps those of Keyhole's EXR files to
     arrays (height, width). `attributes` are for the files that Blender writes."""
     named = {f"{layer.name}.Combined.{letter}": values for letter, values in combined(channels).items()}
-    for name, letters, _, names in of_layer(layer):
+    for name, letters, _, names in of_layer(scene, layer):
         if names[0] in channels:
             named.update({f"{layer.name}.{name}.{letter}": channels[c] for letter, c in zip(letters, names)})
     exr.write(file, named)

@@ -34,6 +34,10 @@ class KeyholeSettings(bpy.types.PropertyGroup):
             description="For photons, in MiB; 0: as Keyhole chooses"),
         "seed": IntProperty(name="Seed", default=1, min=0),
         "threads": IntProperty(name="Threads", default=0, min=0, max=4096, description="0: one for each core"),
+        "denoise": BoolProperty(name="Denoise", default=True,
+            description="Filter what samples of pixels leave of grain in the pass Combined; Unfiltered stays as it was"),
+        "noise_passes": BoolProperty(name="Noise", default=False,
+            description="What two halves of the samples differ in, as passes"),
         "user_paths": BoolProperty(name="User paths", default=True,
             description="Use the curves of the collection \"Keyhole Paths\""),
         "options": StringProperty(name="More options",
@@ -52,6 +56,9 @@ def arguments(settings):
         args += ["--target-error", repr(round(settings.target_error, 6))]
     if settings.photon_memory:
         args += ["--photon-memory", f"{settings.photon_memory}MiB"]
+    args += ["--denoise", "exr" if settings.denoise else "off"]
+    if settings.noise_passes:
+        args += ["-D", "noise_layers=true"]
     return args + settings.options.split()
 
 

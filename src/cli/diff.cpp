@@ -1,5 +1,5 @@
 // keyhole diff: error measures as JSON.
-#include "cli/beauty.h"
+#include "cli/pictures/beauty.h"
 #include "cli/command.h"
 #include "film/errors/image_error.h"
 

@@ -1,6 +1,7 @@
 // keyhole merge: several pictures of one scene made into one.
 #include "cli/command.h"
-#include "cli/outputs.h"
+#include "cli/pictures/denoising.h"
+#include "cli/pictures/outputs.h"
 #include "film/files/exr.h"
 #include "film/join.h"
 
@@ -23,7 +24,10 @@ int merge(MergeOptions o) {
     for (const std::string& path : o.inputs) pictures.push_back({path, read_exr(path)});
     Picture joined = join_pictures(pictures);
     joined.metadata["command"] = o.command_line;
-    o.outputs.write(joined, {});
+    const auto pixels = static_cast<std::size_t>(joined.width) * static_cast<std::size_t>(joined.height);
+    RenderStats stats;
+    o.outputs.write(joined, Denoising(o.outputs.denoise, !o.outputs.png.empty(), pixels, 0).apply(joined, false, stats),
+                    {});
     const auto units = joined.metadata.find("units");
     if (!joined.sums.empty() && units != joined.metadata.end())
         fmt::print(stderr, "{}: a share, {} of {}\n", o.outputs.exr, units->second, joined.metadata["units of all"]);

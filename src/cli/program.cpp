@@ -40,7 +40,7 @@ int fail(int code, std::string message) {
 
 int run(int argc, char** argv, ProcessGroup* team) {
     CLI::App app("Metropolis photon sampling: a physically based renderer.", "keyhole");
-    app.set_version_flag("--version", "keyhole " KEYHOLE_VERSION);
+    app.set_version_flag("--version", "keyhole " KEYHOLE_VERSION "\n" KEYHOLE_BUILD);
     app.require_subcommand(1);
     Action action;
     add_render_command(app, action, joined(argc, argv), team);

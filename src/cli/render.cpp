@@ -1,7 +1,8 @@
 // keyhole render: from a scene file to pictures.
 #include "cli/checkpoints.h"
 #include "cli/command.h"
-#include "cli/outputs.h"
+#include "cli/pictures/denoising.h"
+#include "cli/pictures/outputs.h"
 #include "cli/process_group.h"
 #include "cli/progress/interrupt.h"
 #include "cli/progress/live_view.h"
@@ -13,6 +14,7 @@
 #include "cli/words/stats_json.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "film/errors/sample_noise.h"
 #include "film/files/atomic_file.h"
 #include "methods/choice/effort.h"
 #include "methods/choice/first_look.h"
@@ -41,6 +43,7 @@ namespace {
 struct RenderOptions {
     std::string command_line, scene, resolution, user_paths;
     Outputs outputs;
+    Denoising denoising;
     bool no_png = false, quiet = false, verbose = false, strict = false, skip_bad_paths = false;
     std::vector<std::string> overrides; ///< key=value, in the order of the command line
     std::string save_map, load_map;
@@ -108,15 +111,20 @@ void write_unfinished(const Picture& picture, const RenderOptions& options) {
     copy.metadata["scene"] = options.scene;
     copy.metadata["command"] = options.command_line;
     copy.metadata["complete"] = "no";
-    options.outputs.write(copy, "{\n  \"complete\": false\n}\n");
+    RenderStats stats; // of a filter that nobody waits for
+    options.outputs.write(copy, options.denoising.apply(copy, true, stats), "{\n  \"complete\": false\n}\n");
 }
 
 /// From here on time counts that somebody has set: that a scene takes long to read is not the render's affair.
-void start_clock(const RenderOptions& options, StopToken& stop) {
-    if (options.timeout)
+void start_clock(RenderOptions& options, StopToken& stop) {
+    if (options.timeout) {
+        const double seconds = *options.timeout - options.denoising.reserve_of_time(*options.timeout);
         stop.set_deadline(StopToken::Clock::now() + std::chrono::duration_cast<StopToken::Clock::duration>(
-                                                        std::chrono::duration<double>(*options.timeout)));
-    if (options.cpu_time) stop.set_cpu_limit(cpu_seconds() + *options.cpu_time);
+                                                        std::chrono::duration<double>(seconds)));
+    }
+    if (options.cpu_time)
+        stop.set_cpu_limit(cpu_seconds() + *options.cpu_time -
+                           options.denoising.reserve_of_cpu_time(*options.cpu_time));
 }
 
 RenderResult render_scene(LoadedScene& loaded, RenderOptions& options, std::vector<std::string>& warnings,
@@ -129,8 +137,11 @@ RenderResult render_scene(LoadedScene& loaded, RenderOptions& options, std::vect
         if (options.skip_bad_paths) loaded.user_paths = usable_paths(scene, std::move(loaded.user_paths), warnings);
         const std::chrono::duration<double> wall = StopToken::Clock::now() - options.begun;
         const StageStats loading{&stages::loading, wall.count(), cpu_seconds(), 0};
-        start_clock(options, stop);
         const ImageWindow& window = scene.camera().window();
+        options.denoising = {loaded.settings.denoise, !options.outputs.png.empty(),
+                             static_cast<std::size_t>(window.width) * static_cast<std::size_t>(window.height),
+                             options.threads};
+        start_clock(options, stop);
         const std::uint64_t hash = scene_hash(scene);
         const Picture expected{window.width, window.height, {}, render_identity(loaded.settings, hash), {}};
         WorkPartition share = options.checkpoints.share(options.outputs.exr, expected, loaded.settings, options.team);
@@ -157,19 +168,9 @@ RenderResult render_scene(LoadedScene& loaded, RenderOptions& options, std::vect
     return result;
 }
 
-int run(RenderOptions options) {
-    StopToken stop;
-    if (!options.writes()) options.quiet = true;
-    if (options.outputs.exr.empty()) options.outputs.exr = default_exr(options.scene);
-    if (options.no_png)
-        options.outputs.png.clear();
-    else if (options.outputs.png.empty())
-        options.outputs.png = default_png(options.outputs.exr);
-    if (options.writes()) options.outputs.check();
-    if (const std::string file = options.checkpoints.file(options.outputs.exr); !file.empty()) check_writable(file);
-
-    const InterruptHandler interrupts(stop);
-    std::vector<std::string> load_warnings;
+/// The scene with the settings that the options ask for.
+/// @throws InputError for a scene, settings and options that don't go together.
+LoadedScene load_scene(const RenderOptions& options, std::vector<std::string>& warnings) {
     std::set<std::string> named = named_settings(options.overrides);
     // An error to reach asks for as many passes as that takes, unless somebody says how many.
     std::vector<std::string> overrides = options.overrides;
@@ -178,7 +179,7 @@ int run(RenderOptions options) {
         overrides.insert(overrides.begin(), "passes=0");
         named.insert("passes"); // an effort has no say in it
     }
-    LoadedScene loaded = load(options.scene, overrides, &load_warnings);
+    LoadedScene loaded = load(options.scene, overrides, &warnings);
     if (!options.quality.empty()) {
         const auto quality = choice_of<Quality>(options.quality);
         if (!quality) throw InputError("found quality '" + options.quality + "', expected draft, good or final");
@@ -192,9 +193,41 @@ int run(RenderOptions options) {
                          "processes know beforehand");
     loaded.settings.save_map = options.save_map;
     loaded.settings.load_map = options.load_map;
-    options.outputs.exposure = loaded.settings.exposure.value;
     if (!options.user_paths.empty()) loaded.user_paths = load_user_paths(options.user_paths);
     if (!options.resolution.empty()) set_resolution(loaded.description.window, options.resolution);
+    return loaded;
+}
+
+/// Filters the picture, and writes what the options ask for.
+void write(RenderResult& result, const RenderOptions& options, bool interrupted) {
+    if (const auto noise = sample_noise(result.picture)) result.stats.values["noise of samples"] = *noise;
+    std::optional<Image> filtered = options.denoising.apply(result.picture, interrupted, result.stats);
+    result.picture.metadata.merge(picture_metadata(options.command_line, options.scene, result.stats));
+    const int width = result.picture.width, height = result.picture.height;
+    options.outputs.write(std::move(result.picture), std::move(filtered), json_text(stats_json(result.stats)) + "\n");
+    if (options.verbose) print_report(result.stats);
+    if (!options.quiet)
+        fmt::print(stderr, "{}: {} x {} pixels{}\n", options.outputs.exr, width, height,
+                   result.stats.complete ? "" : ", stopped early");
+}
+
+int run(RenderOptions options) {
+    StopToken stop;
+    if (!options.writes()) options.quiet = true;
+    if (options.outputs.exr.empty()) options.outputs.exr = default_exr(options.scene);
+    if (options.no_png)
+        options.outputs.png.clear();
+    else if (options.outputs.png.empty())
+        options.outputs.png = default_png(options.outputs.exr);
+    if (options.writes()) options.outputs.check();
+    if (const std::string file = options.checkpoints.file(options.outputs.exr); !file.empty()) check_writable(file);
+
+    const InterruptHandler interrupts(stop);
+    std::vector<std::string> load_warnings;
+    LoadedScene loaded = load_scene(options, load_warnings);
+    options.outputs.exposure = loaded.settings.exposure.value;
+    options.outputs.noise_layers = loaded.settings.noise_layers;
+    options.outputs.denoise = loaded.settings.denoise;
     RenderResult result = render_scene(loaded, options, load_warnings, stop);
     if (!options.writes()) return stop.requested() ? kInterrupted : kSuccess;
     result.stats.warnings.insert(result.stats.warnings.begin(), load_warnings.begin(), load_warnings.end());
@@ -204,12 +237,7 @@ int run(RenderOptions options) {
         fmt::print(stderr, "keyhole: stopped before there was a unit of work to keep: nothing was written\n");
         return kInterrupted;
     }
-    result.picture.metadata.merge(picture_metadata(options.command_line, options.scene, result.stats));
-    options.outputs.write(result.picture, json_text(stats_json(result.stats)) + "\n");
-    if (options.verbose) print_report(result.stats);
-    if (!options.quiet)
-        fmt::print(stderr, "{}: {} x {} pixels{}\n", options.outputs.exr, result.picture.width, result.picture.height,
-                   result.stats.complete ? "" : ", stopped early");
+    write(result, options, stop.requested());
     if (stop.requested()) return kInterrupted;
     return options.strict && !result.stats.warnings.empty() ? kNotTrusted : kSuccess;
 }
@@ -253,7 +281,7 @@ void add_render_command(CLI::App& app, Action& action, const std::string& comman
                         "user paths, instead of the scene's, for " + names_of(&Method::follows_user_paths));
     command->add_flag("--skip-bad-paths", o->skip_bad_paths,
                       "leave out user paths that don't work in the scene, with a warning");
-    for (const char* key : {"method", "spp", "mutations", "photons", "passes", "seed"})
+    for (const char* key : {"method", "spp", "mutations", "photons", "passes", "seed", "denoise"})
         command->add_option_function<std::string>(
             std::string("--") + key,
             [o, key](const std::string& value) { o->overrides.push_back(std::string(key) + "=" + value); },

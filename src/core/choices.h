@@ -56,4 +56,12 @@ constexpr auto words_of(Failures) {
     return std::to_array<std::string_view>({"exclude", "reject", "exclude_large", "delay"});
 }
 
+/// What is filtered of the picture, once it is rendered.
+enum class Denoise {
+    png, ///< what is looked at
+    exr, ///< the EXR's R, G, B, too
+    off, ///< nothing
+};
+constexpr auto words_of(Denoise) { return std::to_array<std::string_view>({"png", "exr", "off"}); }
+
 } // namespace keyhole

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 namespace keyhole {
 
@@ -34,25 +35,26 @@ class FixedSum {
 };
 
 /// `N` sums (after Demmel and Nguyen 2015, "Parallel reproducible summation"). The line of exponents is cut into bins
-/// of 32 bits at places fixed once and for all, and every term into its parts in them; parts in the bin of the largest
-/// term and in the next lower one are added up as integers, what lies below is dropped. So any order of terms, and any
-/// grouping into sums that are merged later, gives the same bits; and what is dropped of a term is below 2^-32 of the
-/// largest. Terms must be finite; those below 2^-960 in size count as 0. Up to 2^31 terms.
+/// of `Bits` bits at places fixed once and for all, and every term into its parts in them; parts in the bin of the
+/// largest term and in the next lower one are added up as integers, what lies below is dropped. So any order of terms,
+/// and any grouping into sums that are merged later, gives the same bits; and what is dropped of a term is below
+/// 2^-Bits of the largest. Terms must be finite; those below 2^-960 in size count as 0. As many terms as an `Integer`
+/// has bits beyond `Bits` and the sign: 2^31 of the default. More of one sign may wrap around.
 ///
 /// Plain memory, that may be written to a file and read again. Not thread-safe.
-template <std::size_t N> class ReproducibleSums {
+template <std::size_t N, class Integer = std::int64_t, int Bits = 32> class ReproducibleSums {
   public:
     ReproducibleSums() { bins_.fill(kLowest); }
 
     /// Adds `x` to sum `i`.
     void add(std::size_t i, double x) {
         const int exponent = static_cast<int>(std::bit_cast<std::uint64_t>(x) >> 52U & 0x7FFU) - 1023;
-        if (exponent < kBits * kLowest) return;
-        raise(i, exponent >> 5);
-        const double scaled = x * power_of_two(-kBits * bins_[i]);
-        const auto high = static_cast<std::int64_t>(scaled);
-        high_[i] += high;
-        low_[i] += static_cast<std::int64_t>((scaled - static_cast<double>(high)) * 0x1p32);
+        if (exponent < Bits * kLowest) return;
+        raise(i, (exponent - Bits * kLowest) / Bits + kLowest);
+        const double scaled = x * power_of_two(-Bits * bins_[i]);
+        const auto high = static_cast<Integer>(scaled);
+        add_to(high_[i], high);
+        add_to(low_[i], static_cast<Integer>((scaled - static_cast<double>(high)) * power_of_two(Bits)));
     }
 
     /// Adds the terms of another sum.
@@ -60,25 +62,31 @@ template <std::size_t N> class ReproducibleSums {
         for (std::size_t i = 0; i < N; ++i) {
             raise(i, o.bins_[i]);
             if (o.bins_[i] == bins_[i]) {
-                high_[i] += o.high_[i];
-                low_[i] += o.low_[i];
+                add_to(high_[i], o.high_[i]);
+                add_to(low_[i], o.low_[i]);
             } else if (o.bins_[i] == bins_[i] - 1) {
-                low_[i] += o.high_[i];
+                add_to(low_[i], o.high_[i]);
             }
         }
     }
 
     double value(std::size_t i) const {
-        return (static_cast<double>(high_[i]) + static_cast<double>(low_[i]) * 0x1p-32) *
-               power_of_two(kBits * bins_[i]);
+        return (static_cast<double>(high_[i]) + static_cast<double>(low_[i]) * power_of_two(-Bits)) *
+               power_of_two(Bits * bins_[i]);
     }
 
   private:
-    static constexpr int kBits = 32; // of a bin; bin b holds what is a multiple of 2^(32 b)
-    static constexpr std::int8_t kLowest = -30;
+    static constexpr std::int8_t kLowest = -960 / Bits; // bin b holds what is a multiple of 2^(Bits b)
+    static_assert(960 % Bits == 0);
 
     static double power_of_two(int exponent) {
         return std::bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52U);
+    }
+
+    /// Wraps around, as signed addition must not.
+    static void add_to(Integer& sum, Integer term) {
+        using Unsigned = std::make_unsigned_t<Integer>;
+        sum = static_cast<Integer>(static_cast<Unsigned>(sum) + static_cast<Unsigned>(term));
     }
 
     /// Makes room for terms in `bin`.
@@ -89,7 +97,7 @@ template <std::size_t N> class ReproducibleSums {
         bins_[i] = static_cast<std::int8_t>(bin);
     }
 
-    std::array<std::int64_t, N> high_{}, low_{};    // in units of 2^(32 bin) and 2^(32 (bin - 1))
+    std::array<Integer, N> high_{}, low_{};         // in units of 2^(Bits bin) and 2^(Bits (bin - 1))
     std::array<std::int8_t, (N + 7) / 8 * 8> bins_; // a multiple of 8 bytes, so that there is no padding
 };
 

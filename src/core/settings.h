@@ -67,6 +67,8 @@ struct Settings {
     bool find_openings = true;
     std::int64_t passes = 1;
     double target_error = 0;
+    Denoise denoise = Denoise::png;
+    bool noise_layers = false;
     bool cryptomatte = false;
     std::int64_t mask_rays = 64;
     std::string save_map, load_map; ///< files of photons; empty: none. Not in the table: they belong to a run
@@ -122,6 +124,9 @@ template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
     visit("equalise", s.equalise, "photons for dark pixels as for bright ones: evens out relative errors");
     visit("passes", s.passes, I{0}, I{1} << 40, "passes of photons and gather; 0: until time or target_error is up");
     visit("target_error", s.target_error, 0.0, 1.0, "relative error at which passes end; 0: none");
+    visit("denoise", s.denoise,
+          "filter what samples of pixels leave of noise: of the PNG only, of the EXR too, or not");
+    visit("noise_layers", s.noise_layers, "write what two halves of the samples differ in, as layers `noise.NAME`");
     visit("cryptomatte", s.cryptomatte, "ids of objects and materials as layers, by the Cryptomatte specification");
     visit("mask_rays", s.mask_rays, I{1}, I{1} << 20,
           "rays per pixel for these, and for the alpha of a transparent film");

@@ -10,7 +10,8 @@ Picture black(int width, int height) {
     Picture picture;
     picture.width = width;
     picture.height = height;
-    for (const char* layer : {"beauty", "direct", "indirect", "caustic"})
+    for (const char* layer :
+         {"beauty", "direct", "indirect", "caustic", "noise.direct", "noise.indirect", "noise.caustic"})
         picture.layers[layer] = Image(width, height, 3);
     return picture;
 }

@@ -24,7 +24,7 @@ std::size_t Film::index(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
 }
 
-void Film::add(int x, int y, const PixelSample& sample) {
+void Film::add(int x, int y, const PixelSample& sample, Half half) {
     const Channels values = channels(sample);
     bool good = true;
     auto value = values.begin();
@@ -37,17 +37,12 @@ void Film::add(int x, int y, const PixelSample& sample) {
         value = end;
     }
     if (!good) return;
-    Pixel& p = pixels_[index(x, y)];
-    for (std::size_t c = 0; c < kChannels; ++c) p.sums.add(c, values[c]);
-    ++p.samples;
+    pixels_[index(x, y)].add(values, half);
 }
 
 void Film::merge(const Film& other) {
     assert(other.pixels_.size() == pixels_.size());
-    for (std::size_t p = 0; p < pixels_.size(); ++p) {
-        pixels_[p].sums.merge(other.pixels_[p].sums);
-        pixels_[p].samples += other.pixels_[p].samples;
-    }
+    for (std::size_t p = 0; p < pixels_.size(); ++p) pixels_[p].merge(other.pixels_[p]);
     for (std::size_t i = 0; i < kLayers.size(); ++i) dropped_[i] += other.dropped(i);
 }
 
@@ -65,39 +60,38 @@ Picture Film::to_picture() const {
     picture.width = width_;
     picture.height = height_;
     Image& beauty = picture.layers["beauty"] = Image(width_, height_, 3);
-    std::array<Image*, kLayers.size()> images{};
-    for (std::size_t i = 0; i < kLayers.size(); ++i)
-        images[i] = &(picture.layers[kLayers[i].name] = Image(width_, height_, kLayers[i].channels));
+    std::array<Image*, kLayers.size()> images{}, noise{};
+    for (std::size_t i = 0; i < kLayers.size(); ++i) {
+        const auto& [name, channels, is_signed] = kLayers[i];
+        images[i] = &(picture.layers[name] = Image(width_, height_, channels));
+        noise[i] = &(picture.layers[noise_layer(name)] = Image(width_, height_, channels));
+    }
+    const auto set = [](const auto& layers, std::size_t p, const Channels& values) {
+        auto value = values.begin();
+        for (Image* layer : layers)
+            for (int c = 0; c < layer->channels; ++c)
+                layer->data[p * static_cast<std::size_t>(layer->channels) + static_cast<std::size_t>(c)] =
+                    static_cast<float>(*value++);
+    };
     for (std::size_t p = 0; p < pixels_.size(); ++p) {
-        if (pixels_[p].samples == 0) continue;
-        const Channels mean = means(pixels_[p]);
-        std::size_t first = 0;
-        for (std::size_t i = 0; i < kLayers.size(); ++i) {
-            const auto n = static_cast<std::size_t>(kLayers[i].channels);
-            for (std::size_t c = 0; c < n; ++c) images[i]->data[p * n + c] = static_cast<float>(mean[first + c]);
-            first += n;
-        }
+        if (pixels_[p].samples() == 0) continue;
+        const Channels mean = pixels_[p].means();
+        set(images, p, mean);
+        set(noise, p, pixels_[p].half_differences());
         for (std::size_t c = 0; c < 3; ++c)
             beauty.data[p * 3 + c] = static_cast<float>(mean[c] + mean[c + 3] + mean[c + 6]);
     }
     return picture;
 }
 
-Film::Channels Film::means(const Pixel& pixel) {
-    Channels mean{};
-    if (pixel.samples == 0) return mean;
-    for (std::size_t c = 0; c < kChannels; ++c) mean[c] = pixel.sums.value(c) / static_cast<double>(pixel.samples);
-    return mean;
-}
-
 double Film::mean_luminance(std::size_t pixel) const {
-    const Channels m = means(pixels_[pixel]);
+    const Channels m = pixels_[pixel].means();
     return luminance(Rgb(m[0] + m[3] + m[6], m[1] + m[4] + m[7], m[2] + m[5] + m[8]));
 }
 
 double Film::samples_per_pixel() const {
     double sum = 0;
-    for (const Pixel& p : pixels_) sum += static_cast<double>(p.samples);
+    for (const Pixel& p : pixels_) sum += static_cast<double>(p.samples());
     return sum / static_cast<double>(pixels_.size());
 }
 

@@ -3,9 +3,9 @@
 
 #include "core/pixel_sample.h"
 #include "core/render_stats.h"
-#include "core/reproducible_sum.h"
 #include "film/filter.h"
 #include "film/picture.h"
+#include "film/pixel_sums.h"
 
 #include <array>
 #include <atomic>
@@ -39,9 +39,10 @@ class Film {
     /// What samples are to be distributed as around their pixels' centres.
     const PixelFilter& filter() const { return filter_; }
 
-    /// Adds a sample to pixel (x, y). A sample with a number that is not finite, or negative where it can't be, is
-    /// dropped as a whole, so that the layers stay means over the same samples; it is counted for each layer at fault.
-    void add(int x, int y, const PixelSample& sample);
+    /// Adds a sample of one of the halves to pixel (x, y). A sample with a number that is not finite, or negative where
+    /// it can't be, is dropped as a whole, so that the layers stay means over the same samples; it is counted for each
+    /// layer at fault.
+    void add(int x, int y, const PixelSample& sample, Half half = Half::first);
 
     /// Adds the samples of another film of the same size.
     void merge(const Film& other);
@@ -53,7 +54,8 @@ class Film {
     AccumulatorState words() const;
     void set_words(const AccumulatorState& words);
 
-    /// The means; "beauty" is direct + indirect + caustic. Pixels without samples are 0.
+    /// The means, and as layers "noise.NAME" half the difference between halves (PixelSums::half_differences()).
+    /// "beauty" is direct + indirect + caustic. Pixels without samples are 0.
     Picture to_picture() const;
 
     /// Samples dropped because of layer kLayers[i].
@@ -70,15 +72,10 @@ class Film {
 
   private:
     static constexpr std::size_t kChannels = 16;
-    using Channels = std::array<double, kChannels>; ///< of all layers, one after the other
-
-    struct Pixel {
-        ReproducibleSums<kChannels> sums;
-        std::uint64_t samples = 0;
-    };
+    using Pixel = PixelSums<kChannels>;
+    using Channels = Pixel::Channels; ///< of all layers, one after the other
 
     static Channels channels(const PixelSample& sample);
-    static Channels means(const Pixel& pixel);
     std::size_t index(int x, int y) const;
 
     int width_, height_;

@@ -57,6 +57,9 @@ template <class Pixel> void set_pixels(std::vector<Pixel>& pixels, const Accumul
     std::ranges::copy(from, bytes_of(pixels.data(), pixels.size()).begin());
 }
 
+/// The layer that holds half the difference between two halves of the samples of layer `name`: its noise.
+inline std::string noise_layer(const std::string& name) { return "noise." + name; }
+
 /// What a render makes. The layer "beauty" is what is looked at: linear Rec. 709, W/(m^2 sr).
 struct Picture {
     int width = 0, height = 0;
@@ -66,5 +69,9 @@ struct Picture {
     /// AccumulationBuffer.
     std::map<std::string, AccumulatorState> sums;
 };
+
+inline void erase_noise_layers(Picture& picture) {
+    std::erase_if(picture.layers, [](const auto& layer) { return layer.first.starts_with(noise_layer({})); });
+}
 
 } // namespace keyhole

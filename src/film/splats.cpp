@@ -9,6 +9,7 @@ namespace keyhole {
 namespace {
 
 constexpr std::size_t kChannels = 3;
+constexpr std::array kLayerNames{"direct", "indirect", "caustic"}; // of SplatFilm::Layer
 
 /// Parts of the filter's reach between which it is taken for linear: within 1e-6 of itself, at a fraction of the cost
 /// of an exponential. There are several for each splat.
@@ -66,21 +67,18 @@ void SplatFilm::clear() {
 SplattedLight::SplattedLight(int width, int height)
     : pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {}
 
-void SplattedLight::add(const SplatFilm& unit, double scale) {
+void SplattedLight::add(const SplatFilm& unit, double scale, Half half) {
     assert(unit.pixels() == pixels_.size());
     for (std::size_t p = 0; p < pixels_.size(); ++p) {
-        const auto sums = unit.sums(p);
-        for (std::size_t c = 0; c < sums.size(); ++c) pixels_[p].sums.add(c, scale * sums[c]);
-        ++pixels_[p].units;
+        auto drawn = unit.sums(p);
+        for (double& value : drawn) value *= scale;
+        pixels_[p].add(drawn, half);
     }
 }
 
 void SplattedLight::merge(const SplattedLight& other) {
     assert(other.pixels_.size() == pixels_.size());
-    for (std::size_t p = 0; p < pixels_.size(); ++p) {
-        pixels_[p].sums.merge(other.pixels_[p].sums);
-        pixels_[p].units += other.pixels_[p].units;
-    }
+    for (std::size_t p = 0; p < pixels_.size(); ++p) pixels_[p].merge(other.pixels_[p]);
 }
 
 void SplattedLight::clear() { std::ranges::fill(pixels_, Pixel{}); }
@@ -89,28 +87,26 @@ AccumulatorState SplattedLight::words() const { return accumulator_state(pixels_
 
 void SplattedLight::set_words(const AccumulatorState& words) { set_pixels(pixels_, words); }
 
-SplattedLight::Means SplattedLight::means(const Pixel& pixel) {
-    Means mean{};
-    if (pixel.units == 0) return mean;
-    for (std::size_t c = 0; c < mean.size(); ++c) mean[c] = pixel.sums.value(c) / static_cast<double>(pixel.units);
-    return mean;
-}
-
 double SplattedLight::mean_luminance(std::size_t pixel) const {
-    const Means m = means(pixels_[pixel]);
+    const auto m = pixels_[pixel].means();
     return luminance(Rgb(m[0] + m[3] + m[6], m[1] + m[4] + m[7], m[2] + m[5] + m[8]));
 }
 
 void SplattedLight::add_to(Picture& picture) const {
     Image& beauty = picture.layers.at("beauty");
-    const std::array<Image*, 3> layers{&picture.layers.at("direct"), &picture.layers.at("indirect"),
-                                       &picture.layers.at("caustic")};
+    std::array<Image*, 3> layers{}, noise{};
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        layers[i] = &picture.layers.at(kLayerNames[i]);
+        noise[i] = &picture.layers.at(noise_layer(kLayerNames[i]));
+    }
     for (std::size_t p = 0; p < pixels_.size(); ++p) {
-        const Means mean = means(pixels_[p]);
+        const auto mean = pixels_[p].means(), difference = pixels_[p].half_differences();
         for (std::size_t c = 0; c < mean.size(); ++c) {
+            const std::size_t layer = c / 3, at = p * 3 + c % 3;
             const auto value = static_cast<float>(mean[c]);
-            layers[c / 3]->data[p * 3 + c % 3] += value;
-            beauty.data[p * 3 + c % 3] += value;
+            layers[layer]->data[at] += value;
+            beauty.data[at] += value;
+            noise[layer]->data[at] += static_cast<float>(difference[c]);
         }
     }
 }

@@ -6,6 +6,7 @@
 #include "core/vec.h"
 #include "film/filter.h"
 #include "film/picture.h"
+#include "film/pixel_sums.h"
 #include "sampling/paths/path_class.h"
 
 #include <array>
@@ -66,8 +67,8 @@ class SplattedLight {
     /// @param width,height in pixels, at least 1.
     SplattedLight(int width, int height);
 
-    /// Adds scale times what one unit has drawn on a film of this size.
-    void add(const SplatFilm& unit, double scale);
+    /// Adds scale times what one unit, of one of the halves, has drawn on a film of this size.
+    void add(const SplatFilm& unit, double scale, Half half = Half::first);
     /// Adds the units of another sum of this size.
     void merge(const SplattedLight& other);
     void clear();
@@ -78,16 +79,12 @@ class SplattedLight {
 
     /// Luminance of the mean; pixels are counted row by row.
     double mean_luminance(std::size_t pixel) const;
-    /// Adds the mean to the layers "direct", "indirect" and "caustic", and to "beauty".
+    /// Adds the mean to the layers "direct", "indirect" and "caustic", and to "beauty"; and what halves of the units
+    /// differ in to the noise of the former.
     void add_to(Picture& picture) const;
 
   private:
-    struct Pixel {
-        ReproducibleSums<SplatFilm::kPerPixel> sums;
-        std::uint64_t units = 0;
-    };
-    using Means = std::array<double, SplatFilm::kPerPixel>;
-    static Means means(const Pixel& pixel);
+    using Pixel = PixelSums<SplatFilm::kPerPixel>;
 
     std::vector<Pixel> pixels_;
 };

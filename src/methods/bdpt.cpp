@@ -63,7 +63,7 @@ RenderResult render_bdpt(const RenderTask& task) {
                                             });
             // Of later rounds that are cut short the eye's samples are enough.
             const double share_of_round = whole ? 1 : work.is_first() ? film.samples_per_pixel() : 0;
-            if (share_of_round > 0) work.unit().drawn->add(splats, scale / share_of_round);
+            if (share_of_round > 0) work.unit().drawn->add(splats, scale / share_of_round, work.half());
             splats.clear();
             if (whole) work.end_unit(result.stats);
         }

@@ -91,7 +91,8 @@ bool draw_chains(const Scene& scene, const Settings& settings, const UserPaths& 
     const ChainSummary summary = chains.summary();
     if (!whole && !work.is_first()) return false;
     reports.add(mixtures.mixture, summary, stats);
-    work.unit().drawn->add(splats, start.one.brightness.mean() * window.pixels() / static_cast<double>(summary.steps));
+    work.unit().drawn->add(splats, start.one.brightness.mean() * window.pixels() / static_cast<double>(summary.steps),
+                           work.half());
     return whole;
 }
 
@@ -131,7 +132,8 @@ RenderResult render_mlt(const RenderTask& task) {
                                 reports, stats, context) &&
                     whole;
         else if (whole)
-            work.unit().drawn->add(SplatFilm(scene.camera().window().width, scene.camera().window().height), 0);
+            work.unit().drawn->add(SplatFilm(scene.camera().window().width, scene.camera().window().height), 0,
+                                   work.half());
         if (whole) work.end_unit(stats);
     }
     reports.finish(stats);

@@ -126,7 +126,7 @@ bool draw(PrimaryChains& chains, const Scene& scene, const Settings& settings, W
     });
     context.end();
     if (drawn < batch.rest && !work.is_first()) return false;
-    work.unit().drawn->add(film, unit * window.pixels() / static_cast<double>(drawn * chains.size()));
+    work.unit().drawn->add(film, unit * window.pixels() / static_cast<double>(drawn * chains.size()), work.half());
     return drawn == batch.rest;
 }
 
@@ -161,7 +161,7 @@ template <StageOneOf start> RenderResult render_primary(const RenderTask& task) 
             whole = draw(chains, scene, settings, work, stats, context) && whole;
             if (whole || work.is_first()) reports.add(chains, stats);
         } else {
-            work.unit().drawn->add(SplatFilm(window.width, window.height), 0);
+            work.unit().drawn->add(SplatFilm(window.width, window.height), 0, work.half());
         }
         if (whole) work.end_unit(stats);
     }

@@ -47,7 +47,7 @@ bool sample_round(const Scene& scene, Film& film, std::int64_t round, std::uint6
                 const double u0 = source.next(), u1 = source.next();
                 const Vec2 centre(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
                 const PixelSample s = sample(window.to_window(centre + film.filter().sample_offset(u0, u1)), source);
-                film.add(x, y, s);
+                film.add(x, y, s, half_of(round));
                 const double l = luminance(s.direct + s.indirect + s.caustic);
                 if (std::isfinite(l)) tiles[static_cast<std::size_t>(tile)].add(l);
             }

@@ -116,6 +116,7 @@ double Work::samples() const {
 
 Picture Work::snapshot(const RenderStats& stats) const {
     Picture picture = total_.to_picture();
+    erase_noise_layers(picture); // it follows from the sums
     picture.sums = total_.sums();
     if (error_.passes() > 0 && knows_error_) picture.sums[kError] = error_.words();
     picture.metadata[kUnits] = done_.to_string();

@@ -39,6 +39,8 @@ class Work {
     std::optional<std::int64_t> pass_from(std::int64_t pass) const;
     /// Where the unit under way goes.
     AccumulationBuffer& unit() { return pending_ ? *pending_ : total_; }
+    /// Which of the picture's halves it belongs to.
+    Half half() const { return half_of(under_way_); }
     /// The unit is whole. What of one is in unit() when work ends counts for the picture, but isn't saved.
     void end_unit(const RenderStats& stats);
     /// Units of the share that are left, for a display of progress; those of a pass where there is no end.

@@ -86,6 +86,8 @@ def settings_become_options():
     chosen = bpy.context.scene.keyhole
     chosen.method, chosen.effort, chosen.time, chosen.photon_memory, chosen.seed = "mps", "TIME", 12.5, 64, 7
     assert settings.arguments(chosen) == ["--method", "mps", "--seed", "7", "-t", "0", "--timeout", "12.5",
-                                          "--photon-memory", "64MiB"]
+                                          "--photon-memory", "64MiB", "--denoise", "exr"]
     chosen.effort, chosen.target_error = "ERROR", 0.05
     assert "--target-error" in settings.arguments(chosen)
+    chosen.denoise, chosen.noise_passes = False, True
+    assert settings.arguments(chosen)[-4:] == ["--denoise", "off", "-D", "noise_layers=true"]

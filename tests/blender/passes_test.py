@@ -14,6 +14,7 @@ def passes_add_up():
     floor()
     ball()
     lamp("AREA", size=2)
+    bpy.context.scene.keyhole.noise_passes = True
     layers, messages = render("KEYHOLE", multilayer=True)
     expect(messages, [])
     names = {name.split(".")[-2] for name in layers}
@@ -21,11 +22,27 @@ def passes_add_up():
     layer = next(name for name in layers if name.endswith("Combined.R")).rsplit(".", 2)[0]
     of = {name[len(layer) + 1:]: values for name, values in layers.items()}
     total = of["Direct.R"] + of["Indirect.R"] + of["Caustics.R"]
-    assert np.allclose(total, of["Combined.R"], rtol=1e-3, atol=1e-4)
+    assert np.allclose(total, of["Unfiltered.R"], rtol=1e-3, atol=1e-4)
+    rough, smooth = (abs(np.diff(of[name])).mean() for name in ("Unfiltered.R", "Combined.R"))
+    assert smooth < 0.9 * rough, (smooth, rough)
+    assert abs(of["Combined.R"].mean() / total.mean() - 1) < 0.01
+    noise = abs(of["Noise Direct.R"]).mean() / of["Direct.R"].mean()
+    assert 0.001 < noise < 0.5, noise
     middle = of["Normal.Z"].shape[0] - 4, of["Normal.Z"].shape[1] // 2
     assert of["Normal.Z"][middle] > 0.99, "the floor, at the bottom, looks up"
     assert 3 < of["Depth.Z"][middle] < 6
     assert abs(of["Albedo.R"][middle] - 0.6) < 0.01
+
+
+@test
+def nothing_is_filtered_where_nobody_asks():
+    floor()
+    lamp("AREA", size=2)
+    bpy.context.scene.keyhole.denoise = False
+    layers, _ = render("KEYHOLE", multilayer=True)
+    of = {".".join(name.split(".")[-2:]): values for name, values in layers.items()}
+    assert "Unfiltered.R" not in of and "Noise Direct.R" not in of
+    assert np.allclose(of["Direct.R"] + of["Indirect.R"] + of["Caustics.R"], of["Combined.R"], rtol=1e-3, atol=1e-4)
 
 
 @test

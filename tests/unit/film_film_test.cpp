@@ -1,6 +1,9 @@
 // The film: means, dropped samples, empty pixels.
 #include "film/film.h"
 
+#include "core/rng.h"
+#include "core/statistics.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -47,6 +50,60 @@ TEST(Film, PixelsAreMeansInEveryLayer) {
     EXPECT_THAT(pixel(p, "normal", 2, 1), ElementsAre(0, -0.5f, 0));
     EXPECT_THAT(pixel(p, "depth", 2, 1), ElementsAre(2));
     EXPECT_THAT(pixel(p, "beauty", 1, 1), ElementsAre(0, 0, 0));
+}
+
+// The square of what halves differ in is an estimate of the variance of the mean, whatever their sizes, and the two
+// estimates that it makes of the mean are uncorrelated. Planted mistakes: the plain half of the difference, which is
+// too large where sizes differ, and halves that are taken for equal.
+TEST(Film, NoiseIsThatOfTheMean) {
+    for (const int in_first : {1, 4, 7}) {
+        constexpr int kPixels = 20'000, kSamples = 8;
+        Film film(kPixels, 1);
+        Rng rng(1, StreamPurpose::test, static_cast<std::uint64_t>(in_first));
+        for (int x = 0; x < kPixels; ++x) {
+            for (int i = 0; i < kSamples; ++i) {
+                PixelSample s;
+                s.indirect = Rgb(rng.next());
+                s.depth = 3;
+                film.add(x, 0, s, i < in_first ? Half::first : Half::second);
+            }
+        }
+        const Picture p = film.to_picture();
+        RunningStats mean, noise, product;
+        for (int x = 0; x < kPixels; ++x) {
+            const double m = p.layers.at("indirect").at(x, 0)[1], d = p.layers.at("noise.indirect").at(x, 0)[1];
+            mean.add(m);
+            noise.add(d * d);
+            product.add((m + d - 0.5) * (m - d - 0.5));
+            EXPECT_NEAR(p.layers.at("noise.depth").at(x, 0)[0], 0, 3 * 0x1p-11);
+        }
+        const double variance = 1.0 / 12 / kSamples;
+        EXPECT_NEAR(mean.variance(), variance, 0.05 * variance) << in_first;
+        EXPECT_NEAR(noise.mean(), variance, 4 * noise.standard_error()) << in_first;
+        EXPECT_NEAR(product.mean(), 0, 4 * product.standard_error()) << in_first;
+    }
+}
+
+TEST(Film, NoiseIsUnknownOfOneHalf) {
+    Film film(1, 1);
+    film.add(0, 0, full_sample(), Half::second);
+    film.add(0, 0, PixelSample{}, Half::second);
+    EXPECT_THAT(pixel(film.to_picture(), "noise.direct", 0, 0), ElementsAre(0, 0, 0));
+}
+
+// As everything that is saved and merged.
+TEST(Film, NoiseDoesNotDependOnTheOrderOfSamples) {
+    Rng rng(1, StreamPurpose::test, 5);
+    std::vector<PixelSample> samples(100);
+    for (PixelSample& s : samples) s.direct = Rgb(std::exp(8 * rng.next()), rng.next(), 1e-4 * rng.next());
+    Film forward(1, 1), backward(1, 1), other(1, 1);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        forward.add(0, 0, samples[i], half_of(static_cast<std::int64_t>(i)));
+        const std::size_t j = samples.size() - 1 - i;
+        (i % 3 == 0 ? other : backward).add(0, 0, samples[j], half_of(static_cast<std::int64_t>(j)));
+    }
+    backward.merge(other);
+    EXPECT_EQ(forward.words().data, backward.words().data);
 }
 
 TEST(Film, BadSamplesAreDroppedWholeAndCountedByLayer) {

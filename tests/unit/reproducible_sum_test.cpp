@@ -15,6 +15,7 @@ namespace keyhole {
 namespace {
 
 using Sum = ReproducibleSums<1>;
+using ShortSum = ReproducibleSums<1, std::int32_t, 12>;
 
 /// Numbers of either sign, of sizes from 2^-spread to 2^spread.
 std::vector<double> numbers(int count, int spread, bool is_signed) {
@@ -28,7 +29,7 @@ std::vector<double> numbers(int count, int spread, bool is_signed) {
 }
 
 /// The sum by `groups` shares that are merged in the order of their numbers, or the reverse.
-Sum grouped(const std::vector<double>& terms, std::size_t groups, bool reverse) {
+template <class Sum> Sum grouped(const std::vector<double>& terms, std::size_t groups, bool reverse) {
     std::vector<Sum> shares(groups);
     for (std::size_t i = 0; i < terms.size(); ++i) shares[i % groups].add(0, terms[i]);
     if (reverse) std::ranges::reverse(shares);
@@ -37,22 +38,26 @@ Sum grouped(const std::vector<double>& terms, std::size_t groups, bool reverse) 
     return all;
 }
 
-bool same(const Sum& a, const Sum& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+template <class Sum> bool same(const Sum& a, const Sum& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
 } // namespace
 
-TEST(ReproducibleSum_OfShuffledAndGroupedTerms, IsTheSameBitForBit) {
+template <class Sum> class ReproducibleSum_OfShuffledAndGroupedTerms : public testing::Test {};
+using Sums = testing::Types<Sum, ShortSum>;
+TYPED_TEST_SUITE(ReproducibleSum_OfShuffledAndGroupedTerms, Sums);
+
+TYPED_TEST(ReproducibleSum_OfShuffledAndGroupedTerms, IsTheSameBitForBit) {
     for (const int spread : {1, 20, 40, 200, 950}) {
         for (const bool is_signed : {false, true}) {
             std::vector<double> terms = numbers(500, spread, is_signed);
             terms.push_back(0);
-            const Sum first = grouped(terms, 1, false);
+            const TypeParam first = grouped<TypeParam>(terms, 1, false);
             for (const std::size_t groups : {2, 7, 100}) {
-                EXPECT_TRUE(same(first, grouped(terms, groups, false))) << spread << " " << groups;
-                EXPECT_TRUE(same(first, grouped(terms, groups, true))) << spread << " " << groups;
+                EXPECT_TRUE(same(first, grouped<TypeParam>(terms, groups, false))) << spread << " " << groups;
+                EXPECT_TRUE(same(first, grouped<TypeParam>(terms, groups, true))) << spread << " " << groups;
             }
             std::ranges::sort(terms);
-            EXPECT_TRUE(same(first, grouped(terms, 3, false))) << spread;
+            EXPECT_TRUE(same(first, grouped<TypeParam>(terms, 3, false))) << spread;
         }
     }
 }
@@ -62,7 +67,9 @@ TEST(ReproducibleSum_OfTerms, LosesLessThanItPromises) {
         const std::vector<double> terms = numbers(10'000, spread, false);
         const long double exact = std::accumulate(terms.begin(), terms.end(), 0.0L);
         const double largest = *std::ranges::max_element(terms);
-        EXPECT_NEAR(grouped(terms, 5, false).value(0), static_cast<double>(exact), 10'000 * 0x1p-32 * largest);
+        EXPECT_NEAR(grouped<Sum>(terms, 5, false).value(0), static_cast<double>(exact), 10'000 * 0x1p-32 * largest);
+        EXPECT_NEAR(grouped<ShortSum>(terms, 5, false).value(0), static_cast<double>(exact),
+                    10'000 * 0x1p-12 * largest);
     }
 }
 

@@ -10,7 +10,9 @@ namespace {
 
 Picture blank(int width, int height) {
     Picture p{width, height, {}, {}, {}};
-    for (const char* layer : {"beauty", "direct", "indirect", "caustic"}) p.layers[layer] = Image(width, height, 3);
+    for (const char* layer :
+         {"beauty", "direct", "indirect", "caustic", "noise.direct", "noise.indirect", "noise.caustic"})
+        p.layers[layer] = Image(width, height, 3);
     return p;
 }
 
@@ -41,6 +43,20 @@ TEST(Splats_OfUniformPoints, FillTheFilmEvenly) {
                 EXPECT_NEAR(picture.layers["beauty"].at(x, y)[c], c + 11.0, 1e-3);
                 EXPECT_EQ(picture.layers["indirect"].at(x, y)[c], 0);
             }
+}
+
+TEST(SplattedLight_OfUnitsOfBothHalves, TellsWhatTheyDifferIn) {
+    SplatFilm splats(1, 1);
+    splats.add({0.5f, 0.5f}, SplatFilm::Layer::indirect, Rgb(1, 2, 3));
+    const double unit = splats.sums(0)[3];
+    SplattedLight light(1, 1);
+    light.add(splats, 1, Half::first);
+    light.add(splats, 5, Half::second);
+    Picture picture = blank(1, 1);
+    light.add_to(picture);
+    EXPECT_NEAR(picture.layers["indirect"].at(0, 0)[0], 3 * unit, 1e-5 * unit);
+    EXPECT_NEAR(picture.layers["noise.indirect"].at(0, 0)[0], -2 * unit, 1e-3 * unit);
+    EXPECT_EQ(picture.layers["noise.direct"].at(0, 0)[0], 0);
 }
 
 // Splats read the filter from a table.

@@ -1,6 +1,6 @@
 #include "cli/chart/analysis.h"
 
-#include "cli/beauty.h"
+#include "cli/pictures/beauty.h"
 
 #include <algorithm>
 #include <cmath>

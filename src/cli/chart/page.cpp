@@ -1,5 +1,5 @@
 // The page of a chart: its data as JSON, put into the page's parts.
-#include "cli/beauty.h"
+#include "cli/pictures/beauty.h"
 #include "cli/chart/outputs.h"
 #include "cli/chart/page_pictures.h"
 #include "cli/page/page_parts.h"

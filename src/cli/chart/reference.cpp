@@ -1,6 +1,6 @@
 #include "cli/chart/reference.h"
 
-#include "cli/beauty.h"
+#include "cli/pictures/beauty.h"
 #include "core/error.h"
 #include "film/errors/image_error.h"
 #include "film/grey.h"

@@ -1,5 +1,5 @@
 // keyhole paths show: a preview of the scene with user paths drawn over it.
-#include "cli/outputs.h"
+#include "cli/pictures/outputs.h"
 #include "cli/paths/paths.h"
 #include "film/drawing.h"
 #include "film/files/atomic_file.h"

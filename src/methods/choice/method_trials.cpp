@@ -202,7 +202,7 @@ double predict_by_trial(const TriedMethod& t, const TrialContext& c, double left
     if (t.method->samples_pixels) {
         // Light that was missed is that of rare, bright samples, and grain where they are found.
         const double missing = e.missing * t.of.cost.pixels / kTrialParts;
-        return (e.grain + e.blotches + missing) * time * size;
+        return (grain_that_counts(c.settings, *t.method) * e.grain + e.blotches + missing) * time * size;
     }
     if (!t.method->keeps_photons)
         return t.method->trial.doubt * (e.grain * time * size + (e.blotches + e.missing) * time);
@@ -212,7 +212,8 @@ double predict_by_trial(const TriedMethod& t, const TrialContext& c, double left
     s = t.of.settings_for(s, c.given, pixels, left, effort);
     const double samples = static_cast<double>(s.spp * s.passes) / t.of.samples;
     const double growth = effort / t.of.cost.effort;
-    return t.method->trial.doubt * (e.grain * (t.by_samples / samples + (1 - t.by_samples) / growth) +
+    const double of_samples = grain_that_counts(c.settings, *t.method) * t.by_samples / samples;
+    return t.method->trial.doubt * (e.grain * (of_samples + (1 - t.by_samples) / growth) +
                                     (e.blotches + e.missing) * std::pow(growth, -kSlope));
 }
 
@@ -267,6 +268,11 @@ Settings TrialCost::settings_for(const Settings& s, const std::set<std::string>&
     effort = affordable_effort(cost, s, given, balance, pixels, seconds);
     const Settings even = with_effort(s, effort, static_cast<std::int64_t>(pixels), given, balance);
     return noise ? split_stage_three(even, cost, *noise, pixels, given) : even;
+}
+
+double grain_that_counts(const Settings& settings, const Method& method) {
+    constexpr double kLeft = 0.3;
+    return settings.denoise == Denoise::exr && (method.samples_pixels || method.keeps_photons) ? kLeft : 1;
 }
 
 std::optional<TrialCost> try_cost(const TrialContext& c, const Method& method, double seconds, double most) {

@@ -166,7 +166,7 @@ class RenderInTime {
         if (pictures.size() < 2) return parts;
         const TrialPictures halves{std::move(pictures[0]), std::move(pictures[1])};
         const TrialError e = trial_errors(std::span(&halves, 1)).front();
-        parts.error = (e.grain + e.blotches) * seconds / at_choice_;
+        parts.error = (grain_that_counts(settings_, *method_) * e.grain + e.blotches) * seconds / at_choice_;
         return parts;
     }
 

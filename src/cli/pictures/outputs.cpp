@@ -1,4 +1,4 @@
-#include "cli/outputs.h"
+#include "cli/pictures/outputs.h"
 
 #include "core/error.h"
 #include "film/files/atomic_file.h"
@@ -6,6 +6,7 @@
 #include "film/files/png.h"
 
 #include <filesystem>
+#include <utility>
 
 namespace keyhole {
 
@@ -27,9 +28,15 @@ void Outputs::check() const {
         throw InputError(exr + ": found one name for two outputs, expected different ones");
 }
 
-void Outputs::write(const Picture& picture, const std::string& stats_json) const {
+void Outputs::write(Picture picture, std::optional<Image> filtered, const std::string& stats_json) const {
+    if (!noise_layers) erase_noise_layers(picture);
+    Image& beauty = picture.layers.at("beauty");
+    if (filtered && denoise == Denoise::exr) {
+        picture.layers["unfiltered"] = std::exchange(beauty, *std::move(filtered));
+        filtered.reset();
+    }
     write_exr(exr, picture);
-    if (!png.empty()) write_png(png, picture.layers.at("beauty"), exposure);
+    if (!png.empty()) write_png(png, filtered ? *filtered : beauty, exposure);
     if (!stats.empty()) write_file_atomically(stats, stats_json);
 }
 

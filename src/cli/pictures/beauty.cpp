@@ -1,4 +1,4 @@
-#include "cli/beauty.h"
+#include "cli/pictures/beauty.h"
 
 #include "core/error.h"
 #include "film/files/exr.h"

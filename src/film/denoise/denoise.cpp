@@ -1,0 +1,144 @@
+#include "film/denoise/denoise.h"
+
+#include "core/progress.h"
+#include "core/vec.h"
+#include "film/denoise/nonlocal_means.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <initializer_list>
+#include <limits>
+#include <string>
+
+namespace keyhole {
+namespace {
+
+/// Pixels around one over which its noise is averaged, and over which the filter is judged.
+constexpr int kReachOfNoise = 2, kReachOfJudgement = 3;
+/// Of the square of the mean: as everywhere, what is darker has no relative error to speak of.
+constexpr float kDark = 0.01f;
+
+/// Of a filter of this reach; what is done for a pixel besides counts as one more.
+double pixels_within(int reach) { return (2 * reach + 1) * (2 * reach + 1) + 1; }
+
+/// Layers that are filtered as one, as a sum.
+struct Part {
+    Image mean, noise;
+
+    Part(const Picture& picture, std::initializer_list<const char*> layers)
+        : mean(picture.width, picture.height, 3), noise(mean) {
+        for (const std::string layer : layers) {
+            add(picture.layers.at(layer), mean);
+            add(picture.layers.at(noise_layer(layer)), noise);
+        }
+    }
+
+  private:
+    static void add(const Image& layer, Image& sum) {
+        std::ranges::transform(layer.data, sum.data, sum.data.begin(), std::plus());
+    }
+};
+
+float luminance_at(const Image& image, int x, int y) {
+    const float* p = image.at(x, y);
+    return static_cast<float>(luminance(Rgb(p[0], p[1], p[2])));
+}
+
+float squared(float x) { return x * x; }
+
+/// The part filtered, if it has noise that is known.
+Image filtered(const Part& part, const FilterGuides& guides, int reach) {
+    const int width = part.mean.width, height = part.mean.height, border = reach + kPatch;
+    if (std::ranges::all_of(part.noise.data, [](float d) { return d == 0; })) return part.mean;
+    const auto channel = [&](float sign, int c) {
+        return Plane(width, height, border,
+                     [&](int x, int y) { return part.mean.at(x, y)[c] + sign * part.noise.at(x, y)[c]; });
+    };
+    const auto half_luminance = [&](float sign) {
+        return Plane(width, height, border, [&](int x, int y) {
+            return luminance_at(part.mean, x, y) + sign * luminance_at(part.noise, x, y);
+        });
+    };
+    const auto variance_of_mean = [&](int x, int y) { return squared(luminance_at(part.noise, x, y)); };
+    const HalfPictures halves{
+        {std::array{channel(1, 0), channel(1, 1), channel(1, 2)}, {channel(-1, 0), channel(-1, 1), channel(-1, 2)}},
+        {half_luminance(1), half_luminance(-1)},
+        box_mean(width, height, border, kReachOfNoise, [&](int x, int y) { return 2 * variance_of_mean(x, y); })};
+    const std::array<Image, 2> smooth = filter_crosswise(halves, guides, reach);
+
+    // Either half is an unbiased judge of the other's filtered picture: its own variance, twice that of the mean of
+    // both, is on top of the error. Errors are relative, so that what is bright and noisy doesn't speak for all around.
+    Image mean_of_both = smooth[0];
+    std::ranges::transform(mean_of_both.data, smooth[1].data, mean_of_both.data.begin(),
+                           [](float a, float b) { return (a + b) / 2; });
+    double sum = 0;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) sum += luminance_at(part.mean, x, y);
+    const float dark = kDark * squared(static_cast<float>(sum / (width * height)));
+    const auto unit = [&](int x, int y) {
+        return squared(luminance_at(mean_of_both, x, y)) + dark + std::numeric_limits<float>::min();
+    };
+    const Plane variance = box_mean(width, height, 0, kReachOfJudgement,
+                                    [&](int x, int y) { return variance_of_mean(x, y) / unit(x, y); });
+    const Plane distance = box_mean(width, height, 0, kReachOfJudgement, [&](int x, int y) {
+        const float d0 = luminance_at(smooth[0], x, y) - halves.luminances[1](x, y),
+                    d1 = luminance_at(smooth[1], x, y) - halves.luminances[0](x, y);
+        return (d0 * d0 + d1 * d1) / 2 / unit(x, y);
+    });
+    Image result = part.mean;
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            const float noise = 2 * variance(x, y), error = std::max(0.0f, distance(x, y) - noise);
+            if (noise == 0) continue;
+            // Of the mean of two filtered halves half of the error of each is left, if it is noise: the weights of
+            // least error are as 1 / variance.
+            const float share = noise / (noise + error);
+            float* p = result.at(x, y);
+            for (int c = 0; c < 3; ++c) p[c] = std::lerp(p[c], mean_of_both.at(x, y)[c], share);
+        }
+    }
+    return result;
+}
+
+/// CPU time by pixel and pixel within reach [s].
+double seconds_of_trial() {
+    constexpr int kSize = 64;
+    Picture picture{kSize, kSize, {}, {}, {}};
+    for (const char* layer : {"direct", "indirect", "caustic", "albedo", "normal"})
+        for (const std::string& name : {std::string(layer), noise_layer(layer)})
+            picture.layers[name] = Image(kSize, kSize, 3);
+    picture.layers["depth"] = picture.layers[noise_layer("depth")] = Image(kSize, kSize, 1);
+    for (const char* layer : {"noise.direct", "noise.indirect"})
+        picture.layers[layer].data.assign(kSize * kSize * 3, 1);
+    const double start = cpu_seconds();
+    denoise(picture, kDenoisingReach);
+    return (cpu_seconds() - start) / (kSize * kSize) / pixels_within(kDenoisingReach);
+}
+
+} // namespace
+
+std::optional<Image> denoise(const Picture& picture, int reach) {
+    for (const std::string layer : {"direct", "indirect", "caustic", "albedo", "normal", "depth"})
+        if (!picture.layers.contains(layer) || !picture.layers.contains(noise_layer(layer))) return std::nullopt;
+    const FilterGuides guides(picture, reach + kPatch);
+    Image sum = filtered(Part(picture, {"direct"}), guides, reach);
+    const Image rest = filtered(Part(picture, {"indirect", "caustic"}), guides, reach);
+    std::ranges::transform(sum.data, rest.data, sum.data.begin(),
+                           [](float a, float b) { return std::max(0.0f, a + b); });
+    return sum;
+}
+
+double denoising_seconds(std::size_t pixels, int reach) {
+    static const double of_pixel = seconds_of_trial();
+    return of_pixel * static_cast<double>(pixels) * pixels_within(reach);
+}
+
+int denoising_reach(std::size_t pixels, double seconds) {
+    int reach = kDenoisingReach;
+    while (reach > 0 && denoising_seconds(pixels, reach) > seconds) --reach;
+    return reach;
+}
+
+} // namespace keyhole

@@ -1,0 +1,124 @@
+#include "film/denoise/nonlocal_means.h"
+
+#include "core/parallel.h"
+
+#include <limits>
+
+namespace keyhole {
+namespace {
+
+/// Differences of luminance in standard deviations that count as 1; swept from .35 to .8.
+constexpr float kBandwidth = 0.6f;
+/// More than this can't make a patch more unlike.
+constexpr float kMostUnlike = 1e6f;
+
+constexpr int kAcross = 64, kDown = 16; // pixels of a tile
+constexpr int kPatchSize = 2 * kPatch + 1;
+
+/// Of distance d: 1 at 0, and 0 from 3 on; an exponential within a few per cent, without its cost.
+float kernel(float distance) {
+    const float t = std::max(0.0f, 1 - distance / 3);
+    return t * t * t;
+}
+
+/// A tile's pixels, and the sums that are made of them.
+class Tile {
+  public:
+    Tile(const HalfPictures& halves, const FilterGuides& guides, int x, int y)
+        : halves_(halves), guides_(guides), x_(x), y_(y), width_(std::min(kAcross, halves.variance.width() - x)),
+          height_(std::min(kDown, halves.variance.height() - y)) {}
+
+    /// Adds for every pixel the one that is (dx, dy) away, if there is one.
+    void add(int dx, int dy) {
+        for (std::size_t half = 0; half < 2; ++half) find_likeness(half, dx, dy);
+        const int left = std::max(0, -dx - x_), right = std::min(width_, halves_.variance.width() - dx - x_);
+        const int top = std::max(0, -dy - y_), bottom = std::min(height_, halves_.variance.height() - dy - y_);
+        std::array<float, kAcross> apart, weight;
+        for (int row = top; row < bottom; ++row) {
+            guides_.distances(x_, y_ + row, dx, dy, width_, apart.data());
+            for (std::size_t half = 0; half < 2; ++half) {
+                const auto& unlike = unlike_[1 - half][static_cast<std::size_t>(row)];
+                Sums& sums = sums_[half][static_cast<std::size_t>(row)];
+                for (std::size_t i = 0; i < kAcross; ++i) weight[i] = kernel(std::max(unlike[i], apart[i]));
+                for (int i = left; i < right; ++i)
+                    sums.weights[static_cast<std::size_t>(i)] += weight[static_cast<std::size_t>(i)];
+                for (std::size_t c = 0; c < 3; ++c) {
+                    const float* colour = halves_.colours[half][c].at(x_ + dx, y_ + row + dy);
+                    for (int i = left; i < right; ++i)
+                        sums.colours[c][static_cast<std::size_t>(i)] += weight[static_cast<std::size_t>(i)] * colour[i];
+                }
+            }
+        }
+    }
+
+    void write(std::array<Image, 2>& filtered) const {
+        for (std::size_t half = 0; half < 2; ++half)
+            for (int row = 0; row < height_; ++row) {
+                const Sums& sums = sums_[half][static_cast<std::size_t>(row)];
+                for (std::size_t i = 0; i < static_cast<std::size_t>(width_); ++i)
+                    for (std::size_t c = 0; c < 3; ++c)
+                        filtered[half].at(x_ + static_cast<int>(i), y_ + row)[c] = sums.colours[c][i] / sums.weights[i];
+            }
+    }
+
+  private:
+    struct Sums {
+        std::array<float, kAcross> weights{};
+        std::array<std::array<float, kAcross>, 3> colours{};
+    };
+
+    /// The mean distance of patches, by pixel: of luminance, squared, beyond its noise and in units of that.
+    void find_likeness(std::size_t half, int dx, int dy) {
+        constexpr int kColumns = kAcross + 2 * kPatch, kRows = kDown + 2 * kPatch;
+        const Plane &luminance = halves_.luminances[half], &variance = halves_.variance;
+        std::array<std::array<float, kAcross>, kRows> across; // sums over the columns of a patch
+        for (int row = 0; row < height_ + 2 * kPatch; ++row) {
+            const int x = x_ - kPatch, y = y_ + row - kPatch, n = width_ + 2 * kPatch;
+            const float *here = luminance.at(x, y), *there = luminance.at(x + dx, y + dy);
+            const float *noise = variance.at(x, y), *other_noise = variance.at(x + dx, y + dy);
+            std::array<float, kColumns> distance{};
+            for (int i = 0; i < n; ++i) {
+                const float difference = here[i] - there[i];
+                const float beyond = difference * difference - (noise[i] + std::min(noise[i], other_noise[i]));
+                const float unit = kBandwidth * kBandwidth * (noise[i] + other_noise[i]);
+                distance[static_cast<std::size_t>(i)] =
+                    std::min(kMostUnlike, beyond / (unit + std::numeric_limits<float>::min()));
+            }
+            auto& sums = across[static_cast<std::size_t>(row)];
+            for (std::size_t i = 0; i < kAcross; ++i) {
+                float sum = 0;
+                for (std::size_t k = 0; k < kPatchSize; ++k) sum += distance[i + k];
+                sums[i] = sum;
+            }
+        }
+        for (std::size_t row = 0; row < static_cast<std::size_t>(height_); ++row)
+            for (std::size_t i = 0; i < kAcross; ++i) {
+                float sum = 0;
+                for (std::size_t k = 0; k < kPatchSize; ++k) sum += across[row + k][i];
+                unlike_[half][row][i] = sum / (kPatchSize * kPatchSize);
+            }
+    }
+
+    const HalfPictures& halves_;
+    const FilterGuides& guides_;
+    int x_, y_, width_, height_;
+    std::array<std::array<std::array<float, kAcross>, kDown>, 2> unlike_{};
+    std::array<std::array<Sums, kDown>, 2> sums_{};
+};
+
+} // namespace
+
+std::array<Image, 2> filter_crosswise(const HalfPictures& halves, const FilterGuides& guides, int reach) {
+    const int width = halves.variance.width(), height = halves.variance.height();
+    std::array<Image, 2> filtered{Image(width, height, 3), Image(width, height, 3)};
+    const int across = (width + kAcross - 1) / kAcross, down = (height + kDown - 1) / kDown;
+    parallel_for(std::int64_t{across} * down, [&](std::int64_t i) {
+        Tile tile(halves, guides, static_cast<int>(i % across) * kAcross, static_cast<int>(i / across) * kDown);
+        for (int dy = -reach; dy <= reach; ++dy)
+            for (int dx = -reach; dx <= reach; ++dx) tile.add(dx, dy);
+        tile.write(filtered);
+    });
+    return filtered;
+}
+
+} // namespace keyhole

@@ -1,0 +1,235 @@
+// The filter at the end: what it takes away, and what it leaves alone.
+#include "film/denoise/denoise.h"
+
+#include "core/parallel.h"
+#include "core/rng.h"
+#include "film/errors/image_error.h"
+#include "film/errors/sample_noise.h"
+#include "film/film.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace keyhole {
+namespace {
+
+constexpr int kWidth = 96, kHeight = 64, kEdge = 40;
+
+/// Light and surface of pixel (x, y), without noise.
+using Shown = std::function<PixelSample(int x, int y)>;
+/// Draws a factor of mean 1 for what is shown there.
+using Noise = std::function<double(const Rgb& light, Rng&)>;
+
+double no_noise(const Rgb& /*light*/, Rng& /*rng*/) { return 1; }
+double even_noise(const Rgb& /*light*/, Rng& rng) { return 2 * rng.next(); }
+/// Of one sample in twenty, as of light that is hard to find.
+double skewed_noise(const Rgb& /*light*/, Rng& rng) { return rng.next() < 0.05 ? 20 : 0; }
+/// Much of highlights, and little of what is around.
+double noise_of_highlights(const Rgb& light, Rng& rng) { return light.x > 1 ? 2 * rng.next() : 0.9 + 0.2 * rng.next(); }
+
+Picture rendered(const Shown& shown, const Noise& noise, int samples) {
+    Film film(kWidth, kHeight);
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            Rng rng(1, StreamPurpose::test, static_cast<std::uint64_t>(y * kWidth + x));
+            for (int i = 0; i < samples; ++i) {
+                PixelSample s = shown(x, y);
+                s.direct *= noise(s.direct, rng);
+                s.indirect *= noise(s.indirect, rng);
+                film.add(x, y, s, half_of(i));
+            }
+        }
+    return film.to_picture();
+}
+
+/// Two walls that meet at kEdge, one bright and one dark, with light that fades across them.
+PixelSample walls(int x, int y) {
+    PixelSample s;
+    const bool right = x >= kEdge;
+    s.direct = Rgb(right ? 0.2 : 1.0);
+    s.indirect = Rgb(0.5 + 0.3 * y / kHeight, 0.4, 0.3);
+    s.albedo = Rgb(0.7);
+    s.normal = right ? Vec3(1, 0, 0) : Vec3(0, 0, 1);
+    s.depth = 3;
+    return s;
+}
+
+/// Two walls that hardly differ in their light.
+PixelSample corner(int x, int y) {
+    PixelSample s = walls(x, y);
+    s.direct = Rgb(x >= kEdge ? 0.8 : 1.0);
+    return s;
+}
+
+/// A shadow whose edge no guide shows.
+PixelSample shadow(int x, int y) {
+    PixelSample s = walls(0, y);
+    s.direct = Rgb(x >= kEdge ? 0.2 : 1.0);
+    return s;
+}
+
+/// Texture as fine as pixels that no guide shows, as in a mirror.
+PixelSample texture(int x, int y) {
+    PixelSample s = walls(0, 0);
+    s.direct = Rgb((x / 2 + y / 2) % 2 == 0 ? 1.0 : 0.5);
+    return s;
+}
+
+Image exact(const Shown& shown) { return rendered(shown, no_noise, 1).layers.at("beauty"); }
+
+/// Highlights of single pixels on it.
+PixelSample highlights(int x, int y) {
+    PixelSample s = texture(x, y);
+    if (x % 5 == 2 && y % 5 == 2) s.direct = Rgb(50.0);
+    return s;
+}
+
+/// Squared relative errors of a picture and of what the filter makes of it.
+struct Errors {
+    double noisy, filtered;
+    double gain() const { return noisy / filtered; }
+};
+Errors errors(const Shown& shown, const Noise& noise, int samples) {
+    const Picture picture = rendered(shown, noise, samples);
+    const Image reference = exact(shown);
+    return {image_error(picture.layers.at("beauty"), reference).relmse,
+            image_error(*denoise(picture), reference).relmse};
+}
+
+} // namespace
+
+TEST(Denoise_OfNoisyWalls, LeavesLittleOfTheNoise) {
+    EXPECT_GT(errors(walls, even_noise, 4).gain(), 12);
+    EXPECT_GT(errors(shadow, even_noise, 16).gain(), 8);
+}
+
+/// The mean of a column of a picture over what it should be.
+double column(const Image& picture, const Image& reference, int x) {
+    double mean = 0, expected = 0;
+    for (int y = 0; y < kHeight; ++y) {
+        mean += picture.at(x, y)[1];
+        expected += reference.at(x, y)[1];
+    }
+    return mean / expected;
+}
+
+// Not blurred by a pixel: the columns beside the edge are as good as those further away.
+TEST(Denoise_AtAnEdge, KeepsItSharp) {
+    for (const Shown& shown : {Shown(walls), Shown(shadow)}) {
+        const Image filtered = *denoise(rendered(shown, even_noise, 64)), reference = exact(shown);
+        for (const int x : {kEdge - 1, kEdge}) EXPECT_NEAR(column(filtered, reference, x), 1, 0.03) << x;
+    }
+}
+
+// Where noise hides what they differ in, surfaces tell: without guides the columns are 5 and 8 % off.
+TEST(Denoise_WhereSurfacesMeet, MixesNoLight) {
+    const Image filtered = *denoise(rendered(corner, even_noise, 4)), reference = exact(corner);
+    for (const int x : {kEdge - 1, kEdge}) EXPECT_NEAR(column(filtered, reference, x), 1, 0.03) << x;
+}
+
+TEST(Denoise_OfNoNoise, ChangesNothing) {
+    const Picture picture = rendered(texture, no_noise, 8);
+    EXPECT_THAT(denoise(picture)->data, testing::Pointwise(testing::FloatEq(), picture.layers.at("beauty").data));
+}
+
+TEST(Denoise_OfAPictureWhoseNoiseIsUnknown, ChangesNothing) {
+    Picture picture = rendered(walls, even_noise, 1); // one half has no samples
+    EXPECT_THAT(denoise(picture)->data, testing::Pointwise(testing::FloatEq(), picture.layers.at("beauty").data));
+    EXPECT_FALSE(sample_noise(picture));
+    erase_noise_layers(picture);
+    EXPECT_FALSE(denoise(picture));
+    EXPECT_FALSE(sample_noise(picture));
+}
+
+// Even where no guide sees what there is; and the more samples, the less is left.
+TEST(Denoise_OfTextureThatNoGuideShows, GainsAtAnyNumberOfSamples) {
+    double before = 1e9;
+    for (const int samples : {4, 64, 1024}) {
+        const Errors e = errors(texture, even_noise, samples);
+        EXPECT_LT(e.filtered, 0.6 * e.noisy) << samples;
+        EXPECT_LT(e.filtered, before);
+        before = e.filtered;
+    }
+}
+
+// The noise of highlights is taken for that of the dark pixels around them, which then look alike: 50 times the
+// error and more, were the filtered halves not judged by each other; ten times and more, were errors not relative.
+TEST(Denoise_OfDarkTextureBesideNoisyHighlights, LosesLittle) {
+    for (const int samples : {16, 64}) {
+        const Errors e = errors(highlights, noise_of_highlights, samples);
+        EXPECT_LT(e.filtered, 1.5 * e.noisy) << samples;
+    }
+}
+
+// Weights and values are independent. With weights of the same half, pixels without the rare bright samples look alike
+// and those with them stand alone: 4 % of the light are lost here.
+TEST(Denoise_OfRareBrightSamples, KeepsTheirLight) {
+    const Picture picture = rendered(walls, skewed_noise, 16);
+    const auto total = [](const Image& image) {
+        double sum = 0;
+        for (const float v : image.data) sum += v;
+        return sum;
+    };
+    EXPECT_NEAR(total(*denoise(picture)) / total(picture.layers.at("beauty")), 1, 0.03);
+    EXPECT_GT(errors(walls, skewed_noise, 16).gain(), 8);
+}
+
+TEST(Denoise, DependsNeitherOnThreadsNorOnTheUnitOfLight) {
+    const Picture picture = rendered(walls, even_noise, 8);
+    Image one, four;
+    with_threads(1, [&] { one = *denoise(picture); });
+    with_threads(4, [&] { four = *denoise(picture); });
+    EXPECT_EQ(one.data, four.data);
+
+    constexpr float kUnit = 0x1p-40;
+    Picture dim = picture;
+    for (const std::string layer : {"beauty", "direct", "indirect", "caustic"})
+        for (const std::string& name : {layer, noise_layer(layer)})
+            if (dim.layers.contains(name))
+                for (float& v : dim.layers[name].data) v *= kUnit;
+    const Image dimmed = *denoise(dim);
+    for (std::size_t i = 0; i < one.data.size(); ++i)
+        ASSERT_NEAR(dimmed.data[i], kUnit * one.data[i], 1e-4 * kUnit * one.data[i]);
+}
+
+TEST(Denoise, IsFiniteAndNotNegativeForAnyPicture) {
+    for (const auto& [width, height] : {std::pair(1, 1), {3, 1}, {2, 70}, {65, 17}}) {
+        Film film(width, height);
+        Rng rng(1, StreamPurpose::test, 3);
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x)
+                for (int i = 0; i < 3; ++i) { // halves of different sizes; pixels without a sample
+                    if (rng.next() < 0.3) continue;
+                    PixelSample s = walls(x, y);
+                    s.direct = Rgb(rng.next() < 0.2 ? 1e30 : rng.next() < 0.5 ? 1e-30 : 0);
+                    film.add(x, y, s, half_of(i));
+                }
+        const Image filtered = *denoise(film.to_picture());
+        for (const float v : filtered.data) ASSERT_TRUE(std::isfinite(v) && v >= 0) << v;
+    }
+}
+
+TEST(DenoisingReach, FollowsTheTime) {
+    const double whole = denoising_seconds(1'000'000);
+    EXPECT_GT(whole, 0);
+    EXPECT_EQ(denoising_reach(1'000'000, 1.01 * whole), kDenoisingReach);
+    const int shorter = denoising_reach(1'000'000, whole / 3);
+    EXPECT_GT(shorter, 0);
+    EXPECT_LT(shorter, kDenoisingReach);
+    EXPECT_EQ(denoising_reach(1'000'000, whole / 1000), 0);
+}
+
+// Within 30 %, as an error that is reported should be.
+TEST(SampleNoise, IsTheRootOfTheSquaredError) {
+    for (const int samples : {2, 5, 32}) {
+        const Picture picture = rendered(walls, even_noise, samples);
+        const double error = std::sqrt(image_error(picture.layers.at("beauty"), exact(walls)).relmse);
+        EXPECT_NEAR(*sample_noise(picture) / error, 1, 0.15) << samples;
+    }
+}
+
+} // namespace keyhole
