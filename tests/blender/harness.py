@@ -111,7 +111,7 @@ def diffuse(name, colour):
     return nodes.material
 
 
-def render(engine, options="", samples=None, multilayer=False, method="path"):
+def render(engine, options="", samples=None, multilayer=False, method="path", denoise=False):
     """The channels of the current scene's picture. And what Keyhole's engine says."""
     scene = bpy.context.scene
     scene.render.engine = engine
@@ -123,7 +123,7 @@ def render(engine, options="", samples=None, multilayer=False, method="path"):
     for key in ("max_bounces", "diffuse_bounces", "glossy_bounces", "transmission_bounces"):
         setattr(scene.cycles, key, 32)
     chosen = scene.keyhole
-    chosen.effort, chosen.method = "QUALITY", method
+    chosen.effort, chosen.method, chosen.denoise = "QUALITY", method, denoise
     chosen.options = options or f"--spp {samples or KEYHOLE_SAMPLES}"
     settings = scene.render.image_settings
     settings.file_format = "OPEN_EXR_MULTILAYER" if multilayer else "OPEN_EXR"

@@ -15,7 +15,7 @@ def passes_add_up():
     ball()
     lamp("AREA", size=2)
     bpy.context.scene.keyhole.noise_passes = True
-    layers, messages = render("KEYHOLE", multilayer=True)
+    layers, messages = render("KEYHOLE", multilayer=True, denoise=True)
     expect(messages, [])
     names = {name.split(".")[-2] for name in layers}
     assert names >= {"Combined", "Depth", "Normal", "Albedo", "Direct", "Indirect", "Caustics"}, names
@@ -38,7 +38,6 @@ def passes_add_up():
 def nothing_is_filtered_where_nobody_asks():
     floor()
     lamp("AREA", size=2)
-    bpy.context.scene.keyhole.denoise = False
     layers, _ = render("KEYHOLE", multilayer=True)
     of = {".".join(name.split(".")[-2:]): values for name, values in layers.items()}
     assert "Unfiltered.R" not in of and "Noise Direct.R" not in of

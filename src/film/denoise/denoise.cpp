@@ -1,14 +1,12 @@
 #include "film/denoise/denoise.h"
 
 #include "core/progress.h"
-#include "core/vec.h"
 #include "film/denoise/nonlocal_means.h"
+#include "film/denoise/outliers.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
-#include <initializer_list>
 #include <limits>
 #include <string>
 
@@ -20,59 +18,19 @@ constexpr int kReachOfNoise = 2, kReachOfJudgement = 3;
 /// Of the square of the mean: as everywhere, what is darker has no relative error to speak of.
 constexpr float kDark = 0.01f;
 
-/// Of a filter of this reach; what is done for a pixel besides counts as one more.
-double pixels_within(int reach) { return (2 * reach + 1) * (2 * reach + 1) + 1; }
-
-/// Layers that are filtered as one, as a sum.
-struct Part {
-    Image mean, noise;
-
-    Part(const Picture& picture, std::initializer_list<const char*> layers)
-        : mean(picture.width, picture.height, 3), noise(mean) {
-        for (const std::string layer : layers) {
-            add(picture.layers.at(layer), mean);
-            add(picture.layers.at(noise_layer(layer)), noise);
-        }
-    }
-
-  private:
-    static void add(const Image& layer, Image& sum) {
-        std::ranges::transform(layer.data, sum.data, sum.data.begin(), std::plus());
-    }
-};
-
-float luminance_at(const Image& image, int x, int y) {
-    const float* p = image.at(x, y);
-    return static_cast<float>(luminance(Rgb(p[0], p[1], p[2])));
-}
+/// Of a filter of this reach, about; what is done for a pixel besides counts as ten.
+double pixels_within(int reach) { return 3.14 * (reach + 0.5) * (reach + 0.5) + 10; }
 
 float squared(float x) { return x * x; }
 
-/// The part filtered, if it has noise that is known.
-Image filtered(const Part& part, const FilterGuides& guides, int reach) {
-    const int width = part.mean.width, height = part.mean.height, border = reach + kPatch;
-    if (std::ranges::all_of(part.noise.data, [](float d) { return d == 0; })) return part.mean;
-    const auto channel = [&](float sign, int c) {
-        return Plane(width, height, border,
-                     [&](int x, int y) { return part.mean.at(x, y)[c] + sign * part.noise.at(x, y)[c]; });
-    };
-    const auto half_luminance = [&](float sign) {
-        return Plane(width, height, border, [&](int x, int y) {
-            return luminance_at(part.mean, x, y) + sign * luminance_at(part.noise, x, y);
-        });
-    };
-    const auto variance_of_mean = [&](int x, int y) { return squared(luminance_at(part.noise, x, y)); };
-    const HalfPictures halves{
-        {std::array{channel(1, 0), channel(1, 1), channel(1, 2)}, {channel(-1, 0), channel(-1, 1), channel(-1, 2)}},
-        {half_luminance(1), half_luminance(-1)},
-        box_mean(width, height, border, kReachOfNoise, [&](int x, int y) { return 2 * variance_of_mean(x, y); })};
-    const std::array<Image, 2> smooth = filter_crosswise(halves, guides, reach);
-
-    // Either half is an unbiased judge of the other's filtered picture: its own variance, twice that of the mean of
-    // both, is on top of the error. Errors are relative, so that what is bright and noisy doesn't speak for all around.
+/// The mean of both filtered halves, blended with the part as it was.
+Image judged(const FilterPart& part, const HalfPictures& halves, const std::array<Image, 2>& smooth) {
+    const int width = part.mean.width, height = part.mean.height;
     Image mean_of_both = smooth[0];
     std::ranges::transform(mean_of_both.data, smooth[1].data, mean_of_both.data.begin(),
                            [](float a, float b) { return (a + b) / 2; });
+    // Either half is an unbiased judge of the other's filtered picture: its own variance, twice that of the mean of
+    // both, is on top of the error. Errors are relative, so that what is bright and noisy doesn't speak for all around.
     double sum = 0;
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) sum += luminance_at(part.mean, x, y);
@@ -81,7 +39,7 @@ Image filtered(const Part& part, const FilterGuides& guides, int reach) {
         return squared(luminance_at(mean_of_both, x, y)) + dark + std::numeric_limits<float>::min();
     };
     const Plane variance = box_mean(width, height, 0, kReachOfJudgement,
-                                    [&](int x, int y) { return variance_of_mean(x, y) / unit(x, y); });
+                                    [&](int x, int y) { return squared(luminance_at(part.noise, x, y)) / unit(x, y); });
     const Plane distance = box_mean(width, height, 0, kReachOfJudgement, [&](int x, int y) {
         const float d0 = luminance_at(smooth[0], x, y) - halves.luminances[1](x, y),
                     d1 = luminance_at(smooth[1], x, y) - halves.luminances[0](x, y);
@@ -99,6 +57,30 @@ Image filtered(const Part& part, const FilterGuides& guides, int reach) {
             for (int c = 0; c < 3; ++c) p[c] = std::lerp(p[c], mean_of_both.at(x, y)[c], share);
         }
     }
+    return result;
+}
+
+/// The part filtered, if it has noise that is known.
+Image filtered(FilterPart part, const FilterGuides& guides, int reach) {
+    if (std::ranges::all_of(part.noise.data, [](float d) { return d == 0; })) return part.mean;
+    const std::vector<Outlier> outliers = take_out_outliers(part, reach);
+    const int width = part.mean.width, height = part.mean.height, border = reach + kPatch;
+    const auto channel = [&](float sign, int c) {
+        return Plane(width, height, border,
+                     [&](int x, int y) { return part.mean.at(x, y)[c] + sign * part.noise.at(x, y)[c]; });
+    };
+    const auto half_luminance = [&](float sign) {
+        return Plane(width, height, border, [&](int x, int y) {
+            return luminance_at(part.mean, x, y) + sign * luminance_at(part.noise, x, y);
+        });
+    };
+    const HalfPictures halves{
+        {std::array{channel(1, 0), channel(1, 1), channel(1, 2)}, {channel(-1, 0), channel(-1, 1), channel(-1, 2)}},
+        {half_luminance(1), half_luminance(-1)},
+        box_mean(width, height, border, kReachOfNoise,
+                 [&](int x, int y) { return 2 * squared(luminance_at(part.noise, x, y)); })};
+    Image result = judged(part, halves, filter_crosswise(halves, guides, reach));
+    for (const Outlier& o : outliers) std::ranges::copy(o.mean, result.at(o.x, o.y));
     return result;
 }
 
@@ -123,8 +105,8 @@ std::optional<Image> denoise(const Picture& picture, int reach) {
     for (const std::string layer : {"direct", "indirect", "caustic", "albedo", "normal", "depth"})
         if (!picture.layers.contains(layer) || !picture.layers.contains(noise_layer(layer))) return std::nullopt;
     const FilterGuides guides(picture, reach + kPatch);
-    Image sum = filtered(Part(picture, {"direct"}), guides, reach);
-    const Image rest = filtered(Part(picture, {"indirect", "caustic"}), guides, reach);
+    Image sum = filtered(FilterPart(picture, {"direct"}), guides, reach);
+    const Image rest = filtered(FilterPart(picture, {"indirect", "caustic"}), guides, reach);
     std::ranges::transform(sum.data, rest.data, sum.data.begin(),
                            [](float a, float b) { return std::max(0.0f, a + b); });
     return sum;

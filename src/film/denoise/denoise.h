@@ -9,7 +9,7 @@
 namespace keyhole {
 
 /// Pixels up to which the filter looks, unless time is short.
-constexpr int kDenoisingReach = 5;
+constexpr int kDenoisingReach = 6;
 
 /// The layer "beauty" without the noise that two halves of the samples differ in: direct light, and all other light,
 /// each filtered by non-local means (filter_crosswise()) and blended with what it was by how far either is from the

@@ -5,9 +5,9 @@
 namespace keyhole {
 namespace {
 
-/// Differences below a tenth of a channel's range are no edges: swept from .03 to .17, flat above .1.
+/// Differences below a tenth of a channel's range are no edges.
 constexpr float kLeastSquare = 0.01f;
-/// What of a difference counts as 1, squared: swept from .6 to 1.5, flat from .6 to 1.
+/// The difference that counts as 1, over what a channel varies around there.
 constexpr float kGuideBandwidth = 0.8f;
 /// Pixels around one over which the noise of its channels is averaged.
 constexpr int kReachOfGuideNoise = 1;

@@ -7,7 +7,7 @@
 namespace keyhole {
 namespace {
 
-/// Differences of luminance in standard deviations that count as 1; swept from .35 to .8.
+/// The difference of luminance that counts as 1, over the noise of both pixels.
 constexpr float kBandwidth = 0.6f;
 /// More than this can't make a patch more unlike.
 constexpr float kMostUnlike = 1e6f;
@@ -21,6 +21,12 @@ float kernel(float distance) {
     return t * t * t;
 }
 
+/// 1 at the pixel itself, and 0 beyond `reach`: what of noise is left has soft edges then.
+float nearness(int dx, int dy, int reach) {
+    const float end = static_cast<float>(reach) + 0.5f;
+    return 1 - static_cast<float>(dx * dx + dy * dy) / (end * end);
+}
+
 /// A tile's pixels, and the sums that are made of them.
 class Tile {
   public:
@@ -28,8 +34,8 @@ class Tile {
         : halves_(halves), guides_(guides), x_(x), y_(y), width_(std::min(kAcross, halves.variance.width() - x)),
           height_(std::min(kDown, halves.variance.height() - y)) {}
 
-    /// Adds for every pixel the one that is (dx, dy) away, if there is one.
-    void add(int dx, int dy) {
+    /// Adds for every pixel the one that is (dx, dy) away, if there is one, with a weight of at most `most`.
+    void add(int dx, int dy, float most) {
         for (std::size_t half = 0; half < 2; ++half) find_likeness(half, dx, dy);
         const int left = std::max(0, -dx - x_), right = std::min(width_, halves_.variance.width() - dx - x_);
         const int top = std::max(0, -dy - y_), bottom = std::min(height_, halves_.variance.height() - dy - y_);
@@ -39,7 +45,7 @@ class Tile {
             for (std::size_t half = 0; half < 2; ++half) {
                 const auto& unlike = unlike_[1 - half][static_cast<std::size_t>(row)];
                 Sums& sums = sums_[half][static_cast<std::size_t>(row)];
-                for (std::size_t i = 0; i < kAcross; ++i) weight[i] = kernel(std::max(unlike[i], apart[i]));
+                for (std::size_t i = 0; i < kAcross; ++i) weight[i] = most * kernel(std::max(unlike[i], apart[i]));
                 for (int i = left; i < right; ++i)
                     sums.weights[static_cast<std::size_t>(i)] += weight[static_cast<std::size_t>(i)];
                 for (std::size_t c = 0; c < 3; ++c) {
@@ -115,7 +121,8 @@ std::array<Image, 2> filter_crosswise(const HalfPictures& halves, const FilterGu
     parallel_for(std::int64_t{across} * down, [&](std::int64_t i) {
         Tile tile(halves, guides, static_cast<int>(i % across) * kAcross, static_cast<int>(i / across) * kDown);
         for (int dy = -reach; dy <= reach; ++dy)
-            for (int dx = -reach; dx <= reach; ++dx) tile.add(dx, dy);
+            for (int dx = -reach; dx <= reach; ++dx)
+                if (const float near = nearness(dx, dy, reach); near > 0) tile.add(dx, dy, near);
         tile.write(filtered);
     });
     return filtered;

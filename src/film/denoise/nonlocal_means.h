@@ -17,9 +17,10 @@ struct HalfPictures {
     Plane variance; ///< border: the filter's reach and kPatch
 };
 
-/// Each of the halves as a mean over pixels up to `reach` away, weighed by how alike their surroundings look in the
-/// other half, beyond noise, and by guides: Rousselle, Knaus and Zwicker 2012, "Adaptive rendering with non-local means
-/// filtering". Weights and what they weigh are independent, so that a bright sample doesn't decide about itself.
+/// Each of the halves as a mean over pixels up to `reach` away, weighed by how near they are, and by how alike their
+/// surroundings look in the other half, beyond noise, and by guides: Rousselle, Knaus and Zwicker 2012, "Adaptive
+/// rendering with non-local means filtering". Weights and what they weigh are independent, so that a bright sample
+/// doesn't decide about itself.
 /// @returns three channels each.
 std::array<Image, 2> filter_crosswise(const HalfPictures& halves, const FilterGuides& guides, int reach);
 

@@ -1,0 +1,20 @@
+// Pixels that a filter would make larger instead of less noisy.
+#pragma once
+
+#include "film/denoise/filter_part.h"
+
+#include <array>
+#include <vector>
+
+namespace keyhole {
+
+struct Outlier {
+    int x, y;
+    std::array<float, 3> mean; ///< that it had
+};
+
+/// Finds pixels so bright that each, spread over those within `reach`, would make a disc of half their brightness more:
+/// a lamp smaller than a pixel, or a rare sample. Puts the mean of the others into their place, without noise.
+std::vector<Outlier> take_out_outliers(FilterPart& part, int reach);
+
+} // namespace keyhole
