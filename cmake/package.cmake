@@ -27,9 +27,9 @@ file(CONFIGURE OUTPUT package/changelog.Debian CONTENT
 
  -- @CPACK_PACKAGE_CONTACT@  @date@
 ")
-foreach(text package/changelog.Debian ../cmake/package/keyhole.1)
+foreach(text ${PROJECT_BINARY_DIR}/package/changelog.Debian ${PROJECT_SOURCE_DIR}/cmake/package/keyhole.1)
   cmake_path(GET text FILENAME name)
-  cmake_path(ABSOLUTE_PATH text BASE_DIRECTORY ${PROJECT_BINARY_DIR} NORMALIZE)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${text})
   file(ARCHIVE_CREATE OUTPUT ${PROJECT_BINARY_DIR}/package/${name}.gz PATHS ${text} FORMAT raw COMPRESSION GZip
     COMPRESSION_LEVEL 9)
 endforeach()

@@ -79,6 +79,8 @@ def put(engine, scene, layer, channels, attributes, file):
     """Hands all passes of a view layer to Blender, in the same way: `channels` maps those of Keyhole's EXR files to
     arrays (height, width). `attributes` are for the files that Blender writes."""
     named = {f"{layer.name}.Combined.{letter}": values for letter, values in combined(channels).items()}
+    if "unfiltered.R" not in channels:  # there was no time to filter it
+        channels = channels | {f"unfiltered.{letter}": channels[letter] for letter in "RGB"}
     for name, letters, _, names in of_layer(scene, layer):
         if names[0] in channels:
             named.update({f"{layer.name}.{name}.{letter}": channels[c] for letter, c in zip(letters, names)})

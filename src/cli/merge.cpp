@@ -17,20 +17,34 @@ struct MergeOptions {
     bool no_png = false;
 };
 
+/// As it was rendered: what is joined is filtered afterwards.
+Picture unfiltered(Picture picture) {
+    const auto layer = picture.layers.extract("unfiltered");
+    if (!layer.empty()) picture.layers["beauty"] = std::move(layer.mapped());
+    return picture;
+}
+
 int merge(MergeOptions o) {
     if (!o.no_png && o.outputs.png.empty()) o.outputs.png = default_png(o.outputs.exr);
     o.outputs.check();
     std::vector<NamedPicture> pictures;
-    for (const std::string& path : o.inputs) pictures.push_back({path, read_exr(path)});
+    for (const std::string& path : o.inputs) pictures.push_back({path, unfiltered(read_exr(path))});
     Picture joined = join_pictures(pictures);
+    const auto asked = [settings = " " + joined.metadata["settings"] + " "](std::string_view word) {
+        return settings.find(fmt::format(" {} ", word)) != std::string::npos;
+    };
+    o.outputs.denoise = asked("denoise=exr") ? Denoise::exr : asked("denoise=off") ? Denoise::off : Denoise::png;
+    o.outputs.noise_layers = asked("noise_layers=true");
     joined.metadata["command"] = o.command_line;
+    const bool share = !joined.sums.empty();
     const auto pixels = static_cast<std::size_t>(joined.width) * static_cast<std::size_t>(joined.height);
+    const Denoising denoising(o.outputs.denoise, !o.outputs.png.empty(), pixels, 0);
+    const std::string whole = joined.metadata["units"], all = joined.metadata["units of all"];
     RenderStats stats;
-    o.outputs.write(joined, Denoising(o.outputs.denoise, !o.outputs.png.empty(), pixels, 0).apply(joined, false, stats),
-                    {});
-    const auto units = joined.metadata.find("units");
-    if (!joined.sums.empty() && units != joined.metadata.end())
-        fmt::print(stderr, "{}: a share, {} of {}\n", o.outputs.exr, units->second, joined.metadata["units of all"]);
+    o.outputs.write(
+        std::move(joined), [&](const Picture& picture) { return denoising.apply(picture, StopToken(), stats); },
+        [] { return std::string(); });
+    if (share) fmt::print(stderr, "{}: a share, {} of {}\n", o.outputs.exr, whole, all);
     return kSuccess;
 }
 

@@ -111,8 +111,12 @@ void write_unfinished(const Picture& picture, const RenderOptions& options) {
     copy.metadata["scene"] = options.scene;
     copy.metadata["command"] = options.command_line;
     copy.metadata["complete"] = "no";
+    StopToken hurry;
+    hurry.request();
     RenderStats stats; // of a filter that nobody waits for
-    options.outputs.write(copy, options.denoising.apply(copy, true, stats), "{\n  \"complete\": false\n}\n");
+    options.outputs.write(
+        std::move(copy), [&](const Picture& p) { return options.denoising.apply(p, hurry, stats); },
+        [] { return std::string("{\n  \"complete\": false\n}\n"); });
 }
 
 /// From here on time counts that somebody has set: that a scene takes long to read is not the render's affair.
@@ -199,12 +203,16 @@ LoadedScene load_scene(const RenderOptions& options, std::vector<std::string>& w
 }
 
 /// Filters the picture, and writes what the options ask for.
-void write(RenderResult& result, const RenderOptions& options, bool interrupted) {
-    if (const auto noise = sample_noise(result.picture)) result.stats.values["noise of samples"] = *noise;
-    std::optional<Image> filtered = options.denoising.apply(result.picture, interrupted, result.stats);
+void write(RenderResult& result, const RenderOptions& options, const StopToken& stop) {
+    const Method& method = *result.settings.method;
+    if (method.samples_pixels || method.keeps_photons) // of chains there may be no halves
+        if (const auto noise = sample_noise(result.picture)) result.stats.values["noise of samples"] = *noise;
     result.picture.metadata.merge(picture_metadata(options.command_line, options.scene, result.stats));
     const int width = result.picture.width, height = result.picture.height;
-    options.outputs.write(std::move(result.picture), std::move(filtered), json_text(stats_json(result.stats)) + "\n");
+    options.outputs.write(
+        std::move(result.picture),
+        [&](const Picture& picture) { return options.denoising.apply(picture, stop, result.stats); },
+        [&] { return json_text(stats_json(result.stats)) + "\n"; });
     if (options.verbose) print_report(result.stats);
     if (!options.quiet)
         fmt::print(stderr, "{}: {} x {} pixels{}\n", options.outputs.exr, width, height,
@@ -237,7 +245,7 @@ int run(RenderOptions options) {
         fmt::print(stderr, "keyhole: stopped before there was a unit of work to keep: nothing was written\n");
         return kInterrupted;
     }
-    write(result, options, stop.requested());
+    write(result, options, stop);
     if (stop.requested()) return kInterrupted;
     return options.strict && !result.stats.warnings.empty() ? kNotTrusted : kSuccess;
 }

@@ -116,9 +116,8 @@ void check_same_render(const NamedPicture& a, const NamedPicture& b, SameRender 
     if (a.picture.width != b.picture.width || a.picture.height != b.picture.height)
         refuse(b, fmt::format("found {} x {} pixels, expected {} x {} as in {}", b.picture.width, b.picture.height,
                               a.picture.width, a.picture.height, a.name));
-    const std::set<std::string_view> free = same == SameRender::seed
-                                                ? std::set<std::string_view>{}
-                                                : std::set<std::string_view>{"seed", "passes", "spp", "mutations"};
+    std::set<std::string_view> free{"denoise", "noise_layers"}; // what is done with the picture afterwards
+    if (same != SameRender::seed) free.insert({"seed", "passes", "spp", "mutations"});
     const auto of_a = settings_of(a), of_b = settings_of(b);
     for (const auto& [key, word] : of_a) {
         if (free.contains(key)) continue;

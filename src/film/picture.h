@@ -70,8 +70,15 @@ struct Picture {
     std::map<std::string, AccumulatorState> sums;
 };
 
-inline void erase_noise_layers(Picture& picture) {
-    std::erase_if(picture.layers, [](const auto& layer) { return layer.first.starts_with(noise_layer({})); });
+/// Takes these layers out of a picture.
+inline std::map<std::string, Image> take_noise_layers(Picture& picture) {
+    std::map<std::string, Image> noise;
+    for (auto at = picture.layers.begin(); at != picture.layers.end();) {
+        const auto layer = at++;
+        if (layer->first.starts_with(noise_layer({}))) noise.insert(picture.layers.extract(layer));
+    }
+    return noise;
 }
+inline void erase_noise_layers(Picture& picture) { take_noise_layers(picture); }
 
 } // namespace keyhole

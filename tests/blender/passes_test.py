@@ -26,8 +26,9 @@ def passes_add_up():
     rough, smooth = (abs(np.diff(of[name])).mean() for name in ("Unfiltered.R", "Combined.R"))
     assert smooth < 0.9 * rough, (smooth, rough)
     assert abs(of["Combined.R"].mean() / total.mean() - 1) < 0.01
-    noise = abs(of["Noise Direct.R"]).mean() / of["Direct.R"].mean()
-    assert 0.001 < noise < 0.5, noise
+    for name, channel in (("Direct", "R"), ("Indirect", "R"), ("Normal", "Z"), ("Depth", "Z")):
+        noise = abs(of[f"Noise {name}.{channel}"]).mean() / abs(of[f"{name}.{channel}"]).mean()
+        assert 0.0001 < noise < 0.5, (name, noise)
     middle = of["Normal.Z"].shape[0] - 4, of["Normal.Z"].shape[1] // 2
     assert of["Normal.Z"][middle] > 0.99, "the floor, at the bottom, looks up"
     assert 3 < of["Depth.Z"][middle] < 6

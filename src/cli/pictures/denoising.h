@@ -1,6 +1,7 @@
 // The filter at the end of a render, in the time that there is for it.
 #pragma once
 
+#include "core/progress.h"
 #include "core/render_stats.h"
 #include "core/settings.h"
 #include "film/denoise/denoise.h"
@@ -21,9 +22,9 @@ class Denoising {
     double reserve_of_time(double seconds) { return reserve_of_cpu_time(seconds * threads_) / threads_; }
     double reserve_of_cpu_time(double seconds);
 
-    /// The picture without grain; none if it isn't asked for, the picture's noise is not known, or if it would take too
-    /// long for somebody who has interrupted the render. Puts its time into `stats`.
-    std::optional<Image> apply(const Picture& picture, bool interrupted, RenderStats& stats) const;
+    /// The picture without grain; none if it isn't asked for, the picture's noise is not known, somebody who has
+    /// interrupted the render would wait too long, or interrupts this. Puts its time into `stats`.
+    std::optional<Image> apply(const Picture& picture, const StopToken& stop, RenderStats& stats) const;
 
   private:
     std::size_t pixels_ = 0;

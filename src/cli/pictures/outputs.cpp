@@ -12,6 +12,13 @@ namespace keyhole {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+/// Where a filter takes longer than one likes to lose a picture for, the EXR is written before it, too.
+constexpr std::size_t kPixelsOfASecond = 400'000;
+
+} // namespace
+
 std::string default_exr(const std::string& scene) { return fs::path(scene).stem().string() + ".exr"; }
 
 std::string default_png(const std::string& exr) { return fs::path(exr).replace_extension(".png").string(); }
@@ -28,16 +35,27 @@ void Outputs::check() const {
         throw InputError(exr + ": found one name for two outputs, expected different ones");
 }
 
-void Outputs::write(Picture picture, std::optional<Image> filtered, const std::string& stats_json) const {
-    if (!noise_layers) erase_noise_layers(picture);
-    Image& beauty = picture.layers.at("beauty");
-    if (filtered && denoise == Denoise::exr) {
-        picture.layers["unfiltered"] = std::exchange(beauty, *std::move(filtered));
-        filtered.reset();
+void Outputs::write(Picture picture, const Filter& filter, const std::function<std::string()>& stats_json) const {
+    std::map<std::string, Image> noise;
+    if (!noise_layers) noise = take_noise_layers(picture);
+    const auto filtered = [&] {
+        picture.layers.merge(noise);
+        std::optional<Image> image = filter(picture);
+        if (!noise_layers) erase_noise_layers(picture);
+        return image;
+    };
+    const std::size_t pixels = picture.layers.at("beauty").data.size() / 3;
+    if (denoise != Denoise::exr || pixels > kPixelsOfASecond) write_exr(exr, picture);
+    if (denoise == Denoise::exr) {
+        if (std::optional<Image> image = filtered())
+            picture.layers["unfiltered"] = std::exchange(picture.layers.at("beauty"), *std::move(image));
+        write_exr(exr, picture);
     }
-    write_exr(exr, picture);
-    if (!png.empty()) write_png(png, filtered ? *filtered : beauty, exposure);
-    if (!stats.empty()) write_file_atomically(stats, stats_json);
+    if (!png.empty()) {
+        const std::optional<Image> image = denoise == Denoise::png ? filtered() : std::nullopt;
+        write_png(png, image ? *image : picture.layers.at("beauty"), exposure);
+    }
+    if (!stats.empty()) write_file_atomically(stats, stats_json());
 }
 
 } // namespace keyhole

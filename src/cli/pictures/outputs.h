@@ -4,6 +4,7 @@
 #include "core/choices.h"
 #include "film/picture.h"
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -20,9 +21,11 @@ struct Outputs {
     /// @throws InputError for names that are no EXR's, that coincide, or that can't be written.
     void check() const;
 
-    /// Writes the files. @throws InputError as check().
-    /// @param filtered the picture without grain; an EXR that is to show it has the picture itself as "unfiltered".
-    void write(Picture picture, std::optional<Image> filtered, const std::string& stats_json) const;
+    /// The picture without grain, with its layers and their noise; none if there is no time for that.
+    using Filter = std::function<std::optional<Image>(const Picture&)>;
+    /// Writes the files: first what can't be made again. An EXR that shows the picture filtered has what it was as
+    /// layer "unfiltered". @param stats_json called last. @throws InputError as check().
+    void write(Picture picture, const Filter& filter, const std::function<std::string()>& stats_json) const;
 };
 
 /// Names that nobody gave: the scene's with .exr, in the current folder; the EXR's with .png.

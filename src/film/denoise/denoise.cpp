@@ -1,6 +1,6 @@
 #include "film/denoise/denoise.h"
 
-#include "core/progress.h"
+#include "core/parallel.h"
 #include "film/denoise/nonlocal_means.h"
 #include "film/denoise/outliers.h"
 
@@ -24,7 +24,7 @@ double pixels_within(int reach) { return 3.14 * (reach + 0.5) * (reach + 0.5) + 
 float squared(float x) { return x * x; }
 
 /// The mean of both filtered halves, blended with the part as it was.
-Image judged(const FilterPart& part, const HalfPictures& halves, const std::array<Image, 2>& smooth) {
+Image judged(const FilterPart& part, const std::array<Image, 2>& smooth) {
     const int width = part.mean.width, height = part.mean.height;
     Image mean_of_both = smooth[0];
     std::ranges::transform(mean_of_both.data, smooth[1].data, mean_of_both.data.begin(),
@@ -38,31 +38,41 @@ Image judged(const FilterPart& part, const HalfPictures& halves, const std::arra
     const auto unit = [&](int x, int y) {
         return squared(luminance_at(mean_of_both, x, y)) + dark + std::numeric_limits<float>::min();
     };
-    const Plane variance = box_mean(width, height, 0, kReachOfJudgement,
-                                    [&](int x, int y) { return squared(luminance_at(part.noise, x, y)) / unit(x, y); });
+    // In all channels: what differs in colour alone has to stay, too.
+    const auto squares = [](const float* a, const float* b, float sign_of_noise, const float* noise) {
+        float sum = 0;
+        for (int c = 0; c < 3; ++c) sum += squared(a[c] - (b[c] + sign_of_noise * noise[c]));
+        return sum / 3;
+    };
+    constexpr std::array<float, 3> kBlack{};
+    const Plane variance = box_mean(width, height, 0, kReachOfJudgement, [&](int x, int y) {
+        return squares(kBlack.data(), kBlack.data(), 1, part.noise.at(x, y)) / unit(x, y);
+    });
     const Plane distance = box_mean(width, height, 0, kReachOfJudgement, [&](int x, int y) {
-        const float d0 = luminance_at(smooth[0], x, y) - halves.luminances[1](x, y),
-                    d1 = luminance_at(smooth[1], x, y) - halves.luminances[0](x, y);
-        return (d0 * d0 + d1 * d1) / 2 / unit(x, y);
+        const float *mean = part.mean.at(x, y), *noise = part.noise.at(x, y);
+        return (squares(smooth[0].at(x, y), mean, -1, noise) + squares(smooth[1].at(x, y), mean, 1, noise)) / 2 /
+               unit(x, y);
     });
     Image result = part.mean;
-    for (int y = 0; y < height; ++y) {
+    parallel_for(height, [&](std::int64_t row) {
+        const int y = static_cast<int>(row);
         for (int x = 0; x < width; ++x) {
             const float noise = 2 * variance(x, y), error = std::max(0.0f, distance(x, y) - noise);
-            if (noise == 0) continue;
             // Of the mean of two filtered halves half of the error of each is left, if it is noise: the weights of
             // least error are as 1 / variance.
             const float share = noise / (noise + error);
+            if (!(share > 0)) continue; // without noise
             float* p = result.at(x, y);
             for (int c = 0; c < 3; ++c) p[c] = std::lerp(p[c], mean_of_both.at(x, y)[c], share);
         }
-    }
+    });
     return result;
 }
 
 /// The part filtered, if it has noise that is known.
-Image filtered(FilterPart part, const FilterGuides& guides, int reach) {
+Image filtered(FilterPart part, const FilterGuides& guides, int reach, const StopToken* stop) {
     if (std::ranges::all_of(part.noise.data, [](float d) { return d == 0; })) return part.mean;
+    const int exponent = part.normalise();
     const std::vector<Outlier> outliers = take_out_outliers(part, reach);
     const int width = part.mean.width, height = part.mean.height, border = reach + kPatch;
     const auto channel = [&](float sign, int c) {
@@ -79,8 +89,10 @@ Image filtered(FilterPart part, const FilterGuides& guides, int reach) {
         {half_luminance(1), half_luminance(-1)},
         box_mean(width, height, border, kReachOfNoise,
                  [&](int x, int y) { return 2 * squared(luminance_at(part.noise, x, y)); })};
-    Image result = judged(part, halves, filter_crosswise(halves, guides, reach));
-    for (const Outlier& o : outliers) std::ranges::copy(o.mean, result.at(o.x, o.y));
+    Image result = judged(part, filter_crosswise(halves, guides, reach, stop));
+    for (const Outlier& o : outliers)
+        if (o.confirmed) std::ranges::copy(o.mean, result.at(o.x, o.y));
+    scale(result, exponent);
     return result;
 }
 
@@ -101,12 +113,13 @@ double seconds_of_trial() {
 
 } // namespace
 
-std::optional<Image> denoise(const Picture& picture, int reach) {
+std::optional<Image> denoise(const Picture& picture, int reach, const StopToken* stop) {
     for (const std::string layer : {"direct", "indirect", "caustic", "albedo", "normal", "depth"})
         if (!picture.layers.contains(layer) || !picture.layers.contains(noise_layer(layer))) return std::nullopt;
     const FilterGuides guides(picture, reach + kPatch);
-    Image sum = filtered(FilterPart(picture, {"direct"}), guides, reach);
-    const Image rest = filtered(FilterPart(picture, {"indirect", "caustic"}), guides, reach);
+    Image sum = filtered(FilterPart(picture, {"direct"}), guides, reach, stop);
+    const Image rest = filtered(FilterPart(picture, {"indirect", "caustic"}), guides, reach, stop);
+    if (stop != nullptr && stop->requested()) return std::nullopt;
     std::ranges::transform(sum.data, rest.data, sum.data.begin(),
                            [](float a, float b) { return std::max(0.0f, a + b); });
     return sum;

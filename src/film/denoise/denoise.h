@@ -1,6 +1,7 @@
 // A picture without the grain that samples of pixels leave.
 #pragma once
 
+#include "core/progress.h"
 #include "film/picture.h"
 
 #include <cstddef>
@@ -16,8 +17,8 @@ constexpr int kDenoisingReach = 6;
 /// other half, so that the more samples, the less is changed. What all samples share, such as the photons of a map,
 /// stays as it is. The same for any number of threads.
 /// @param picture with the layers of a Film and their noise.
-/// @returns none for a picture without these.
-std::optional<Image> denoise(const Picture& picture, int reach = kDenoisingReach);
+/// @returns none for a picture without these, and if `stop` is requested meanwhile. May be null.
+std::optional<Image> denoise(const Picture& picture, int reach = kDenoisingReach, const StopToken* stop = nullptr);
 
 /// CPU time that denoise() takes for so many pixels [s], from a trial on a small picture that the first call makes.
 double denoising_seconds(std::size_t pixels, int reach = kDenoisingReach);

@@ -5,6 +5,7 @@
 #include "film/picture.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <initializer_list>
 #include <string>
@@ -14,6 +15,11 @@ namespace keyhole {
 inline float luminance_at(const Image& image, int x, int y) {
     const float* p = image.at(x, y);
     return static_cast<float>(luminance(Rgb(p[0], p[1], p[2])));
+}
+
+/// Multiplies by a power of two.
+inline void scale(Image& image, int exponent) {
+    for (float& v : image.data) v = std::ldexp(v, exponent);
 }
 
 /// The sum of some layers of three channels, and of their noise.
@@ -26,6 +32,18 @@ struct FilterPart {
             add(picture.layers.at(layer), mean);
             add(picture.layers.at(noise_layer(layer)), noise);
         }
+    }
+
+    /// Brings its mean near 1, so that squares are numbers, whatever the unit of light. Returns the exponent of the
+    /// power of two that it was.
+    int normalise() {
+        double sum = 0;
+        for (const float v : mean.data) sum += std::abs(double{v});
+        int exponent = 0;
+        std::frexp(sum / static_cast<double>(mean.data.size()), &exponent);
+        scale(mean, -exponent);
+        scale(noise, -exponent);
+        return exponent;
     }
 
   private:

@@ -39,7 +39,7 @@ class Tile {
         for (std::size_t half = 0; half < 2; ++half) find_likeness(half, dx, dy);
         const int left = std::max(0, -dx - x_), right = std::min(width_, halves_.variance.width() - dx - x_);
         const int top = std::max(0, -dy - y_), bottom = std::min(height_, halves_.variance.height() - dy - y_);
-        std::array<float, kAcross> apart, weight;
+        std::array<float, kAcross> apart{}, weight;
         for (int row = top; row < bottom; ++row) {
             guides_.distances(x_, y_ + row, dx, dy, width_, apart.data());
             for (std::size_t half = 0; half < 2; ++half) {
@@ -114,11 +114,13 @@ class Tile {
 
 } // namespace
 
-std::array<Image, 2> filter_crosswise(const HalfPictures& halves, const FilterGuides& guides, int reach) {
+std::array<Image, 2> filter_crosswise(const HalfPictures& halves, const FilterGuides& guides, int reach,
+                                      const StopToken* stop) {
     const int width = halves.variance.width(), height = halves.variance.height();
     std::array<Image, 2> filtered{Image(width, height, 3), Image(width, height, 3)};
     const int across = (width + kAcross - 1) / kAcross, down = (height + kDown - 1) / kDown;
     parallel_for(std::int64_t{across} * down, [&](std::int64_t i) {
+        if (stop != nullptr && stop->requested()) return;
         Tile tile(halves, guides, static_cast<int>(i % across) * kAcross, static_cast<int>(i / across) * kDown);
         for (int dy = -reach; dy <= reach; ++dy)
             for (int dx = -reach; dx <= reach; ++dx)

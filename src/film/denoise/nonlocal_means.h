@@ -1,6 +1,7 @@
 // Pixels that look alike, averaged.
 #pragma once
 
+#include "core/progress.h"
 #include "film/denoise/filter_guides.h"
 
 #include <array>
@@ -21,7 +22,8 @@ struct HalfPictures {
 /// surroundings look in the other half, beyond noise, and by guides: Rousselle, Knaus and Zwicker 2012, "Adaptive
 /// rendering with non-local means filtering". Weights and what they weigh are independent, so that a bright sample
 /// doesn't decide about itself.
-/// @returns three channels each.
-std::array<Image, 2> filter_crosswise(const HalfPictures& halves, const FilterGuides& guides, int reach);
+/// @returns three channels each; of no use if `stop` is requested meanwhile. May be null.
+std::array<Image, 2> filter_crosswise(const HalfPictures& halves, const FilterGuides& guides, int reach,
+                                      const StopToken* stop);
 
 } // namespace keyhole

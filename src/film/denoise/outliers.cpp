@@ -12,6 +12,8 @@ constexpr float kMostAdded = 0.2f;
 /// So many times the mean over a window, itself among it, no outlier is below. And no more than so many of a window.
 constexpr float kFarAboveMean = 8;
 constexpr std::size_t kMostOfWindow = 6;
+/// Of its brightness, what the half with less of it has at least: light that is there, not one sample's luck.
+constexpr float kLeastInHalf = 0.1f;
 
 /// The luminance above which a pixel is an outlier in the window around (x, y).
 float bound(const Plane& luminance, int x, int y, int reach, std::vector<float>& window) {
@@ -39,7 +41,8 @@ std::vector<Outlier> take_out_outliers(FilterPart& part, int reach) {
             if (luminance(x, y) > kFarAboveMean * mean(x, y) &&
                 luminance(x, y) > bound(luminance, x, y, reach, window)) {
                 const float* p = part.mean.at(x, y);
-                found.push_back({x, y, {p[0], p[1], p[2]}});
+                const bool confirmed = std::abs(luminance_at(part.noise, x, y)) < (1 - kLeastInHalf) * luminance(x, y);
+                found.push_back({x, y, {p[0], p[1], p[2]}, confirmed});
             }
     // All at once: what is put into the place of one doesn't depend on that of another.
     for (const Outlier& o : found) {

@@ -1,6 +1,7 @@
 // One channel of a picture, with a border for neighbours.
 #pragma once
 
+#include "core/parallel.h"
 #include "film/picture.h"
 
 #include <algorithm>
@@ -17,9 +18,11 @@ class Plane {
     Plane(int width, int height, int border, Value&& value)
         : width_(width), height_(height), border_(border), stride_(width + 2 * border),
           data_(static_cast<std::size_t>(stride_) * static_cast<std::size_t>(height + 2 * border)) {
-        for (int y = -border; y < height + border; ++y)
+        parallel_for(height + 2 * border, [&](std::int64_t row) {
+            const int y = static_cast<int>(row) - border;
             for (int x = -border; x < width + border; ++x)
                 *at(x, y) = value(std::clamp(x, 0, width - 1), std::clamp(y, 0, height - 1));
+        });
     }
 
     int width() const { return width_; }

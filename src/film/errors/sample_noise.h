@@ -12,7 +12,8 @@ namespace keyhole {
 /// of what `keyhole diff` calls cross_trim, where all of a picture's error is noise of samples. What all samples share,
 /// such as the photons of a map, it does not see.
 /// @param picture a Film's.
-/// @returns none where halves are not known of a layer that has light.
+/// Pixels that have samples of one half only are left out.
+/// @returns none where halves are not known of a layer that has light, and of a black picture.
 std::optional<double> sample_noise(const Picture& picture);
 
 } // namespace keyhole

@@ -32,7 +32,8 @@ std::string_view last_part(std::string_view channel) {
     return dot == std::string_view::npos ? channel : channel.substr(dot + 1);
 }
 
-std::string_view letters(const std::string& layer, int channels) {
+std::string_view letters(std::string_view layer, int channels) {
+    if (layer.starts_with("noise.")) layer.remove_prefix(6); // has the channels of what it is the noise of
     switch (channels) {
     case 1:
         if (layer == "alpha") return "A";

@@ -10,6 +10,12 @@ namespace {
 /// Renders with less weight than this share of a later one's tell nothing that it doesn't.
 constexpr double kNegligible = 0.05;
 
+/// Gives either picture what only the other has: methods that draw all light know no surfaces.
+void share_layers(Picture& a, Picture& b) {
+    for (const auto& [name, image] : a.layers) b.layers.emplace(name, image);
+    for (const auto& [name, image] : b.layers) a.layers.emplace(name, image);
+}
+
 } // namespace
 
 void MeanRender::add(RenderResult&& result, double weight) {
@@ -20,6 +26,7 @@ void MeanRender::add(RenderResult&& result, double weight) {
         return;
     }
     weight_ += weight;
+    share_layers(result_->picture, result.picture);
     blend(result_->picture, result.picture, weight / weight_);
     result_->picture.sums.clear(); // they are of one render
     const double samples = result_->stats.samples + result.stats.samples;

@@ -2,6 +2,7 @@
 
 #include "core/shared_work.h"
 #include "methods/choice/affordable.h"
+#include "methods/choice/filtered_grain.h"
 #include "methods/choice/first_look.h"
 #include "methods/choice/stage_balance.h"
 #include "methods/method.h"
@@ -268,11 +269,6 @@ Settings TrialCost::settings_for(const Settings& s, const std::set<std::string>&
     effort = affordable_effort(cost, s, given, balance, pixels, seconds);
     const Settings even = with_effort(s, effort, static_cast<std::int64_t>(pixels), given, balance);
     return noise ? split_stage_three(even, cost, *noise, pixels, given) : even;
-}
-
-double grain_that_counts(const Settings& settings, const Method& method) {
-    constexpr double kLeft = 0.3;
-    return settings.denoise == Denoise::exr && (method.samples_pixels || method.keeps_photons) ? kLeft : 1;
 }
 
 std::optional<TrialCost> try_cost(const TrialContext& c, const Method& method, double seconds, double most) {

@@ -49,11 +49,6 @@ struct TrialContext {
     Findings& findings;
 };
 
-/// The share of the grain of a method's samples that the filter at the end leaves, where the picture that counts goes
-/// through it: that was between a tenth and nine twentieths on rooms that others made (docs/denoise.md). Blotches stay,
-/// and so does what chains draw.
-double grain_that_counts(const Settings& settings, const Method& method);
-
 /// What a method costs, by one render of about so many seconds. None where it is not done in `most`, or leaves a pixel
 /// empty: then it is too slow for the time. The scene's window is what it was afterwards.
 std::optional<TrialCost> try_cost(const TrialContext& c, const Method& method, double seconds, double most);

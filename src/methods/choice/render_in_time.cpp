@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/shared_work.h"
 #include "methods/choice/affordable.h"
+#include "methods/choice/filtered_grain.h"
 #include "methods/choice/first_look.h"
 #include "methods/choice/mean_render.h"
 #include "methods/choice/method_trials.h"
