@@ -1,6 +1,6 @@
 // keyhole diff: error measures as JSON.
-#include "cli/pictures/beauty.h"
 #include "cli/command.h"
+#include "cli/pictures/beauty.h"
 #include "film/errors/image_error.h"
 
 #include <fmt/format.h>

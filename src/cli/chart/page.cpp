@@ -1,8 +1,8 @@
 // The page of a chart: its data as JSON, put into the page's parts.
-#include "cli/pictures/beauty.h"
 #include "cli/chart/outputs.h"
 #include "cli/chart/page_pictures.h"
 #include "cli/page/page_parts.h"
+#include "cli/pictures/beauty.h"
 #include "film/files/atomic_file.h"
 
 #include <nlohmann/json.hpp>

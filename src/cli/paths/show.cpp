@@ -1,6 +1,6 @@
 // keyhole paths show: a preview of the scene with user paths drawn over it.
-#include "cli/pictures/outputs.h"
 #include "cli/paths/paths.h"
+#include "cli/pictures/outputs.h"
 #include "film/drawing.h"
 #include "film/files/atomic_file.h"
 #include "film/files/png.h"

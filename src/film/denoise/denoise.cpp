@@ -104,8 +104,7 @@ double seconds_of_trial() {
         for (const std::string& name : {std::string(layer), noise_layer(layer)})
             picture.layers[name] = Image(kSize, kSize, 3);
     picture.layers["depth"] = picture.layers[noise_layer("depth")] = Image(kSize, kSize, 1);
-    for (const char* layer : {"noise.direct", "noise.indirect"})
-        picture.layers[layer].data.assign(kSize * kSize * 3, 1);
+    for (const char* layer : {"noise.direct", "noise.indirect"}) std::ranges::fill(picture.layers[layer].data, 1.0f);
     const double start = cpu_seconds();
     denoise(picture, kDenoisingReach);
     return (cpu_seconds() - start) / (kSize * kSize) / pixels_within(kDenoisingReach);

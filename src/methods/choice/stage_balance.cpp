@@ -1,7 +1,6 @@
 #include "methods/choice/stage_balance.h"
 
 #include "core/statistics.h"
-#include "methods/choice/filtered_grain.h"
 
 #include <algorithm>
 #include <cmath>
@@ -53,7 +52,7 @@ Settings split_stage_three(const Settings& settings, const Experience& cost, con
     }
     const auto rays = static_cast<double>(s.cache_rays), spp = static_cast<double>(s.spp);
     const double of_records = noise.records * kRaysAtFirst * static_cast<double>(cost.settings.cache_rays) / rays;
-    const double of_samples = grain_that_counts(settings, *settings.method) * noise.samples / spp;
+    const double of_samples = noise.samples / spp;
     const double share = best_share_of_time(of_records * records, of_samples * samples);
     const double both = records + samples - std::max(more, 0.0);
     s.cache_rays =
