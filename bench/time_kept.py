@@ -74,7 +74,7 @@ def write_heavy(folder, side=1581, instances=141, lamps=2000, sky=11584):
 
 
 def command(args, scene, size, picture, *options):
-    return [args.keyhole, "render", scene, "-q", "-t", "1", "--no-png", "-o", picture, "--method", args.method,
+    return [args.keyhole, "render", scene, "-q", "-t", "1", "-o", picture, "--method", args.method,
             *(("--resolution", size) if size else ()), *options]
 
 
