@@ -30,11 +30,11 @@ int merge(MergeOptions o) {
     std::vector<NamedPicture> pictures;
     for (const std::string& path : o.inputs) pictures.push_back({path, unfiltered(read_exr(path))});
     Picture joined = join_pictures(pictures);
-    const auto asked = [settings = " " + joined.metadata["settings"] + " "](std::string_view word) {
-        return settings.find(fmt::format(" {} ", word)) != std::string::npos;
-    };
-    o.outputs.denoise = asked("denoise=exr") ? Denoise::exr : asked("denoise=off") ? Denoise::off : Denoise::png;
-    o.outputs.noise_layers = asked("noise_layers=true");
+    const auto settings = settings_of(pictures.front());
+    if (const auto word = settings.find("denoise"); word != settings.end())
+        o.outputs.denoise = choice_of<Denoise>(word->second.substr(word->second.find('=') + 1)).value_or(Denoise::png);
+    const auto noise = settings.find("noise_layers");
+    o.outputs.noise_layers = noise != settings.end() && noise->second == "noise_layers=true";
     joined.metadata["command"] = o.command_line;
     const bool share = !joined.sums.empty();
     const auto pixels = static_cast<std::size_t>(joined.width) * static_cast<std::size_t>(joined.height);

@@ -48,4 +48,11 @@ std::vector<std::size_t> without_outliers(const std::vector<double>& values) {
     return order;
 }
 
+double trimmed_mean(const std::vector<double>& values) {
+    const std::vector<std::size_t> kept = without_outliers(values);
+    double sum = 0;
+    for (const std::size_t i : kept) sum += values[i];
+    return sum / static_cast<double>(kept.size());
+}
+
 } // namespace keyhole

@@ -21,6 +21,8 @@ double mean(const std::vector<double>& values);
 
 /// Indices of the values that are left without the 0.1 % largest in size, NaN being the largest of all.
 std::vector<std::size_t> without_outliers(const std::vector<double>& values);
+/// Mean of these; NaN without any.
+double trimmed_mean(const std::vector<double>& values);
 
 /// Mean over the 3x3 neighbourhood of each pixel; the border repeats.
 std::vector<double> smooth(const Grey& g);

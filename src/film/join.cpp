@@ -39,13 +39,6 @@ double samples(const NamedPicture& p) {
     return value;
 }
 
-std::map<std::string, std::string> settings_of(const NamedPicture& p) {
-    std::map<std::string, std::string> settings;
-    std::istringstream words(attribute(p, "settings"));
-    for (std::string word; words >> word;) settings[word.substr(0, word.find('='))] = word;
-    return settings;
-}
-
 AccumulationBuffer empty_buffer_for(const NamedPicture& p) {
     const auto& sums = p.picture.sums;
     const bool film = sums.contains("samples"), drawn = sums.contains("drawn");
@@ -99,6 +92,13 @@ Picture average(const std::vector<NamedPicture>& pictures) {
 }
 
 } // namespace
+
+std::map<std::string, std::string> settings_of(const NamedPicture& p) {
+    std::map<std::string, std::string> settings;
+    std::istringstream words(attribute(p, "settings"));
+    for (std::string word; words >> word;) settings[word.substr(0, word.find('='))] = word;
+    return settings;
+}
 
 WorkItemSet units_of(const NamedPicture& p) {
     try {

@@ -4,6 +4,7 @@
 #include "core/work_item_set.h"
 #include "film/picture.h"
 
+#include <map>
 #include <span>
 #include <string>
 
@@ -26,6 +27,9 @@ enum class SameRender { seed, method };
 /// Checks by their metadata that two pictures show the same scene, by the same program and settings.
 /// @throws InputError that says what differs.
 void check_same_render(const NamedPicture& a, const NamedPicture& b, SameRender same);
+
+/// The settings that a picture was rendered with: by key, each as "key=value". @throws InputError without them.
+std::map<std::string, std::string> settings_of(const NamedPicture& p);
 
 /// The units of work in a share. @throws InputError
 WorkItemSet units_of(const NamedPicture& p);

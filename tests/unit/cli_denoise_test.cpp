@@ -51,3 +51,18 @@ TEST_F(Program, SharesThatAreJoinedAreFilteredAsTheWhole) {
     EXPECT_EQ(read("joined.png"), read("whole.png"));
     EXPECT_FALSE(read_exr(scratch.path("joined.exr")).layers.contains("noise.direct"));
 }
+
+// What is joined is what was rendered; the mean is filtered once, at the end.
+TEST_F(Program, FilteredPicturesAreJoinedAsTheyWereRendered) {
+    const std::string common = "render scene.yaml --spp 8 -D noise_layers=true --no-png -q ";
+    for (const char* seed : {"1", "2"}) {
+        ASSERT_EQ(run(common + "--seed " + seed + " --denoise off -o plain" + seed + ".exr"), 0) << read("err");
+        ASSERT_EQ(run(common + "--seed " + seed + " --denoise exr -o smooth" + seed + ".exr"), 0) << read("err");
+    }
+    ASSERT_EQ(run("merge plain1.exr plain2.exr -o plain.exr --no-png"), 0) << read("err");
+    ASSERT_EQ(run("merge smooth1.exr smooth2.exr -o smooth.exr --no-png"), 0) << read("err");
+    const Picture plain = read_exr(scratch.path("plain.exr")), smooth = read_exr(scratch.path("smooth.exr"));
+    EXPECT_EQ(smooth.layers.at("unfiltered").data, plain.layers.at("beauty").data);
+    EXPECT_NE(smooth.layers.at("beauty").data, plain.layers.at("beauty").data);
+    EXPECT_TRUE(smooth.layers.contains("noise.direct"));
+}

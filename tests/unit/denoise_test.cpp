@@ -269,6 +269,14 @@ TEST(Denoise, IsFiniteAndNotNegativeForAnyPicture) {
     }
 }
 
+TEST(Denoise_ThatIsInterrupted, LeavesNothing) {
+    StopToken stop;
+    const Picture picture = rendered(walls, even_noise, 4);
+    EXPECT_TRUE(denoise(picture, 1, &stop));
+    stop.request();
+    EXPECT_FALSE(denoise(picture, 1, &stop));
+}
+
 TEST(DenoisingReach, FollowsTheTime) {
     const double whole = denoising_seconds(1'000'000);
     EXPECT_GT(whole, 0);

@@ -15,8 +15,8 @@ constexpr std::size_t kMostOfWindow = 6;
 /// Of its brightness, what the half with less of it has at least: light that is there, not one sample's luck.
 constexpr float kLeastInHalf = 0.1f;
 
-/// The luminance above which a pixel is an outlier in the window around (x, y).
-float bound(const Plane& luminance, int x, int y, int reach, std::vector<float>& window) {
+/// The mean luminance of a window around (x, y) without its brightest pixels. `window` receives all of it.
+float mean_of_most(const Plane& luminance, int x, int y, int reach, std::vector<float>& window) {
     window.clear();
     for (int j = std::max(0, y - reach); j <= std::min(luminance.height() - 1, y + reach); ++j)
         for (int i = std::max(0, x - reach); i <= std::min(luminance.width() - 1, x + reach); ++i)
@@ -25,7 +25,7 @@ float bound(const Plane& luminance, int x, int y, int reach, std::vector<float>&
     std::ranges::nth_element(window, window.begin() + static_cast<std::ptrdiff_t>(kept - 1));
     double sum = 0;
     for (std::size_t i = 0; i < kept; ++i) sum += window[i];
-    return kMostAdded * static_cast<float>(sum / static_cast<double>(kept) * static_cast<double>(window.size()));
+    return static_cast<float>(sum / static_cast<double>(kept));
 }
 
 } // namespace
@@ -36,21 +36,17 @@ std::vector<Outlier> take_out_outliers(FilterPart& part, int reach) {
     const Plane mean = box_mean(width, height, 0, reach, luminance);
     std::vector<Outlier> found;
     std::vector<float> window;
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x)
-            if (luminance(x, y) > kFarAboveMean * mean(x, y) &&
-                luminance(x, y) > bound(luminance, x, y, reach, window)) {
-                const float* p = part.mean.at(x, y);
-                const bool confirmed = std::abs(luminance_at(part.noise, x, y)) < (1 - kLeastInHalf) * luminance(x, y);
-                found.push_back({x, y, {p[0], p[1], p[2]}, confirmed});
-            }
-    // All at once: what is put into the place of one doesn't depend on that of another.
-    for (const Outlier& o : found) {
-        const float scale = bound(luminance, o.x, o.y, reach, window) /
-                            (kMostAdded * static_cast<float>(window.size())) / luminance(o.x, o.y);
-        for (std::size_t c = 0; c < 3; ++c) {
-            part.mean.at(o.x, o.y)[c] = scale * o.mean[c];
-            part.noise.at(o.x, o.y)[c] = 0;
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            const float light = luminance(x, y);
+            if (light <= kFarAboveMean * mean(x, y)) continue;
+            const float rest = mean_of_most(luminance, x, y, reach, window);
+            if (light <= kMostAdded * rest * static_cast<float>(window.size())) continue;
+            float *p = part.mean.at(x, y), *noise = part.noise.at(x, y);
+            const bool confirmed = std::abs(luminance_at(part.noise, x, y)) < (1 - kLeastInHalf) * light;
+            found.push_back({x, y, {p[0], p[1], p[2]}, confirmed});
+            for (int c = 0; c < 3; ++c) p[c] *= rest / light;
+            std::fill_n(noise, 3, 0.0f);
         }
     }
     return found;

@@ -11,13 +11,6 @@
 namespace keyhole {
 namespace {
 
-double trimmed_mean(const std::vector<double>& values) {
-    const std::vector<std::size_t> kept = without_outliers(values);
-    double sum = 0;
-    for (const std::size_t i : kept) sum += values[i];
-    return sum / static_cast<double>(kept.size());
-}
-
 double block_error(const Grey& picture, const Grey& reference, double mean_reference) {
     constexpr std::size_t kBlock = 16;
     const auto block_mean = [](const Grey& g, std::size_t x0, std::size_t y0) {

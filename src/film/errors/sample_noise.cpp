@@ -28,10 +28,7 @@ std::optional<double> sample_noise(const Picture& picture) {
         if (difference.y[i] != 0 || light.y[i] == 0) // known
             squares.push_back(difference.y[i] * difference.y[i] /
                               (smoothed[i] * smoothed[i] + 0.01 * mean_light * mean_light));
-    double sum = 0;
-    const std::vector<std::size_t> kept = without_outliers(squares);
-    for (const std::size_t i : kept) sum += squares[i];
-    const double noise_of_all = std::sqrt(sum / static_cast<double>(kept.size()));
+    const double noise_of_all = std::sqrt(trimmed_mean(squares));
     return std::isfinite(noise_of_all) ? std::optional(noise_of_all) : std::nullopt;
 }
 
