@@ -37,6 +37,10 @@ constexpr double kLesserCaustic = 0.1, kLeastLook = 0.1;
 /// The error that a few more would save is one of this sample alone, and small beside its others.
 constexpr int kSights = 8, kPhotonsOfLobe = 16;
 
+/// Area of the surface in reach of an estimate over that of the disc, below which it is a mean over slats, leaves or
+/// legs: light changes across each of them, and a ray meets the side that it comes from.
+constexpr double kFine = 0.5;
+
 } // namespace
 
 /// What of the light that the glossy part reflects is not known yet.
@@ -99,11 +103,12 @@ bool GatherRays::goes_on(const Leg& leg, std::uint32_t place, const Vec3& positi
     // Farther away than its estimate looks, the place is one of other surfaces, as beside a frame on which no photon
     // lies: they may have a hundred times the light.
     if (!maps_.irradiance->is_near(place, position)) return true;
-    // The estimate is a mean over its radius. Seen from nearer than that, as in corners, the mean is not good enough.
-    // With mirrors or smooth glass it has to be: rays that are traced on would lose the caustics of the place, which
-    // only a ray that happens to run into the emitter could find.
-    return !scene_.traits().delta && leg.distance < maps_.irradiance->radius(place);
+    // The estimate is a mean over its radius. Seen from nearer than that, as in corners, or on a surface that is finer,
+    // the mean is not good enough.
+    return is_fine(place) || leg.distance < maps_.irradiance->radius(place);
 }
+
+bool GatherRays::is_fine(std::uint32_t place) const { return maps_.irradiance->area_share(place) < kFine; }
 
 Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSource& source) const {
     if (!is_covered(maps_.coverage, v, back)) return Rgb(0.0);
@@ -118,18 +123,30 @@ Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSou
         Vertex lobe = v;
         lobe.bsdf = v.bsdf.widened(options_.least_alpha);
         const Rgb direct = direct_light(scene_, lobe, back, 1, source);
-        return direct + global_near(known.place, lobe, back, source);
+        return direct + photons(Asked::all, known.place, lobe, back, source);
     }
     const Rgb f = v.bsdf.diffuse_reflectance(back);
-    const auto near = maps_.direct->direct(known.place, v.point.p, maps_.irradiance->radius(known.place));
+    const float radius = maps_.irradiance->radius(known.place);
+    const auto near = is_fine(known.place) ? std::nullopt : maps_.direct->direct(known.place, v.point.p, radius);
     Rgb sum = near ? f * *near : direct_light(scene_, v, back, 1, source);
     const bool on = goes_on(leg, known.place, v.point.p);
-    if (!on) {
+    if (on)
+        sum += traced_on(v, back, known.place, leg, source);
+    else
         sum += f * known.irradiance;
-    } else if (const auto next = continue_walk(v, back, From::eye, source); next && !is_specular(next->event)) {
-        sum += next->weight * trace(v, next->w, next->pdf, {0, leg.scatterings + 1, true}, source).indirect;
-    }
     if (v.bsdf.traits().glossy) sum += glossy(v, back, {near.has_value(), !on, known.place}, source);
+    return sum;
+}
+
+Rgb GatherRays::traced_on(const Vertex& v, const Vec3& back, std::uint32_t place, const Leg& leg,
+                          SampleSource& source) const {
+    Rgb sum(0.0);
+    if (const auto next = continue_walk(v, back, From::eye, source); next && !is_specular(next->event))
+        sum += next->weight * trace(v, next->w, next->pdf, {0, leg.scatterings + 1, true}, source).indirect;
+    // Light that specular vertices alone brought here is found by no ray.
+    const bool known = maps_.irradiance->is_near(place, v.point.p);
+    if (known ? maps_.irradiance->has_caustics(place) : scene_.traits().delta)
+        sum += photons(Asked::caustics, place, v, back, source);
     return sum;
 }
 
@@ -140,7 +157,7 @@ Rgb GatherRays::glossy(const Vertex& v, const Vec3& back, const Missing& missing
     lobe.bsdf = v.bsdf.glossy_part().widened(options_.least_alpha);
     Rgb sum(0.0);
     if (missing.direct) sum += direct_light(scene_, lobe, back, 1, source);
-    if (missing.indirect) sum += global_near(missing.place, lobe, back, source);
+    if (missing.indirect) sum += photons(Asked::all, missing.place, lobe, back, source);
     return sum / p;
 }
 
@@ -202,19 +219,21 @@ bool GatherRays::may_be_parted(std::uint32_t place, const SurfaceRegion& region)
            (!map.is_near(place, region.position, kKnown) && maps_.patches->obstructed(region, map.radius(place)));
 }
 
-Rgb GatherRays::global_near(std::uint32_t place, const Vertex& v, const Vec3& back, SampleSource& source) const {
+Rgb GatherRays::photons(Asked asked, std::uint32_t place, const Vertex& v, const Vec3& back,
+                        SampleSource& source) const {
     if (maps_.global == nullptr) return Rgb(0.0);
     const PhotonQuery query = query_at(v, back, options_.max_radius, options_);
     const float r = maps_.irradiance->radius(place);
     const double share = maps_.irradiance->area_share(place);
     if (!(share > 0)) return Rgb(0.0);
-    const PhotonMap& photons = maps_.global->main_photons();
+    const PhotonMap& map = maps_.global->main_photons();
     const double area = kPi * static_cast<double>(r) * r * share * share_in_reach(maps_.coverage, query.region, r);
     const auto few = [&](const auto& weight) {
-        return sum_over_few(
-                   photons, {query.region, r, kPhotonsOfLobe}, [](const Photon& p) { return luminance(p.power()); },
-                   [&](const Photon& p) { return weight(p) * p.power(); }, source) /
-               area;
+        const auto power = [&](const Photon& p) {
+            return asked == Asked::all || p.caustic() ? luminance(p.power()) : 0.0;
+        };
+        const auto light = [&](const Photon& p) { return weight(p) * p.power(); };
+        return sum_over_few(map, {query.region, r, kPhotonsOfLobe}, power, light, source) / area;
     };
     const auto reflected = reflection(v, back);
     if (!may_be_parted(place, query.region)) return few(reflected);

@@ -66,16 +66,22 @@ class GatherRays {
     /// Whether what the estimate at a place says of `position` isn't good enough for a ray from `leg.distance` away,
     /// so that it has to be traced on.
     bool goes_on(const Leg& leg, std::uint32_t place, const Vec3& position) const;
+    /// Whether the surface around a place is finer than the estimate there.
+    bool is_fine(std::uint32_t place) const;
     /// Radiance towards `back` that `v` reflects by its finite part.
     Rgb reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSource& source) const;
+    /// What `v`, near a place, reflects of indirect light that comes along a ray more.
+    Rgb traced_on(const Vertex& v, const Vec3& back, std::uint32_t place, const Leg& leg, SampleSource& source) const;
     /// What the glossy part adds to that where the rest is known: seldom, and all the more then.
     Rgb glossy(const Vertex& v, const Vec3& back, const Missing& missing, SampleSource& source) const;
     /// Whether something may stand on a region near a place, which has the radius of that, and hide photons there.
     bool may_be_parted(std::uint32_t place, const SurfaceRegion& region) const;
     /// What the global map says of light that `v` reflects towards `back`.
     Rgb global(const Vertex& v, const Vec3& back) const;
-    /// The same near a place of the irradiance map, whose radius and surface do for `v`, too.
-    Rgb global_near(std::uint32_t place, const Vertex& v, const Vec3& back, SampleSource& source) const;
+    /// Which of the photons near a place count.
+    enum class Asked { caustics, all };
+    /// The same as global() of these, near a place of the irradiance map, whose radius and surface do for `v`, too.
+    Rgb photons(Asked asked, std::uint32_t place, const Vertex& v, const Vec3& back, SampleSource& source) const;
 
     const Scene& scene_;
     GatherMaps maps_;

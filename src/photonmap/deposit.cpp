@@ -2,10 +2,21 @@
 
 #include "photonmap/power/camera_subpath.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <optional>
 #include <utility>
 
 namespace keyhole {
+namespace {
+
+/// Whether specular vertices, and no others, lie between the light and vertex i.
+bool specular_before(const Path& path, std::size_t i) {
+    return i > 1 && std::all_of(path.x.begin() + 1, path.x.begin() + static_cast<std::ptrdiff_t>(i),
+                                [](const Vertex& v) { return v.specular(); });
+}
+
+} // namespace
 
 void PathDepositor::Tally::merge(const Tally& o) {
     total += o.total;
@@ -45,7 +56,8 @@ void PathDepositor::deposit(const Path& path, double weight) {
                        .vertex = path.x[i],
                        .to_light = direction(path.x[i].point, path.x[i - 1].point),
                        .flux = flux,
-                       .scatterings = at.vertex};
+                       .scatterings = at.vertex,
+                       .caustic = specular_before(path, i)};
             if (options_.weights != nullptr)
                 recent_.share =
                     options_.weights->of_chains(options_.weights->visible(*options_.scene, at.kind, path, at.vertex));
@@ -78,7 +90,7 @@ void PathDepositor::store(Pending& pending) {
                               ? Rgb(1.0)
                               : power_of(pending, kind == PhotonKind::global, given, weight);
         if (is_black(power)) return std::nullopt;
-        const Photon photon(pending.vertex.point.p, pending.vertex.point.ng, pending.to_light, power);
+        const Photon photon(pending.vertex.point.p, pending.vertex.point.ng, pending.to_light, power, pending.caustic);
         if (options_.observer != nullptr)
             options_.observer->stored(
                 photon, {pending.trail, static_cast<std::size_t>(pending.scatterings), pending.emitter, false});

@@ -73,10 +73,11 @@ class PathDepositor {
         PhotonKind kind = PhotonKind::none;
         Vertex vertex;
         Vec3 to_light;
-        Rgb flux;            ///< f_map up to its scale, which cancels
-        Rgb seen{0.0};       ///< E where the eye has but this way here; else 0
-        int scatterings = 0; ///< of the stored sub-path, its end included
-        double share = 1;    ///< of chains, in photons here
+        Rgb flux;             ///< f_map up to its scale, which cancels
+        Rgb seen{0.0};        ///< E where the eye has but this way here; else 0
+        int scatterings = 0;  ///< of the stored sub-path, its end included
+        bool caustic = false; ///< see Photon
+        double share = 1;     ///< of chains, in photons here
         double weight = 0;
         double literal = 0;              ///< sum of weight times literal_factor()
         double density = 0;              ///< sum of weight times literal_factor() times camera_subpath_density()

@@ -61,15 +61,15 @@ class Collector {
         if (observer_ != nullptr) trail_.push_back({v.point.p, !v.bsdf.traits().finite});
         if (!v.bsdf.traits().finite) return true;
         const StorageRule::Kinds kinds = rule_(v, to_light, past);
-        if (kinds.global) store(PhotonKind::global, v, to_light, power);
-        if (kinds.caustic) store(PhotonKind::caustic, v, to_light, power);
+        if (kinds.global) store(PhotonKind::global, v, to_light, power, past.caustic());
+        if (kinds.caustic) store(PhotonKind::caustic, v, to_light, power, past.caustic());
         return true;
     }
 
     EmissionBlock block;
 
   private:
-    void store(PhotonKind kind, const Vertex& v, const Vec3& to_light, Rgb power) {
+    void store(PhotonKind kind, const Vertex& v, const Vec3& to_light, Rgb power, bool caustic) {
         if (!(luminance(power) > 0)) return;
         PhotonWeighing::Weight weight = weighing_(kind, v, to_light, power);
         if (const double most = weighing_.most_visible;
@@ -85,7 +85,8 @@ class Collector {
         bool kept = false;
         store_by_roulette(pilot ? block.pilots : block.main_photons, kind, share * weight.value,
                           pilot ? pilots_ : main_photons_, *rng_, [&](double /*weight*/) {
-                              const Photon photon(v.point.p, v.point.ng, to_light, emitted_power(power, weight.value));
+                              const Photon photon(v.point.p, v.point.ng, to_light, emitted_power(power, weight.value),
+                                                  caustic);
                               kept = true;
                               if (observer_ != nullptr)
                                   observer_->stored(photon, {trail_, trail_.size() - 1, emitter_, guided_});

@@ -10,16 +10,18 @@ namespace keyhole {
 class Photon {
   public:
     /// `ng` is the geometric normal, of either orientation; `direction` is unit and points away from the surface to
-    /// where the light came from. `power` [W, or importance] is finite and not negative.
-    Photon(const Vec3& position, const Vec3& ng, const Vec3& direction, const Rgb& power)
-        : position_(position), power_(power), direction_(direction), normal_(facing(ng, direction)) {}
+    /// where the light came from. `power` [W, or importance] is finite and not negative. `caustic`: see caustic().
+    Photon(const Vec3& position, const Vec3& ng, const Vec3& direction, const Rgb& power, bool caustic = false)
+        : position_(position), power_(power, caustic), direction_(direction), normal_(facing(ng, direction)) {}
 
     const Vec3& position() const { return position_; }
     /// Geometric normal on the side that the light arrived at, so that the two sides of a sheet are told apart.
     const OctahedralVector<std::int8_t>& normal() const { return normal_; }
     Vec3 direction() const { return direction_.decode(); }
     Rgb power() const { return power_.decode(); }
-    void set_power(const Rgb& power) { power_ = SharedExponentRgb(power); }
+    /// Whether specular vertices alone scattered the light before (L S+ D). A photon of the global map may be one, too.
+    bool caustic() const { return power_.marked(); }
+    void set_power(const Rgb& power) { power_ = SharedExponentRgb(power, caustic()); }
 
     bool operator==(const Photon&) const = default;
 

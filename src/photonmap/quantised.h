@@ -56,15 +56,16 @@ template <class Int> class OctahedralVector {
     Int x_ = 0, y_ = 0;
 };
 
-/// A non-negative RGB triple in 6 bytes: 13 bits a channel under one exponent of 9 bits (as RGB9E5, but wider). Rounded
-/// to nearest, so that errors average out: at most 2^-13 of the largest channel, in every channel. From 2^-255 (less
-/// becomes black) to 2^255 (more is held there).
+/// A non-negative RGB triple in 6 bytes: 13 bits a channel under one exponent of 8 bits (as RGB9E5, but wider), and one
+/// bit for whoever has a use for it. Rounded to nearest, so that errors average out: at most 2^-13 of the largest
+/// channel, in every channel. From 2^-127 (less becomes black) to 2^127 (more is held there).
 class SharedExponentRgb {
   public:
     SharedExponentRgb() = default;
 
     /// `c` is finite and has no negative channel.
-    explicit SharedExponentRgb(const Rgb& c) {
+    explicit SharedExponentRgb(const Rgb& c, bool marked = false) {
+        if (marked) words_[2] = kMark;
         assert(is_finite(c) && c.x >= 0 && c.y >= 0 && c.z >= 0);
         const double largest = std::max({c.x, c.y, c.z});
         int exponent = 0;
@@ -78,24 +79,28 @@ class SharedExponentRgb {
         const auto biased = static_cast<unsigned>(exponent + kBias);
         for (unsigned i = 0; i < 3; ++i) {
             const double m = std::min(c[static_cast<int>(i)] * scale, static_cast<double>(kMask));
-            words_[i] = static_cast<std::uint16_t>(std::lrint(m) | static_cast<long>(biased >> (3 * i) & 7u) << kBits);
+            words_[i] = static_cast<std::uint16_t>(words_[i] | std::lrint(m) |
+                                                   static_cast<long>(biased >> (3 * i) & 7u) << kBits);
         }
     }
 
     Rgb decode() const {
-        int exponent = -kBias - kBits;
-        for (unsigned i = 0; i < 3; ++i) exponent += (words_[i] >> kBits) << (3 * i);
+        const int biased = words_[0] >> kBits | words_[1] >> kBits << 3 | (words_[2] & ~kMark) >> kBits << 6;
+        const int exponent = biased - kBias - kBits;
         // 2^exponent put together from its bits: ldexp is slow, and this is the innermost loop of a lookup.
         const auto scale = std::bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52);
         return {(words_[0] & kMask) * scale, (words_[1] & kMask) * scale, (words_[2] & kMask) * scale};
     }
 
+    bool marked() const { return (words_[2] & kMark) != 0; }
+
     bool operator==(const SharedExponentRgb&) const = default;
 
   private:
-    static constexpr int kBits = 13, kMask = (1 << kBits) - 1, kBias = 256;
+    static constexpr int kBits = 13, kMask = (1 << kBits) - 1, kBias = 128;
+    static constexpr std::uint16_t kMark = 0x8000; // of the last word
 
-    std::array<std::uint16_t, 3> words_{}; // mantissa below, three bits of the exponent above
+    std::array<std::uint16_t, 3> words_{}; // mantissa below, bits of the exponent above, three a word; the mark on top
 };
 
 } // namespace keyhole

@@ -21,17 +21,24 @@ constexpr float kReach = 0.1f; // of lookups [m]
 /// A floor of 1 x 1 m with a wall across it at x = 0.5 m, and photons on it; nothing emits.
 class Floor {
   public:
-    explicit Floor(const MaterialPtr& material) : scene_(make_scene(material)), patches_(*scene_) {}
+    explicit Floor(const MaterialPtr& material) : Floor(material, material) {}
+    Floor(const MaterialPtr& material, const MaterialPtr& wall)
+        : scene_(make_scene(material, wall)), patches_(*scene_) {}
 
     /// Photons of power 1 W from straight above on the part of the floor between two x [m]: so many main ones, and a
     /// pilot for each ten.
-    void throw_on(float from, float to, int count) {
+    void throw_on(float from, float to, int count, bool caustic = false) {
         const Rectangle part{{from, 0, 0}, {0, 0, 1}, {to - from, 0, 0}};
         throw_photons(part, count, rng_, photons_.main_photons);
         throw_photons(part, count / 10, rng_, photons_.pilots);
+        for (std::size_t i = photons_.main_photons.size() - static_cast<std::size_t>(count);
+             caustic && i < photons_.main_photons.size(); ++i) {
+            Photon& p = photons_.main_photons[i];
+            p = Photon(p.position(), p.normal().decode(), p.direction(), p.power(), true);
+        }
     }
     /// Mean of what rays from straight above find at `x` [W/(m^2 sr)].
-    double seen_at(float x) {
+    double seen_at(float x, float height = 0.25f) {
         const PilotedMap global(photons_);
         const IrradianceMap irradiance(global.pilots(), global.main_photons(),
                                        {.k = 60, .max_radius = kReach, .patches = &patches_, .scene = scene_.get()},
@@ -44,18 +51,19 @@ class Floor {
         for (float z = 0.2f; z < 0.8f; z += 0.02f) {
             Vertex from;
             from.point.site = Site::point;
-            from.point.p = {x, 0.25f, z};
+            from.point.p = {x, height, z};
             found.add(luminance(rays.trace(from, {0, -1, 0}, 1, 1, rng_).indirect));
         }
         return found.mean();
     }
 
   private:
-    static std::unique_ptr<Scene> make_scene(const MaterialPtr& material) {
+    static std::unique_ptr<Scene> make_scene(const MaterialPtr& material, const MaterialPtr& wall) {
         SceneDescription d;
         d.shapes.push_back(shape_of({{0, 0, 0}, {0, 0, 1}, {1, 0, 0}}));
         d.shapes.push_back(shape_of({{0.5f, 0, 0}, {0, 0.3f, 0}, {0, 0, 1}}));
-        for (Shape& shape : d.shapes) shape.material = material;
+        d.shapes[0].material = material;
+        d.shapes[1].material = wall;
         return std::make_unique<Scene>(std::move(d));
     }
 
@@ -80,6 +88,56 @@ TEST(GatherRays, TakeNothingFromPlacesThatLieBeyondTheirOwnEstimates) {
     floor.throw_on(0.5f, 0.6f, 20'000);
     EXPECT_NEAR(floor.seen_at(0.55f), 0.5 / kPi * 20'000 / 0.1, 0.1 * 0.5 / kPi * 20'000 / 0.1);
     EXPECT_EQ(floor.seen_at(0.8f), 0) << "light from 0.2 m away";
+}
+
+/// From nearer than the estimate looks rays are traced on, and the estimate doesn't count: but no ray that is traced on
+/// finds the light that came here by way of a mirror alone.
+TEST(GatherRays, KeepCausticsWhereTheyAreTracedOn) {
+    const auto mirror = make_conductor(constant_texture(Rgb(0.8)), constant_texture(0), constant_texture(0));
+    const auto white = make_diffuse(Rgb(0.5));
+    const auto plastic = make_coated_diffuse(constant_texture(Rgb(0.5)), constant_texture(0.4), constant_texture(0.4),
+                                             1.5, constant_texture(0));
+    for (const auto& material : {white, plastic}) {
+        Floor floor(material, mirror);
+        floor.throw_on(0.5f, 1, 100'000);
+        const double far = floor.seen_at(0.75f);
+        EXPECT_GT(far, 0.3 / kPi * 200'000);
+        EXPECT_EQ(floor.seen_at(0.75f, 0.004f), 0) << "found what rays that are traced on should find";
+        floor.throw_on(0.5f, 1, 100'000, true);
+        EXPECT_NEAR(floor.seen_at(0.75f), 2 * far, 0.3 * far);
+        EXPECT_NEAR(floor.seen_at(0.75f, 0.004f), far, 0.2 * far);
+    }
+}
+
+/// A row of slats 1 mm wide, 4 mm apart, has a fifth of the area of a floor.
+TEST(GatherRays, AreTracedOnFromSlatsThatAreFinerThanTheEstimate) {
+    SceneDescription d;
+    std::vector<Rectangle> slats;
+    for (int i = 0; i < 200; ++i) slats.push_back({{0.005f * static_cast<float>(i), 0, 0}, {0, 0, 1}, {0.001f, 0, 0}});
+    for (const Rectangle& slat : slats) {
+        d.shapes.push_back(shape_of(slat));
+        d.shapes.back().material = make_diffuse(Rgb(0.5));
+    }
+    const Scene scene(std::move(d));
+    const SurfacePatches patches(scene);
+    Rng rng = make_rng(5);
+    PhotonSet photons;
+    for (const Rectangle& slat : slats) {
+        throw_photons(slat, 100, rng, photons.main_photons);
+        throw_photons(slat, 10, rng, photons.pilots);
+    }
+    const PilotedMap global(photons);
+    const IrradianceMap irradiance(global.pilots(), global.main_photons(),
+                                   {.k = 60, .max_radius = kReach, .patches = &patches, .scene = &scene}, {});
+    const DirectIrradianceCache direct(scene, irradiance.places(), {}, {});
+    const GatherRays rays(scene, {.global = &global, .irradiance = &irradiance, .direct = &direct, .patches = &patches},
+                          {.max_radius = kReach, .caustic_radius = kReach}, 8);
+    Vertex from;
+    from.point.site = Site::point;
+    from.point.p = {0.5005f, 0.25f, 0.5f};
+    const GatherRays::Arrival found = rays.trace(from, {0, -1, 0}, 1, 1, rng);
+    EXPECT_NEAR(found.distance, 0.25, 1e-4);
+    EXPECT_EQ(luminance(found.indirect), 0) << "a mean over slats";
 }
 
 /// Irradiance [W/m^2] a little above the middle of a metal floor of roughness 0.02, on which 100 kW/m^2 fall from

@@ -67,7 +67,7 @@ TEST_P(InspectionOf, TrailsAreTheWaysOfTheirPhotons) {
     const PhotonSample sample = inspect_scene(*scene_, settings_, {}, kLimits, {}).photons;
     ASSERT_GT(sample.trails.size(), 100u);
     EXPECT_LE(sample.trails.size(), kLimits.trails);
-    std::size_t drawn = 0;
+    std::size_t drawn = 0, caustics = 0, global_caustics = 0, others = 0;
     for (const PhotonShown& p : sample.photons) {
         ASSERT_GE(p.scatterings, 0);
         if (p.trail < 0) continue;
@@ -78,6 +78,10 @@ TEST_P(InspectionOf, TrailsAreTheWaysOfTheirPhotons) {
         EXPECT_EQ(trail.points[trail.photon].p, p.photon.position());
         const Vec3 to_light = (trail.points[trail.photon - 1].p - p.photon.position()).normalized();
         EXPECT_GT(to_light.dot(p.photon.direction()), 0.99999f);
+        bool specular = trail.photon > 1; // all vertices before the photon
+        for (std::size_t i = 1; i < trail.photon; ++i) specular = specular && trail.points[i].specular;
+        EXPECT_EQ(p.photon.caustic(), specular);
+        (p.caustic ? caustics : p.photon.caustic() ? global_caustics : others) += 1;
         EXPECT_EQ(p.emitter, 0u);
         EXPECT_NEAR(trail.points[0].p.y, scene_->emitter(0).bounds()->lower.y, 1e-4);
         for (std::size_t i = 0; i + 1 < trail.points.size(); ++i) { // nothing stands between
@@ -86,6 +90,9 @@ TEST_P(InspectionOf, TrailsAreTheWaysOfTheirPhotons) {
         }
     }
     EXPECT_EQ(drawn, sample.trails.size());
+    EXPECT_GT(caustics, 0u);
+    EXPECT_GT(global_caustics, 0u);
+    EXPECT_GT(others, 0u);
 }
 
 TEST_P(InspectionOf, IsTheSameOnAnyNumberOfThreads) {

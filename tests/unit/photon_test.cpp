@@ -46,9 +46,11 @@ TEST(SharedExponentRgb, RoundsWithinItsBoundAndWithoutBias) {
     Rng rng = make_rng(1);
     RunningStats error[3];
     for (int i = 0; i < 300'000; ++i) {
-        const double magnitude = std::pow(10.0, 140 * rng.next() - 70);
+        const double magnitude = std::pow(10.0, 70 * rng.next() - 35);
         const Rgb c = Rgb(rng.next(), rng.next(), rng.next()) * magnitude;
-        const Rgb back = SharedExponentRgb(c).decode();
+        const SharedExponentRgb stored(c, i % 3 == 0);
+        const Rgb back = stored.decode();
+        ASSERT_EQ(stored.marked(), i % 3 == 0);
         const double largest = std::max({c.x, c.y, c.z});
         for (int k = 0; k < 3; ++k) {
             const double e = (back[k] - c[k]) / largest;
@@ -63,12 +65,23 @@ TEST(SharedExponentRgb, HandlesTheEndsOfItsRange) {
     const auto round_trip = [](double x) { return SharedExponentRgb(Rgb(x, 0, 0)).decode().x; };
     EXPECT_EQ(round_trip(0.0), 0.0);
     EXPECT_EQ(round_trip(1.0), 1.0);
-    EXPECT_EQ(round_trip(0x1p-255), 0x1p-255);
+    EXPECT_EQ(round_trip(0x1p-127), 0x1p-127);
     EXPECT_EQ(round_trip(0x1p-300), 0.0);
-    EXPECT_EQ(round_trip(0x1p254), 0x1p254);
-    EXPECT_NEAR(round_trip(0x1p300) / 0x1p255, 1.0, 1e-3);
+    EXPECT_EQ(round_trip(0x1p126), 0x1p126);
+    EXPECT_NEAR(round_trip(0x1p300) / 0x1p127, 1.0, 1e-3);
     // All mantissa bits set: rounds up into the next exponent.
     EXPECT_EQ(round_trip(std::nextafter(2.0, 0.0)), 2.0);
+}
+
+TEST(Photon, StaysACausticOneWhateverItsPower) {
+    for (const bool caustic : {false, true}) {
+        Photon photon(Vec3(0), {0, 0, 1}, {0, 0, 1}, Rgb(0.0), caustic);
+        EXPECT_EQ(photon.caustic(), caustic);
+        EXPECT_TRUE(is_black(photon.power()));
+        photon.set_power(Rgb(1, 2, 3));
+        EXPECT_EQ(photon.caustic(), caustic);
+        EXPECT_EQ(photon.power().z, 3);
+    }
 }
 
 TEST(Photon, TurnsItsNormalToTheSideOfTheLight) {

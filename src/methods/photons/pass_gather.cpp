@@ -16,16 +16,17 @@ namespace {
 constexpr double kForSamples = 0.25;
 /// Rays that records get in the end over those they have first, at most.
 constexpr double kMostMoreRays = 16;
-/// Rays of a record across the reflection of a glossy surface that they meet, at least.
-constexpr double kRaysAcrossLobe = 4;
+/// Roughness that a lobe has at least where one of kUsualRays rays of a record ends.
+constexpr double kLeastAlpha = 0.2, kUsualRays = 300;
 
 const PilotedMap* null_if_empty(const PilotedMap& map) { return map.main_photons().photons().empty() ? nullptr : &map; }
 
-/// Roughness that lobes have at least where gather rays end. One of N rays stands for a cone of half-angle 1 / sqrt(N);
-/// the reflection of a lobe of roughness alpha fills one of about 2 alpha.
+/// Roughness that lobes have at least where gather rays end. One of roughness alpha reflects a lamp with a radiance
+/// that goes as alpha^-2 into a solid angle that goes as alpha^2, so N rays have a variance that goes as alpha^-2 / N,
+/// and the square of the bias grows as alpha^4: both are least together where alpha goes as N^(-1/6).
 double least_alpha(const Settings& settings, const Radii& radii) {
     const auto rays = static_cast<double>(std::max<std::int64_t>(1, settings.cache_rays));
-    return kRaysAcrossLobe / 2 / std::sqrt(rays) * radii.shrink;
+    return std::min(1.0, kLeastAlpha * std::pow(rays / kUsualRays, -1 / 6.0) * radii.shrink);
 }
 
 LookupOptions lookups(const Settings& settings, const Radii& radii) {

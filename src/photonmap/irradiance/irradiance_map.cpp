@@ -59,10 +59,12 @@ IrradianceMap::Count IrradianceMap::estimate(std::uint32_t i, const PhotonMap& m
     // The pilot photon in the middle is there by choice of the place, so it is no evidence of the density there.
     const float r = piloted_radius(pilots_, query, 1);
     double sum = 0, squares = 0;
+    bool caustics = false;
     const auto one = [&](const Photon& p) {
         const double power = luminance(p.power());
         sum += power;
         squares += power * power;
+        caustics = caustics || p.caustic();
         return 1.0;
     };
     DensityEstimate e =
@@ -71,7 +73,7 @@ IrradianceMap::Count IrradianceMap::estimate(std::uint32_t i, const PhotonMap& m
             : estimate_density(main_photons, query.region, r, options.patches, one);
     e.value /= share_in_reach(options.coverage, query.region, r);
     const double disc = kPi * static_cast<double>(r) * r;
-    estimates_[i] = Estimate(e.value, r, disc > 0 ? e.area / disc : 0.0,
+    estimates_[i] = Estimate(e.value, caustics, r, disc > 0 ? e.area / disc : 0.0,
                              e.obstructed ? obstructed_levels(*options.patches, query.region, r) : std::uint8_t{0});
     return {static_cast<double>(e.photons), squares > 0 ? sum * sum / squares : 0.0};
 }

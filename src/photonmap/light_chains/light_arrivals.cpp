@@ -7,7 +7,7 @@
 
 namespace keyhole {
 
-void LightArrivals::add(PhotonKind kind, const Vertex& v, const Vec3& to_light, const Rgb& power,
+void LightArrivals::add(PhotonKind kind, const Vertex& v, const Vec3& to_light, const Rgb& power, bool caustic,
                         const PhotonWeighing::Weight& weight) {
     const auto value = static_cast<float>(weight.value);
     if (!std::isfinite(value) || !is_finite(power)) {
@@ -17,12 +17,12 @@ void LightArrivals::add(PhotonKind kind, const Vertex& v, const Vec3& to_light, 
     if (!(value > 0)) return;
     target_ += value;
     arrivals_.push_back(
-        {Photon(v.point.p, v.point.ng, to_light, emitted_power(power, value)), value, kind, weight.known});
+        {Photon(v.point.p, v.point.ng, to_light, emitted_power(power, value), caustic), value, kind, weight.known});
 }
 
-void LightBuilder::store(PhotonKind kind, const Vertex& v, const Vec3& to_light, const Rgb& power,
+void LightBuilder::store(PhotonKind kind, const Vertex& v, const Vec3& to_light, const Rgb& power, bool caustic,
                          LightArrivals& sample) const {
-    sample.add(kind, v, to_light, power, weighing_(kind, v, to_light, power));
+    sample.add(kind, v, to_light, power, caustic, weighing_(kind, v, to_light, power));
 }
 
 void LightBuilder::build(LightSources sources, LightArrivals& sample) const {
@@ -37,8 +37,8 @@ void LightBuilder::build(LightSources sources, LightArrivals& sample) const {
         const Rgb& power = walk.notes[at].throughput;
         if (v.bsdf.traits().finite && luminance(power) > 0) {
             const StorageRule::Kinds kinds = rule_(v, to_light, past);
-            if (kinds.global) store(PhotonKind::global, v, to_light, power, sample);
-            if (kinds.caustic) store(PhotonKind::caustic, v, to_light, power, sample);
+            if (kinds.global) store(PhotonKind::global, v, to_light, power, past.caustic(), sample);
+            if (kinds.caustic) store(PhotonKind::caustic, v, to_light, power, past.caustic(), sample);
         }
         // The event at the end of the walk was never asked for.
         if (i + 1 == walk.size()) return;

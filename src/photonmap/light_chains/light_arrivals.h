@@ -37,8 +37,8 @@ class LightArrivals {
         target_ = 0;
         broken_ = false;
     }
-    /// Light of RGB `power` [W] at `v` from `to_light`.
-    void add(PhotonKind kind, const Vertex& v, const Vec3& to_light, const Rgb& power,
+    /// Light of RGB `power` [W] at `v` from `to_light`; `caustic`: see Photon.
+    void add(PhotonKind kind, const Vertex& v, const Vec3& to_light, const Rgb& power, bool caustic,
              const PhotonWeighing::Weight& weight);
 
   private:
@@ -62,7 +62,8 @@ class LightBuilder {
     void build(LightSources sources, LightArrivals& sample) const;
 
   private:
-    void store(PhotonKind kind, const Vertex& v, const Vec3& to_light, const Rgb& power, LightArrivals& sample) const;
+    void store(PhotonKind kind, const Vertex& v, const Vec3& to_light, const Rgb& power, bool caustic,
+               LightArrivals& sample) const;
 
     const Scene* scene_;
     PhotonWeighing weighing_;
