@@ -2,7 +2,6 @@
 
 #include "gather/direct_light.h"
 #include "scene/bsdfs/diffuse.h"
-#include "scene/material.h"
 
 #include <limits>
 
@@ -39,11 +38,10 @@ class MeanDistance {
 
 } // namespace
 
-DirectIrradiance direct_irradiance(const Scene& scene, const SurfacePoint& point, const Vec3& n, int samples,
-                                   SampleSource& source) {
+DirectIrradiance direct_irradiance(const Scene& scene, const SurfacePoint& point, const Bsdf& bsdf, const Vec3& n,
+                                   int samples, SampleSource& source) {
     const Vertex v = white_vertex(point, n);
     MeanDistance distance(point.p);
-    const Bsdf bsdf = point.material != nullptr ? point.material->bsdf(point) : Bsdf();
     const auto weight = [&](const SurfacePoint& emitter) { return bsdf.diffuse_weight(direction(point, emitter)); };
     Rgb sum(0.0);
     for (int i = 0; i < samples; ++i) {

@@ -11,9 +11,9 @@ struct DirectIrradiance {
 };
 
 /// Irradiance that emitters bring to a surface on the side of unit normal `n`, by so many samples of either technique.
-/// Directions have the weights that the diffuse part of the surface gives them (Bsdf::diffuse_weight()).
+/// Directions have the weights that the diffuse part of `bsdf` gives them (Bsdf::diffuse_weight()).
 /// Towards an emitter it changes with the distance, squared, and so it may be used within a quarter of that only.
-DirectIrradiance direct_irradiance(const Scene& scene, const SurfacePoint& point, const Vec3& n, int samples,
-                                   SampleSource& source);
+DirectIrradiance direct_irradiance(const Scene& scene, const SurfacePoint& point, const Bsdf& bsdf, const Vec3& n,
+                                   int samples, SampleSource& source);
 
 } // namespace keyhole

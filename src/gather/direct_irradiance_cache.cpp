@@ -3,6 +3,7 @@
 #include "core/shared_work.h"
 #include "gather/direct_irradiance.h"
 #include "photonmap/surface/surface_region.h"
+#include "scene/material.h"
 
 #include <algorithm>
 
@@ -43,8 +44,9 @@ DirectIrradianceCache::Entry DirectIrradianceCache::at(const Scene& scene, std::
     Entry site;
     if (const auto point = surface_at(scene, place)) {
         Rng rng(options.seed, StreamPurpose::irradiance, i);
+        const Bsdf bsdf = point->material != nullptr ? point->material->bsdf(*point) : Bsdf();
         const DirectIrradiance light =
-            direct_irradiance(scene, *point, facing(point->ng, n), options.direct_samples, rng);
+            direct_irradiance(scene, *point, bsdf, facing(point->ng, n), options.direct_samples, rng);
         site.direct = SharedExponentRgb(light.irradiance);
         site.reach = light.reach;
     }

@@ -1,5 +1,6 @@
 #include "gather/gather_rays.h"
 
+#include "gather/direct_irradiance.h"
 #include "gather/direct_light.h"
 #include "photonmap/confirmation.h"
 #include "photonmap/few_photons.h"
@@ -42,12 +43,6 @@ constexpr int kSights = 8, kPhotonsOfLobe = 16;
 constexpr double kFine = 0.5;
 
 } // namespace
-
-/// What of the light that the glossy part reflects is not known yet.
-struct GatherRays::Missing {
-    bool direct, indirect;
-    std::uint32_t place; // of the irradiance map, near by
-};
 
 /// Where a ray comes from, as far as what it meets depends on that.
 struct GatherRays::Leg {
@@ -118,23 +113,35 @@ Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSou
     }
     const auto known = maps_.irradiance->irradiance(v.point, facing(v.point.ng, back));
     // Photons may be near, but none that this place sees: those of the other side of a wall.
-    if (!known.known) return direct_light(scene_, v, back, 1, source);
-    if (!v.bsdf.traits().diffuse) {
-        Vertex lobe = v;
-        lobe.bsdf = v.bsdf.widened(options_.least_alpha);
-        const Rgb direct = direct_light(scene_, lobe, back, 1, source);
-        return direct + photons(Asked::all, known.place, lobe, back, source);
-    }
+    const auto place = known.known ? std::optional(known.place) : std::nullopt;
+    if (!v.bsdf.traits().diffuse) return lobe(v, v.bsdf, back, place, source);
+    const bool on = place && goes_on(leg, *place, v.point.p);
     const Rgb f = v.bsdf.diffuse_reflectance(back);
-    const float radius = maps_.irradiance->radius(known.place);
-    const auto near = is_fine(known.place) ? std::nullopt : maps_.direct->direct(known.place, v.point.p, radius);
-    Rgb sum = near ? f * *near : direct_light(scene_, v, back, 1, source);
-    const bool on = goes_on(leg, known.place, v.point.p);
+    Rgb sum = f * direct(place, v, back, source);
     if (on)
-        sum += traced_on(v, back, known.place, leg, source);
-    else
+        sum += traced_on(v, back, *place, leg, source);
+    else if (place)
         sum += f * known.irradiance;
-    if (v.bsdf.traits().glossy) sum += glossy(v, back, {near.has_value(), !on, known.place}, source);
+    if (!v.bsdf.traits().glossy) return sum;
+    // Seldom, and all the more then.
+    const double p = std::max(kLeastGlossy, v.bsdf.glossy_probability(back));
+    if (source.next() < p) sum += lobe(v, v.bsdf.glossy_part(), back, on ? std::nullopt : place, source) / p;
+    return sum;
+}
+
+Rgb GatherRays::direct(const std::optional<std::uint32_t>& place, const Vertex& v, const Vec3& back,
+                       SampleSource& source) const {
+    if (place && !is_fine(*place))
+        if (const auto near = maps_.direct->direct(*place, v.point.p, maps_.irradiance->radius(*place))) return *near;
+    return direct_irradiance(scene_, v.point, v.bsdf, facing(v.point.ng, back), 1, source).irradiance;
+}
+
+Rgb GatherRays::lobe(const Vertex& v, const Bsdf& part, const Vec3& back, const std::optional<std::uint32_t>& place,
+                     SampleSource& source) const {
+    Vertex wide = v;
+    wide.bsdf = part.widened(options_.least_alpha);
+    Rgb sum = direct_light(scene_, wide, back, 1, source);
+    if (place) sum += photons(Asked::all, *place, wide, back, source);
     return sum;
 }
 
@@ -148,17 +155,6 @@ Rgb GatherRays::traced_on(const Vertex& v, const Vec3& back, std::uint32_t place
     if (known ? maps_.irradiance->has_caustics(place) : scene_.traits().delta)
         sum += photons(Asked::caustics, place, v, back, source);
     return sum;
-}
-
-Rgb GatherRays::glossy(const Vertex& v, const Vec3& back, const Missing& missing, SampleSource& source) const {
-    const double p = std::max(kLeastGlossy, v.bsdf.glossy_probability(back));
-    if (!(source.next() < p)) return Rgb(0.0);
-    Vertex lobe = v;
-    lobe.bsdf = v.bsdf.glossy_part().widened(options_.least_alpha);
-    Rgb sum(0.0);
-    if (missing.direct) sum += direct_light(scene_, lobe, back, 1, source);
-    if (missing.indirect) sum += photons(Asked::all, missing.place, lobe, back, source);
-    return sum / p;
 }
 
 Rgb GatherRays::caustic(const Vertex& v, const Vec3& back, double besides, SampleSource& source) const {

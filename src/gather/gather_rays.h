@@ -6,6 +6,8 @@
 #include "photonmap/pilot_surroundings.h"
 #include "sampling/paths/walk.h"
 
+#include <optional>
+
 namespace keyhole {
 
 /// What stage three asks. Maps may be null: nothing of that kind was found.
@@ -60,7 +62,6 @@ class GatherRays {
     double chance_of_caustic(const Vertex& v, const Vec3& back, const SurfaceRegion& region, float r,
                              double besides) const;
     struct Leg;
-    struct Missing;
     struct Walk;
     Arrival trace(const Vertex& from, const Vec3& w, double pdf, const Leg& start, SampleSource& source) const;
     /// Whether what the estimate at a place says of `position` isn't good enough for a ray from `leg.distance` away,
@@ -72,8 +73,13 @@ class GatherRays {
     Rgb reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSource& source) const;
     /// What `v`, near a place, reflects of indirect light that comes along a ray more.
     Rgb traced_on(const Vertex& v, const Vec3& back, std::uint32_t place, const Leg& leg, SampleSource& source) const;
-    /// What the glossy part adds to that where the rest is known: seldom, and all the more then.
-    Rgb glossy(const Vertex& v, const Vec3& back, const Missing& missing, SampleSource& source) const;
+    /// Irradiance that emitters bring, weighed as the diffuse part weighs it: that of the place, if it does for `v`.
+    Rgb direct(const std::optional<std::uint32_t>& place, const Vertex& v, const Vec3& back,
+               SampleSource& source) const;
+    /// What `part` of the BSDF at `v`, no narrower than LookupOptions::least_alpha, reflects: direct light and, where a
+    /// place is given, photons near it.
+    Rgb lobe(const Vertex& v, const Bsdf& part, const Vec3& back, const std::optional<std::uint32_t>& place,
+             SampleSource& source) const;
     /// Whether something may stand on a region near a place, which has the radius of that, and hide photons there.
     bool may_be_parted(std::uint32_t place, const SurfaceRegion& region) const;
     /// What the global map says of light that `v` reflects towards `back`.
