@@ -1,4 +1,5 @@
 // What the command line prints: progress, numbers, statistics.
+#include "cli/progress/interrupt.h"
 #include "cli/progress/terminal_progress.h"
 #include "cli/words/stats_json.h"
 #include "cli/words/units.h"
@@ -8,6 +9,7 @@
 
 #include <array>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <thread>
 #include <vector>
@@ -138,4 +140,16 @@ TEST(StatsJson, HoldsEveryFigure) {
     EXPECT_EQ(json["values"]["chains"], 7);
     EXPECT_EQ(json["values"]["chains, agreement (split R-hat)"], 1.25);
     EXPECT_EQ(json["complete"], false);
+}
+
+TEST(InterruptHandler, LeavesSignalsAsTheyWere) {
+    const auto before = std::signal(SIGINT, SIG_IGN);
+    StopToken stop;
+    {
+        const InterruptHandler interrupts(stop);
+        std::raise(SIGINT);
+        EXPECT_TRUE(stop.requested());
+    }
+    std::raise(SIGINT); // would end the test
+    EXPECT_EQ(std::signal(SIGINT, before), SIG_IGN);
 }

@@ -22,23 +22,20 @@ extern "C" void on_signal(int /*signal*/) {
     stop->request();
 }
 
-void handle_signals(void (*handler)(int)) {
-    struct sigaction action {};
-    action.sa_handler = handler;
-    action.sa_flags = SA_RESTART;
-    sigaction(SIGINT, &action, nullptr);
-    sigaction(SIGTERM, &action, nullptr);
-}
-
 } // namespace
 
 InterruptHandler::InterruptHandler(StopToken& stop) {
     handled = &stop;
-    handle_signals(on_signal);
+    struct sigaction action {};
+    action.sa_handler = on_signal;
+    action.sa_flags = SA_RESTART;
+    sigaction(SIGINT, &action, &before_int_);
+    sigaction(SIGTERM, &action, &before_term_);
 }
 
 InterruptHandler::~InterruptHandler() {
-    handle_signals(SIG_DFL);
+    sigaction(SIGINT, &before_int_, nullptr);
+    sigaction(SIGTERM, &before_term_, nullptr);
     handled = nullptr;
 }
 
