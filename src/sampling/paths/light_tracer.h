@@ -17,10 +17,10 @@ struct LightPast {
     std::optional<Place> last; ///< where it was last scattered by a vertex that isn't specular; none: nowhere
     bool specular = false;     ///< whether there was a specular one
     int scatterings = 0;       ///< how many vertices scattered it
+    double density = 1;        ///< of the walks that may have led there, over that of a free one without roulette
+
     /// Whether only specular vertices scattered it, and at least one did.
     bool caustic() const { return specular && !last; }
-
-    double density = 1; ///< of the walks that may have led there, over that of a free one without roulette
 
     /// Light that comes from `to_light` goes on from `v` by its event.
     void meet(const Vertex& v, const Vec3& to_light) {
