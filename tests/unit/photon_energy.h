@@ -30,7 +30,8 @@ inline std::size_t region(const Scene& scene, const Vec3& p) {
 using Power = std::array<RunningStats, kRegions>;
 struct Energy {
     Power global, caustic;
-    Power seen; ///< the part of `caustic` that the eye sees directly: chains store no other but through mirrors
+    Power seen;   ///< the part of `caustic` that the eye sees directly: chains store no other but through mirrors
+    Power marked; ///< the part of `global` that came by specular vertices alone; all of it counts as of region 0
 };
 
 /// Whether the eye sees `p` with nothing in between.
@@ -62,7 +63,7 @@ inline Energy by_light_tracing(const Scene& scene, const Rule& rule, std::int64_
     struct Sink {
         const Scene& scene;
         const Rule& rule;
-        std::array<double, kRegions> global{}, caustic{}, seen{};
+        std::array<double, kRegions> global{}, caustic{}, seen{}, marked{};
         int arrivals = 0;
         bool arrival(const Vertex& v, const Vec3& to_light, const Rgb& power, const LightPast& past) {
             const int depth = rule.depth;
@@ -71,7 +72,10 @@ inline Energy by_light_tracing(const Scene& scene, const Rule& rule, std::int64_
             if (!v.bsdf.traits().finite || is_black(v.bsdf.eval(v.point.ns, v.point.ns))) return ++arrivals < depth;
             const bool straight = arrivals == 0; // direct light, which no map holds
             const bool here = rule.reached(v.point.p, facing(v.point.ng, to_light));
-            if (!straight && arrivals < depth - 1 && here) global[r] += luminance(power);
+            if (!straight && arrivals < depth - 1 && here) {
+                global[r] += luminance(power);
+                if (past.specular && !past.last) marked[0] += luminance(power);
+            }
             if ((past.specular && !past.last) || (past.last && !rule.reached(past.last->p, past.last->n))) {
                 caustic[r] += luminance(power);
                 if (in_view(scene, v.point.p)) seen[r] += luminance(power);
@@ -88,6 +92,7 @@ inline Energy by_light_tracing(const Scene& scene, const Rule& rule, std::int64_
             e.global[r].add(sink.global[r]);
             e.caustic[r].add(sink.caustic[r]);
             e.seen[r].add(sink.seen[r]);
+            e.marked[r].add(sink.marked[r]);
         }
     }
     return e;
@@ -103,8 +108,12 @@ inline ImportanceGuide guide(const Scene& scene, std::vector<Photon>&& importons
 }
 
 inline void add_run(const Scene& scene, const Photons& photons, Energy& e) {
-    std::array<double, kRegions> global{}, caustic{}, seen{};
-    for (const Photon& p : photons.global.main_photons) global[region(scene, p.position())] += luminance(p.power());
+    std::array<double, kRegions> global{}, caustic{}, seen{}, marked{};
+    for (const Photon& p : photons.global.main_photons) {
+        const double power = luminance(p.power());
+        global[region(scene, p.position())] += power;
+        if (p.caustic()) marked[0] += power;
+    }
     for (const Photon& p : photons.caustic.main_photons) {
         const double power = luminance(p.power());
         caustic[region(scene, p.position())] += power;
@@ -114,6 +123,7 @@ inline void add_run(const Scene& scene, const Photons& photons, Energy& e) {
         e.global[r].add(global[r]);
         e.caustic[r].add(caustic[r]);
         e.seen[r].add(seen[r]);
+        e.marked[r].add(marked[r]);
     }
 }
 

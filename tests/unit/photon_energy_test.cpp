@@ -95,7 +95,10 @@ void expect_chain_energy(const Scene& scene, const Rule& rule, const Energy& tra
     const Energy &marginal = chains.at(PowerRule::marginal), &reciprocal = chains.at(PowerRule::reciprocal);
     expect_equal(reciprocal.global, traced.global, "reciprocal, global", 0, {0, 1, 2, 3, 4, 5, 6});
     expect_equal(marginal.global, traced.global, "marginal, global", 0.02, {0, 1, 2, 3, 4, 5, 6});
-    if (caustics) expect_equal(marginal.seen, traced.seen, "caustic", 0.02, {4});
+    if (caustics) {
+        expect_equal(marginal.seen, traced.seen, "caustic", 0.02, {4});
+        expect_equal(marginal.marked, traced.marked, "marginal, caustics in the global", 0.02, {0});
+    }
     // Without mirrors and glass importance at d1 is exact.
     if (rule.coverage != nullptr) expect_equal(marginal.seen, traced.seen, "caustic", 0, {0, 1, 2, 3, 4, 5, 6});
 }
@@ -105,6 +108,7 @@ void expect_emission_energy(const Scene& scene, const Rule& rule, const Energy& 
         SCOPED_TRACE(guided ? "stored by importance" : "stored everywhere");
         const Energy emitted = by_emission(scene, rule, guided, 16);
         expect_equal(emitted.global, traced.global, "global", 0, {0, 1, 2, 3, 4, 5, 6});
+        expect_equal(emitted.marked, traced.marked, "caustics in the global", 0, {0});
         expect_equal(emitted.caustic, traced.caustic, "caustic", 0, {0, 1, 2, 3, 4, 6});
         // The wall behind the eye gets few photons where they are stored by importance.
         if (!guided) expect_equal(emitted.caustic, traced.caustic, "caustic", 0, {5});
@@ -116,6 +120,7 @@ void expect_light_chain_energy(const Scene& scene, const Rule& rule, const Energ
     SCOPED_TRACE("chains of light sub-paths");
     const Energy chains = by_light_chains(scene, rule, 16, guide_radius);
     expect_equal(chains.global, traced.global, "global", tolerance, {0, 1, 2, 3, 4, 5, 6});
+    expect_equal(chains.marked, traced.marked, "caustics in the global", tolerance, {0});
     // Where the eye sees little of them they are few.
     expect_equal(chains.caustic, traced.caustic, "caustic", 0, {2, 4});
 }
