@@ -39,13 +39,7 @@ class Collector {
     void begin(PhotonRole role, Rng& rng) {
         role_ = role;
         rng_ = &rng;
-        expected_ = 1;
     }
-    /// Light sets out as `light`.
-    void emit(const Scene& scene, const EmittedLight& light) {
-        if (techniques_ != nullptr) expected_ = expected_over_emitted(scene, techniques_->sampling(), light);
-    }
-
     void sets_out(const SurfacePoint& x0, bool guided) {
         if (observer_ == nullptr) return;
         trail_.assign(1, {x0.p, false, x0.site == Site::infinite});
@@ -78,7 +72,7 @@ class Collector {
             power *= most / weight.value;
             weight.value = most;
         }
-        const double share = techniques_ != nullptr ? techniques_->of_light_path(weight, expected_) : 1;
+        const double share = techniques_ != nullptr ? techniques_->of_light_path(weight) : 1;
         ++block.arrivals;
         block.weights.add(kind, weight, luminance(power));
         const bool pilot = role_ == PhotonRole::pilot;
@@ -99,7 +93,6 @@ class Collector {
     MapStores::Thresholds pilots_, main_photons_;
     StorageRule rule_;
     const TechniqueWeights* techniques_;
-    double expected_ = 1; // power over that which was emitted
     PhotonRole role_ = PhotonRole::main_photon;
     Rng* rng_ = nullptr;
     PhotonObserver* observer_;
@@ -127,7 +120,6 @@ void trace_one(const Scene& scene, const EmissionOptions& options, Rng& rng, Col
     if (!options.user_paths.empty()) return trace_light_path(scene, options.user_paths, depth, rng, collector);
     const auto light = options.learned != nullptr ? options.learned->sample(rng) : emit_light(scene, rng);
     if (!light) return;
-    collector.emit(scene, *light);
     if (options.scattering != nullptr)
         trace_light_path(scene, *light, depth, rng, collector, *options.scattering);
     else

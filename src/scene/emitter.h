@@ -21,7 +21,7 @@ struct EmitterRay {
     SurfacePoint origin; ///< where to trace from: the emitter's point, or for an infinite one a place on its beam
                          ///< before everything in the scene
     Vec3 w;              ///< unit, away from the emitter
-    double pdf;          ///< per solid angle; from an infinite point per area of the beam's cross-section
+    double pdf = 0;      ///< per solid angle; from an infinite point per area of the beam's cross-section
 };
 
 /// Holds all geometry of a scene; world space, metres.

@@ -6,6 +6,7 @@
 #include "scene/bsdfs/diffuse.h"
 #include "scene/emitters/emitters.h"
 #include "scene/emitters/sphere_map.h"
+#include "scene/warp.h"
 #include "support/chance.h"
 #include "support/chi_squared.h"
 #include "support/test_scenes.h"
@@ -114,7 +115,7 @@ TEST(DirectionHistogram, FindsTheWindowThatRaysMeetIn) {
         area += 1 / pdf / n;
     }
     EXPECT_GT(through, 0.4 * n);
-    EXPECT_LT(area, 1);
+    EXPECT_LT(area, 3); // of 4 pi; some go by the map of all directions
     // Its density adds up to 1 over the sphere.
     double sum = 0;
     constexpr int side = 1500;
@@ -122,6 +123,37 @@ TEST(DirectionHistogram, FindsTheWindowThatRaysMeetIn) {
         for (int x = 0; x < side; ++x)
             sum += histogram.pdf(p, sphere_direction(SphereLayout::octahedral, {(x + 0.5) / side, (y + 0.5) / side}));
     EXPECT_NEAR(sum * 4 * kPi / (side * side), 1, 0.01);
+}
+
+/// From a place in whose view rays through the window make but a narrow cone: what samples do there, and what the
+/// density says of it.
+void expect_density_of_samples(const DirectionHistogram& histogram, const Vec3& p) {
+    SCOPED_TRACE(testing::Message() << p);
+    const Vec3 axis = (Vec3(0, 2, -0.5f) - p).normalized();
+    const double cos_edge = std::cos(0.15), solid_angle = 2 * kPi * (1 - cos_edge);
+    constexpr int n = 400'000;
+    Rng rng(11, StreamPurpose::test, 0);
+    RunningStats inside, density;
+    for (int i = 0; i < n; ++i) {
+        double u0 = rng.next();
+        const Vec3 w = histogram.sample(p, u0, rng.next());
+        ASSERT_GT(histogram.pdf(p, w), 0) << w;
+        inside.add(w.dot(axis) > cos_edge ? 1 : 0);
+        u0 = rng.next();
+        density.add(solid_angle * histogram.pdf(p, Frame(axis).to_world(uniform_cone(u0, rng.next(), cos_edge))));
+    }
+    EXPECT_NEAR(inside.mean(), density.mean(), 4 * std::hypot(inside.standard_error(), density.standard_error()));
+}
+
+TEST(DirectionHistogram, HasTheDensityOfItsSamplesFromWhereverItIsAsked) {
+    const auto rays = rays_through_a_window(400, 0);
+    const DirectionHistogram histogram(rays, DirectionHistogram::Plane{{0, 2, -0.5f}, {0, 0, -1}});
+    expect_density_of_samples(histogram, {0.8f, 0, 0.3f});
+    expect_density_of_samples(histogram, {9, 2, -0.4f}); // from the side: directions are flat to the plane
+    expect_density_of_samples(histogram, {-4, 1.5f, -0.45f});
+    expect_density_of_samples(histogram, {0.5f, 1, -3});   // from behind
+    expect_density_of_samples(histogram, {6, 2, -0.5f});   // in the plane
+    expect_density_of_samples(histogram, {6, 2, -0.501f}); // nearly
 }
 
 TEST(DirectionHistogram, KeepsDirectionsWhereRaysDoNotMeet) {
@@ -209,6 +241,7 @@ TEST_F(LearnedDirectLight_Window, TellsTheChancesOfItsSamples) {
     Rng rng(8, StreamPurpose::test, 0);
     for (int i = 0; i < kSamples; ++i) ++drawn[learned->sample(v.point, rng).point.emitter];
     double before = 1, told = 0;
+    int likely = 0, directions = 0;
     for (const EmitterChance& chance : chances) {
         const double p = chance.probability, n = drawn[chance.emitter];
         EXPECT_LT(std::abs(n - kSamples * p), test::most_errors(2) * std::sqrt(kSamples * p * (1 - p)) + 1)
@@ -219,10 +252,12 @@ TEST_F(LearnedDirectLight_Window, TellsTheChancesOfItsSamples) {
         for (const Vec3& w : chance.towards) {
             SurfacePoint x0 = infinite_point(w);
             x0.emitter = chance.emitter;
-            EXPECT_GT(learned->pdf(v.point, x0), 1 / (4 * kPi)) << "no likelier than any other direction";
+            likely += learned->pdf(v.point, x0) > 1 / (4 * kPi) ? 1 : 0; // than any other direction
+            ++directions;
         }
     }
     EXPECT_LE(told, 1 + 1e-9);
+    EXPECT_GE(likely, 0.8 * directions);
     EXPECT_TRUE(std::ranges::any_of(chances, [](const auto& c) { return c.towards.size() == kDirections; }));
 }
 

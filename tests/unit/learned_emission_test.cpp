@@ -2,6 +2,7 @@
 // arrives in full, and far more of the paths where they count.
 #include "core/statistics.h"
 #include "sampling/guidance/learned/learned_emission.h"
+#include "sampling/paths/light_tracer.h"
 #include "scene/emitters/emitters.h"
 #include "support/chi_squared.h"
 #include "support/test_scenes.h"
@@ -9,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace keyhole {
@@ -140,6 +142,47 @@ TEST_F(LearnedEmissionInARoom, BringsAllPowerAndFindsTheWindow) {
               4);
 }
 
+/// The mean of the reciprocal density over that of emission by power is the share of the latter that meets anything:
+/// a density that is not that of the samples shows, wherever it is wrong.
+void expect_density_of_edges(const Scene& scene, const LearnedEmission& learned) {
+    RunningStats inverse, met;
+    double most = 0;
+    for (std::uint64_t i = 0; i < 400'000; ++i) {
+        Rng rng(14, StreamPurpose::test, i);
+        const auto light = learned.sample(rng);
+        const double over = light ? 1 / learned.density_ratio(light->x0, *light->x1) : 0;
+        inverse.add(over);
+        most = std::max(most, over);
+        const auto plain = emit_light(scene, rng);
+        const auto x1 = scene.trace(plain->ray.origin, plain->ray.w);
+        met.add(x1 && x1->site != Site::infinite ? 1 : 0);
+    }
+    EXPECT_LT(std::abs(z_score(inverse, met)), 4) << inverse.mean() << " " << met.mean();
+    // A fifth of the edges aim at nothing, and half of their emitters are chosen by power.
+    EXPECT_LT(most, 10 + 1e-3);
+}
+
+TEST_F(LearnedEmissionInARoom, HasTheDensityOfItsEdges) { expect_density_of_edges(*scene, learned); }
+
+TEST(LearnedEmission, HasTheDensityOfItsEdgesFromLamps) {
+    const auto wall = make_diffuse(Rgb(0.5));
+    test::SceneMaker m;
+    m.room({-3, -1, -2}, {3, 1, 2}, wall);
+    m.rectangle({0.5f, -1, -2}, {0, 2, 0}, {0, 0, 3.5f}, wall); // with a way past it
+    for (int i = 0; i < 12; ++i) {
+        const auto x = 0.45f * static_cast<float>(i) - 2.6f;
+        m.rectangle({x - 0.1f, 0.99f, -0.1f}, {0.2f, 0, 0}, {0, 0, 0.2f}, make_diffuse(Rgb(0.0)), Rgb(5));
+    }
+    m.emitter(make_point_emitter(Vec3(2, 0.2f, -1), Rgb(1)));
+    m.camera({-2.5f, 0, 1.9f}, {-2, 0, 0}, 60).window(32, 24);
+    const auto scene = m.build();
+    const LearnedEmission learned = learn(*scene, 16'384);
+    expect_density_of_edges(*scene, learned);
+    const Arrivals plain = trace(*scene, 200'000, 15, [&](Rng& rng) { return emit_light(*scene, rng); });
+    const Arrivals aimed = trace(*scene, 200'000, 16, [&](Rng& rng) { return learned.sample(rng); });
+    EXPECT_LT(std::abs(z_score(plain.inside, aimed.inside)), 4) << plain.inside.mean() << " " << aimed.inside.mean();
+}
+
 TEST(LearnedEmission, ChoosesTheLampsThatShineWhereTheEyeIs) {
     const auto wall = make_diffuse(Rgb(0.5));
     test::SceneMaker m;
@@ -158,9 +201,8 @@ TEST(LearnedEmission, ChoosesTheLampsThatShineWhereTheEyeIs) {
     RunningStats power;
     for (int i = 0; i < 20'000; ++i) {
         const auto light = learned.sample(rng);
-        ASSERT_TRUE(light);
-        first += std::abs(light->x0.p.x) < 1 ? 1 : 0;
-        power.add(luminance(light->power));
+        first += light && std::abs(light->x0.p.x) < 1 ? 1 : 0;
+        power.add(light ? luminance(light->power) : 0);
     }
     EXPECT_GT(first, 9'000);                   // one in thirty by power
     const double of_all = 30 * kPi * 5 * 0.16; // [W]

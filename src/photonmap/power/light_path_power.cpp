@@ -17,19 +17,8 @@ std::optional<Rgb> light_path_power(const Scene& scene, const LightPathSampling&
     }
     const LearnedEmission* learned = sampling.emission();
     if (learned == nullptr) return walk.power();
-    const double ratio = learned->density_ratio(x[0].point, direction(x[0].point, x[1].point), x[1].point.p);
+    const double ratio = learned->density_ratio(x[0].point, x[1].point);
     return ratio > 0 ? std::optional(walk.power() / ratio) : std::nullopt;
-}
-
-double expected_over_emitted(const Scene& scene, const LightPathSampling& sampling, const EmittedLight& light) {
-    const LearnedEmission* learned = sampling.emission();
-    if (learned == nullptr) return 1;
-    const Vec3& w = light.ray.w;
-    const Emitter& emitter = scene.emitter(light.x0.emitter);
-    const double density = emitter_point_pdf(scene, light.x0) * emitter.ray_pdf(light.x0, w) *
-                           learned->density_ratio(light.x0, w, light.ray.origin.p);
-    const double flux = luminance(emitter.radiance(light.x0, w)) * light.x0.abs_cos(w);
-    return density > 0 ? flux / (density * luminance(light.power)) : 1;
 }
 
 } // namespace keyhole

@@ -21,12 +21,8 @@ struct LightPathSampling {
 
 /// F(X) / p(X) [W] of light sub-path X, vertices 0 to `last` of `path`: flux over the density of light tracing, every
 /// way to make X summed: choice of emitter, place and direction, scattering, walks along user paths, survival of
-/// roulette. That is the power with which light tracing arrives there; under a learned emission that resamples
-/// directions, the power that it would have by the density of infinitely many candidates. None where light tracing
-/// never makes X. Reads points, BSDFs and events of the vertices only.
+/// roulette. That is the power with which light tracing arrives there. None where light tracing never makes X. Reads
+/// points, BSDFs and events of the vertices only.
 std::optional<Rgb> light_path_power(const Scene& scene, const LightPathSampling& sampling, const Path& path, int last);
-
-/// The power of light_path_power() over that which `light` was emitted with: 1 but where directions are resampled.
-double expected_over_emitted(const Scene& scene, const LightPathSampling& sampling, const EmittedLight& light);
 
 } // namespace keyhole

@@ -25,11 +25,8 @@ class TechniqueWeights {
     double of_chains(const PhotonWeighing::Weight& visible) const {
         return visible.known ? 1 / (1 + 1 / (odds_ * visible.value)) : 0.0;
     }
-    /// That of light tracing, of one with weight `visible` where `scale` times that is V.
-    double of_light_path(PhotonWeighing::Weight visible, double scale) const {
-        visible.value *= scale;
-        return 1 - of_chains(visible);
-    }
+    /// That of light tracing.
+    double of_light_path(const PhotonWeighing::Weight& visible) const { return 1 - of_chains(visible); }
     /// V of the photon of `kind` at vertex `at` of `path`; infinite where light tracing never makes it.
     PhotonWeighing::Weight visible(const Scene& scene, PhotonKind kind, const Path& path, int at) const {
         const auto power = light_path_power(scene, sampling_, path, at);

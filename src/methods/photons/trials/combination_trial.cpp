@@ -40,7 +40,7 @@ constexpr double kMostOf = 0.7;
 struct Find {
     std::size_t part; ///< of the scene
     double visible;   ///< V; 0 where importance is unknown
-    double amount;    ///< of visible power that it would bring if there were no other technique
+    double amount;    ///< of visible power that it would bring if there were no other technique: V for light tracing
 };
 /// Photons of one light path, or of one chain.
 using Finds = std::vector<Find>;
@@ -66,7 +66,6 @@ struct Sink {
     const Scene& scene;
     const PhotonWeighing& weighing;
     StorageRule rule;
-    double expected; ///< as expected_over_emitted()
     Finds& finds;
 
     bool arrival(Vertex& v, const Vec3& to_light, const Rgb& power, const LightPast& past) {
@@ -78,7 +77,7 @@ struct Sink {
     }
     void add(PhotonKind kind, const Vertex& v, const Vec3& to_light, const Rgb& power) const {
         const PhotonWeighing::Weight visible = weighing(kind, v, to_light, power);
-        if (visible.known) finds.push_back({part_of_scene(scene, v.point.p), expected * visible.value, visible.value});
+        if (visible.known) finds.push_back({part_of_scene(scene, v.point.p), visible.value, visible.value});
     }
 };
 
@@ -89,11 +88,10 @@ void try_light_paths(const SamplerContext& c, const EmissionGuide& guide, const 
     trial.paths.resize(static_cast<std::size_t>(kPaths));
     parallel_blocks(kPaths, kPathsOfTrialBlock, run, [&](std::int64_t i) {
         Rng rng(seed_of_trial(c.settings), StreamPurpose::emission, static_cast<std::uint64_t>(i));
-        Sink sink{c.scene, weighing, c.storage(), 1, trial.paths[static_cast<std::size_t>(i)]};
+        Sink sink{c.scene, weighing, c.storage(), trial.paths[static_cast<std::size_t>(i)]};
         if (sampling.emission() == nullptr) {
             trace_light_path(c.scene, *sampling.user_paths, sink.rule.max_scatterings, rng, sink);
         } else if (const auto light = sampling.emission()->sample(rng)) {
-            sink.expected = expected_over_emitted(c.scene, sampling, *light);
             trace_light_path(c.scene, *light, sink.rule.max_scatterings, rng, sink);
         }
     });

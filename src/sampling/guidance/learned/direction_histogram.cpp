@@ -17,6 +17,11 @@ constexpr std::size_t kLeastRays = 16;
 constexpr double kUnknown = 1e-3;
 /// Rays to a plane may be as flat as this [cosine]: others are not counted on it.
 constexpr double kFlattest = 0.05;
+/// Of all directions, those that are drawn from the octahedral map where there is a plane: those that are flat to it
+/// must not be left to chance.
+constexpr double kNotOnPlane = 0.15;
+/// A place as near to the plane as this doesn't use it: height over distance from its middle.
+constexpr float kNearest = 1e-3f;
 /// Between the mean direction and the normal of a window.
 constexpr float kLeastCosine = 0.25f;
 /// Rays seem to meet before the window, the more the farther apart they begin: how much farther it may be.
@@ -43,12 +48,13 @@ std::optional<Vec3> meeting_point(std::span<const DirectionHistogram::Ray> rays)
     return Vec3(x);
 }
 
-/// Where a ray meets the plane; none behind it, and none for a flat one.
+/// Where the ray from `p` along `w` meets the plane, on either side of it, and how far away; none behind `p`.
 std::optional<Imath::V3d> on_plane(const Vec3& center, const Frame& frame, const Vec3& p, const Vec3& w) {
     const double cosine = w.dot(frame.n), height = (center - p).dot(frame.n);
-    if (!(cosine > kFlattest) || !(height > 0)) return std::nullopt;
-    const Vec3 local = frame.to_local(p + w * static_cast<float>(height / cosine) - center);
-    return Imath::V3d(local.x, local.y, height / cosine);
+    const double distance = height / cosine;
+    if (!(distance > 0) || !std::isfinite(distance)) return std::nullopt;
+    const Vec3 local = frame.to_local(p + w * static_cast<float>(distance) - center);
+    return Imath::V3d(local.x, local.y, distance);
 }
 
 /// Of planes that windows may lie in: across the mean direction, and upright or level as the scene's axes are.
@@ -70,17 +76,17 @@ std::vector<Vec3> likely_normals(std::span<const DirectionHistogram::Ray> rays) 
 
 DirectionHistogram::DirectionHistogram(std::span<const Ray> rays, const std::optional<Plane>& plane) : plane_(plane) {
     if (plane_) frame_ = Frame(plane_->n);
-    std::vector<PlaneHistogram::Point> points;
-    points.reserve(rays.size());
+    std::vector<PlaneHistogram::Point> on_map, points;
     for (const Ray& ray : rays) {
-        if (!plane_) {
-            const Vec2d place = sphere_place(SphereLayout::octahedral, ray.w);
-            points.push_back({{place.x, place.y}, ray.weight});
-        } else if (const auto at = on_plane(plane_->center, frame_, ray.p, ray.w)) {
+        const Vec2d place = sphere_place(SphereLayout::octahedral, ray.w);
+        on_map.push_back({{place.x, place.y}, ray.weight});
+        if (!plane_) continue;
+        if (!(std::abs(ray.w.dot(frame_.n)) > kFlattest)) continue;
+        if (const auto at = on_plane(plane_->center, frame_, ray.p, ray.w))
             points.push_back({{at->x, at->y}, ray.weight});
-        }
     }
-    histogram_ = plane_ ? PlaneHistogram(points) : PlaneHistogram(points, {{0, 0}, {1, 1}});
+    octahedral_ = PlaneHistogram(on_map, {{0, 0}, {1, 1}});
+    if (plane_) histogram_ = PlaneHistogram(points);
 }
 
 double DirectionHistogram::likelihood(std::span<const Ray> rays) const {
@@ -112,21 +118,31 @@ std::optional<DirectionHistogram::Plane> DirectionHistogram::meeting_plane(std::
     return best;
 }
 
+double DirectionHistogram::share_of_octahedron(const Vec3& p) const {
+    if (histogram_.empty()) return 1;
+    // From within the plane all its points lie in directions that floats can't tell from those beside it.
+    return std::abs((plane_->center - p).dot(frame_.n)) > kNearest * (plane_->center - p).length() ? kNotOnPlane : 1;
+}
+
 Vec3 DirectionHistogram::sample(const Vec3& p, double u0, double u1) const {
-    const PlaneHistogram::Place place = histogram_.sample(u0, u1);
-    if (!plane_) return sphere_direction(SphereLayout::octahedral, {place.x[0], place.x[1]});
+    const double flat = share_of_octahedron(p);
+    if (u0 < flat) {
+        const PlaneHistogram::Place place = octahedral_.sample(u0 / flat, u1);
+        return sphere_direction(SphereLayout::octahedral, {place.x[0], place.x[1]});
+    }
+    const PlaneHistogram::Place place = histogram_.sample((u0 - flat) / (1 - flat), u1);
     const Vec3 local(static_cast<float>(place.x[0]), static_cast<float>(place.x[1]), 0);
     return (plane_->center + frame_.to_world(local) - p).normalized();
 }
 
 double DirectionHistogram::pdf(const Vec3& p, const Vec3& w) const {
-    if (!plane_) {
-        const Vec2d place = sphere_place(SphereLayout::octahedral, w);
-        return kDensityOfOctahedron * histogram_.pdf({{place.x, place.y}});
-    }
-    const auto at = on_plane(plane_->center, frame_, p, w);
-    if (!at) return 0;
-    return histogram_.pdf({{at->x, at->y}}) * at->z * at->z / w.dot(frame_.n);
+    const double flat = share_of_octahedron(p);
+    const Vec2d place = sphere_place(SphereLayout::octahedral, w);
+    double sum = flat * kDensityOfOctahedron * octahedral_.pdf({{place.x, place.y}});
+    if (flat == 1) return sum;
+    if (const auto at = on_plane(plane_->center, frame_, p, w))
+        sum += (1 - flat) * histogram_.pdf({{at->x, at->y}}) * at->z * at->z / std::abs(w.dot(frame_.n));
+    return sum;
 }
 
 } // namespace keyhole

@@ -32,21 +32,23 @@ class DirectionHistogram {
     /// Over `plane`, or over the octahedral map without one. Empty for too few rays, or none with a weight.
     DirectionHistogram(std::span<const Ray> rays, const std::optional<Plane>& plane);
 
-    bool empty() const { return histogram_.empty(); }
+    bool empty() const { return octahedral_.empty(); }
     const std::optional<Plane>& plane() const { return plane_; }
     /// Unit direction at `p` by two numbers in [0,1). Not to be called when empty.
     Vec3 sample(const Vec3& p, double u0, double u1) const;
     /// Density per solid angle with which sample() makes `w` at `p`.
     double pdf(const Vec3& p, const Vec3& w) const;
-    std::size_t bytes() const { return histogram_.bytes(); }
+    std::size_t bytes() const { return histogram_.bytes() + octahedral_.bytes(); }
 
   private:
+    /// Of all directions at `p`, those that are drawn from the octahedral map.
+    double share_of_octahedron(const Vec3& p) const;
     /// Logarithm of the density of rays, by weight.
     double likelihood(std::span<const Ray> rays) const;
 
     std::optional<Plane> plane_;
     Frame frame_{Vec3(0, 0, 1)}; // of the plane
-    PlaneHistogram histogram_;
+    PlaneHistogram histogram_, octahedral_;
 };
 
 } // namespace keyhole

@@ -22,9 +22,10 @@ struct LightSearch {
 /// The end at an emitter of a path whose light is for photon maps.
 struct SeenLight {
     std::uint32_t emitter;
-    Vec3 towards;  ///< unit, where the emitter is; for one at infinity
-    Vec3 p;        ///< where its light first arrives
-    double weight; ///< luminance in the picture
+    SurfaceCells::Place at; ///< where its light first arrives; the normal on the side that it comes from
+    Vec3 towards;           ///< unit, where it comes from
+    bool environment;       ///< whether the emitter is one
+    double weight;          ///< luminance in the picture
 };
 
 struct FoundLightPaths {
