@@ -128,7 +128,10 @@ TEST_F(LearnedScatteringOverAYard, BringsAllPowerByFewerPaths) {
         }
     };
     const Arrivals wrong = trace(*scene, emission, Wrong{learned}, kPaths, 2);
-    EXPECT_GT(std::abs(z_score(plain.walls[1], wrong.walls[1])), 4);
+    double most = 0;
+    for (std::size_t k = 0; k < plain.walls.size(); ++k)
+        most = std::max(most, std::abs(z_score(plain.walls[k], wrong.walls[k])));
+    EXPECT_GT(most, 4);
 }
 
 TEST_F(LearnedScatteringOverAYard, HasTheDensityOfItsDirections) {

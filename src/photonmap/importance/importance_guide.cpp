@@ -1,6 +1,14 @@
 #include "photonmap/importance/importance_guide.h"
 
+#include <algorithm>
+
 namespace keyhole {
+namespace {
+
+/// An estimate holds as far from its place as this times its radius.
+constexpr float kReach = 2;
+
+} // namespace
 
 std::vector<Photon> ImportanceGuide::some(const PhotonMap& importons) {
     std::vector<Photon> chosen;
@@ -16,7 +24,11 @@ std::optional<double> ImportanceGuide::visible_power(const Vertex& v, const Vec3
     // to leave evenly.
     const Rgb scattering = v.bsdf.diffuse_reflectance(to_light) * v.bsdf.diffuse_weight(to_light) +
                            Rgb(v.bsdf.glossy_albedo(to_light) / kPi);
-    const double visible = luminance(power * scattering * answer.irradiance);
+    // Farther away a place nearer by would be expected if importance were as large: it goes by the distance to the
+    // nearest one. On the outside of a wall that may be one of another surface, metres away.
+    const float distance = (map_.places()[answer.place].position() - v.point.p).length();
+    const double far = std::max(1.0f, distance / (kReach * map_.radius(answer.place)));
+    const double visible = luminance(power * scattering * answer.irradiance) / (far * far);
     if (!(visible > 0)) return std::nullopt;
     return visible;
 }

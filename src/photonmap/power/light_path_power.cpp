@@ -17,7 +17,7 @@ std::optional<Rgb> light_path_power(const Scene& scene, const LightPathSampling&
     }
     const LearnedEmission* learned = sampling.emission();
     if (learned == nullptr) return walk.power();
-    const double ratio = learned->density_ratio(x[0].point, x[1].point);
+    const double ratio = learned->density_ratio(x[0].point, direction(x[0].point, x[1].point), x[1].point.p);
     return ratio > 0 ? std::optional(walk.power() / ratio) : std::nullopt;
 }
 

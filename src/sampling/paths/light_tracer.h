@@ -82,9 +82,8 @@ void trace_light_path(const Scene& scene, const EmittedLight& light, int max_sca
     if (is_black(light.power)) return;
     if constexpr (requires { sink.sets_out(light.x0, false); }) sink.sets_out(light.x0, false);
     LightTracing<Sink, Scattering> tracing{{}, sink, scattering, luminance(light.power)};
-    WalkRay first{&light.ray.origin, &light.x0, light.ray.w, light.power};
-    if (light.x1) first.met = &*light.x1;
-    random_walk(scene, From::light, first, max_scatterings, source, tracing);
+    random_walk(scene, From::light, {&light.ray.origin, &light.x0, light.ray.w, light.power}, max_scatterings, source,
+                tracing);
 }
 
 /// The same from an emitter chosen by power.

@@ -36,10 +36,7 @@ template <class Hooks>
 void random_walk(const Scene& scene, From from, WalkRay ray, int most, SampleSource& source, Hooks& hooks) {
     for (int n = 1; n <= most; ++n) {
         Vertex& v = hooks.place();
-        if (const SurfacePoint* met = std::exchange(ray.met, nullptr))
-            v = make_vertex(*met);
-        else if (!next_vertex(scene, *ray.origin, ray.w, v))
-            return hooks.lost();
+        if (!next_vertex(scene, *ray.origin, ray.w, v)) return hooks.lost();
         // From where light sets out: its ray may start nearer than an infinite vertex.
         ray.clear = scene.transmittance(*ray.last, v.point);
         ray.throughput *= ray.clear;

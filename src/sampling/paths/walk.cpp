@@ -77,8 +77,7 @@ std::optional<Continuation> continue_walk(const Vertex& v, const Vec3& back, Fro
 
 std::optional<EmittedLight> emit_along(const Scene& scene, const SurfacePoint& x0, double pdf, const EmitterRay& ray) {
     if (!(pdf > 0) || !(ray.pdf > 0)) return std::nullopt;
-    return EmittedLight{
-        x0, ray, scene.emitter(x0.emitter).radiance(x0, ray.w) * (x0.abs_cos(ray.w) / (pdf * ray.pdf)), {}};
+    return EmittedLight{x0, ray, scene.emitter(x0.emitter).radiance(x0, ray.w) * (x0.abs_cos(ray.w) / (pdf * ray.pdf))};
 }
 
 std::optional<EmittedLight> emit_light(const Scene& scene, const SurfacePoint& x0, double pdf, SampleSource& source) {

@@ -60,7 +60,6 @@ struct WalkRay {
     Vec3 w;                     ///< unit
     Rgb throughput{1.0};        ///< contribution over density of the vertices so far, roulette included
     Rgb clear{1.0};             ///< what media leave of light along it
-    const SurfacePoint* met{};  ///< what it meets, where that is known; null: it has to be traced
 };
 
 /// The ray through window point `image` from the eye vertex at `eye`, which must stay in its place.
@@ -72,8 +71,7 @@ inline WalkRay eye_ray(const Scene& scene, const SurfacePoint& eye, const Vec2& 
 struct EmittedLight {
     SurfacePoint x0;
     EmitterRay ray;
-    Rgb power;                        ///< over the density of the choice [W]
-    std::optional<SurfacePoint> x1{}; ///< where it arrives, if that is known
+    Rgb power; ///< over the density of the choice [W]
 };
 /// Light that leaves `x0`, chosen with density `pdf`, along `ray`. None where none can.
 std::optional<EmittedLight> emit_along(const Scene& scene, const SurfacePoint& x0, double pdf, const EmitterRay& ray);

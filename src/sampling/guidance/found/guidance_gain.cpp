@@ -62,7 +62,8 @@ struct MomentSink {
         ratio = 1;
     }
     void passes(const Vertex& v) {
-        if (learned != nullptr && !std::exchange(has_left, true)) ratio = learned->density_ratio(x0, v.point);
+        if (learned != nullptr && !std::exchange(has_left, true))
+            ratio = learned->density_ratio(x0, direction(x0, v.point), v.point.p);
     }
     bool arrival(const Vertex& v, const Vec3& to_light, const Rgb& carried, const LightPast& past) {
         passes(v);

@@ -17,9 +17,6 @@ constexpr std::size_t kLeastRays = 16;
 constexpr double kUnknown = 1e-3;
 /// Rays to a plane may be as flat as this [cosine]: others are not counted on it.
 constexpr double kFlattest = 0.05;
-/// Of all directions, those that are drawn from the octahedral map where there is a plane: those that are flat to it
-/// must not be left to chance.
-constexpr double kNotOnPlane = 0.15;
 /// A place as near to the plane as this doesn't use it: height over distance from its middle.
 constexpr float kNearest = 1e-3f;
 /// Between the mean direction and the normal of a window.
@@ -49,7 +46,7 @@ std::optional<Vec3> meeting_point(std::span<const DirectionHistogram::Ray> rays)
 }
 
 /// Where the ray from `p` along `w` meets the plane, on either side of it, and how far away; none behind `p`.
-std::optional<Imath::V3d> on_plane(const Vec3& center, const Frame& frame, const Vec3& p, const Vec3& w) {
+std::optional<Imath::V3d> meets_plane(const Vec3& center, const Frame& frame, const Vec3& p, const Vec3& w) {
     const double cosine = w.dot(frame.n), height = (center - p).dot(frame.n);
     const double distance = height / cosine;
     if (!(distance > 0) || !std::isfinite(distance)) return std::nullopt;
@@ -82,7 +79,7 @@ DirectionHistogram::DirectionHistogram(std::span<const Ray> rays, const std::opt
         on_map.push_back({{place.x, place.y}, ray.weight});
         if (!plane_) continue;
         if (!(std::abs(ray.w.dot(frame_.n)) > kFlattest)) continue;
-        if (const auto at = on_plane(plane_->center, frame_, ray.p, ray.w))
+        if (const auto at = meets_plane(plane_->center, frame_, ray.p, ray.w))
             points.push_back({{at->x, at->y}, ray.weight});
     }
     octahedral_ = PlaneHistogram(on_map, {{0, 0}, {1, 1}});
@@ -124,25 +121,45 @@ double DirectionHistogram::share_of_octahedron(const Vec3& p) const {
     return std::abs((plane_->center - p).dot(frame_.n)) > kNearest * (plane_->center - p).length() ? kNotOnPlane : 1;
 }
 
+Vec3 DirectionHistogram::sample_on_plane(double u0, double u1) const {
+    const PlaneHistogram::Place place = histogram_.sample(u0, u1);
+    return plane_->center + frame_.to_world(Vec3(static_cast<float>(place.x[0]), static_cast<float>(place.x[1]), 0));
+}
+
+std::optional<DirectionHistogram::OnPlane> DirectionHistogram::on_plane(const Vec3& p, const Vec3& w) const {
+    const double cosine = w.dot(frame_.n), along = (plane_->center - p).dot(frame_.n) / cosine;
+    if (!std::isfinite(along)) return std::nullopt;
+    const Vec3 q = p + w * static_cast<float>(along), local = frame_.to_local(q - plane_->center);
+    return OnPlane{q, histogram_.pdf({{local.x, local.y}}) / std::abs(cosine)};
+}
+
+Vec3 DirectionHistogram::sample_on_map(double u0, double u1) const {
+    const PlaneHistogram::Place place = octahedral_.sample(u0, u1);
+    return sphere_direction(SphereLayout::octahedral, {place.x[0], place.x[1]});
+}
+
+DirectionHistogram::Place DirectionHistogram::place_on_map(const Vec3& w) {
+    const Vec2d place = sphere_place(SphereLayout::octahedral, w);
+    return {{place.x, place.y}};
+}
+
+double DirectionHistogram::pdf_on_map(const Place& place) const {
+    return kDensityOfOctahedron * octahedral_.pdf(place);
+}
+
 Vec3 DirectionHistogram::sample(const Vec3& p, double u0, double u1) const {
     const double flat = share_of_octahedron(p);
-    if (u0 < flat) {
-        const PlaneHistogram::Place place = octahedral_.sample(u0 / flat, u1);
-        return sphere_direction(SphereLayout::octahedral, {place.x[0], place.x[1]});
-    }
-    const PlaneHistogram::Place place = histogram_.sample((u0 - flat) / (1 - flat), u1);
-    const Vec3 local(static_cast<float>(place.x[0]), static_cast<float>(place.x[1]), 0);
-    return (plane_->center + frame_.to_world(local) - p).normalized();
+    if (u0 < flat) return sample_on_map(u0 / flat, u1);
+    return (sample_on_plane((u0 - flat) / (1 - flat), u1) - p).normalized();
 }
 
 double DirectionHistogram::pdf(const Vec3& p, const Vec3& w) const {
     const double flat = share_of_octahedron(p);
-    const Vec2d place = sphere_place(SphereLayout::octahedral, w);
-    double sum = flat * kDensityOfOctahedron * octahedral_.pdf({{place.x, place.y}});
+    double sum = flat * pdf_on_map(place_on_map(w));
     if (flat == 1) return sum;
-    if (const auto at = on_plane(plane_->center, frame_, p, w))
-        sum += (1 - flat) * histogram_.pdf({{at->x, at->y}}) * at->z * at->z / std::abs(w.dot(frame_.n));
-    return sum;
+    const auto on = on_plane(p, w);
+    if (!on || !((on->q - p).dot(w) > 0)) return sum; // behind p
+    return sum + (1 - flat) * on->pdf * static_cast<double>((on->q - p).length2());
 }
 
 } // namespace keyhole

@@ -38,6 +38,26 @@ class DirectionHistogram {
     Vec3 sample(const Vec3& p, double u0, double u1) const;
     /// Density per solid angle with which sample() makes `w` at `p`.
     double pdf(const Vec3& p, const Vec3& w) const;
+
+    /// The parts of which that is made: a point of the plane, where there is one with a histogram, by its density per
+    /// area [1/m^2], and a direction by the octahedral map, per solid angle.
+    bool has_plane() const { return !histogram_.empty(); }
+    Vec3 sample_on_plane(double u0, double u1) const;
+    /// Where the line through `p` along `w` meets the plane, with that density over the cosine there; none where it
+    /// doesn't.
+    struct OnPlane {
+        Vec3 q;
+        double pdf;
+    };
+    std::optional<OnPlane> on_plane(const Vec3& p, const Vec3& w) const;
+    Vec3 sample_on_map(double u0, double u1) const;
+    using Place = PlaneHistogram::Place;
+    static Place place_on_map(const Vec3& w);
+    double pdf_on_map(const Place& place) const;
+    /// Of all directions, those that are drawn from the octahedral map where there is a plane: those that are flat to
+    /// it must not be left to chance.
+    static constexpr double kNotOnPlane = 0.15;
+
     std::size_t bytes() const { return histogram_.bytes() + octahedral_.bytes(); }
 
   private:

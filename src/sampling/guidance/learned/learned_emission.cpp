@@ -54,39 +54,33 @@ FirstEdge LearnedEmission::sample_plain(double u, SampleSource& source) const {
 std::optional<EmittedLight> LearnedEmission::sample(SampleSource& source) const {
     if (choice_.empty()) return std::nullopt;
     const double u = source.next();
-    std::optional<std::uint32_t> cell;
-    FirstEdge edge;
-    if (u < plain_) {
-        edge = sample_plain(u / plain_, source);
-    } else {
-        const auto drawn = targets_.sample((u - plain_) / (1 - plain_), source);
-        if (!drawn) return std::nullopt;
-        edge = drawn->edge;
-        cell = drawn->cell;
-    }
-    const auto x1 = scene_->trace(edge.ray.origin, edge.ray.w);
-    if (!x1 || x1->site == Site::infinite) return std::nullopt;
-    if (cell && targets_.cell_of(*x1, edge.ray.w) != *cell) return std::nullopt;
-    edge.ray.pdf = pdf(edge.x0, *x1);
-    auto light = emit_along(*scene_, edge.x0, 1, edge.ray);
-    if (!light || is_black(light->power)) return std::nullopt;
-    light->x1 = x1;
-    return light;
+    FirstEdge edge =
+        u < plain_ ? sample_plain(u / plain_, source) : targets_.sample((u - plain_) / (1 - plain_), source);
+    edge.ray.pdf = pdf(edge);
+    return emit_along(*scene_, edge.x0, 1, edge.ray);
 }
 
-double LearnedEmission::pdf(const SurfacePoint& x0, const SurfacePoint& x1) const {
-    const Emitter& emitter = scene_->emitter(x0.emitter);
-    double sum =
-        plain_ * choice_.probability(x0.emitter) * emitter.point_pdf(x0) * emitter.ray_pdf(x0, direction(x0, x1));
-    if (plain_ < 1) sum += (1 - plain_) * targets_.pdf(x0, x1);
+double LearnedEmission::pdf(const FirstEdge& edge) const {
+    const Emitter& emitter = scene_->emitter(edge.x0.emitter);
+    double sum = plain_ * choice_.probability(edge.x0.emitter) * emitter.point_pdf(edge.x0) *
+                 emitter.ray_pdf(edge.x0, edge.ray.w);
+    if (plain_ < 1) sum += (1 - plain_) * targets_.pdf(edge);
     return sum;
 }
 
-double LearnedEmission::density_ratio(const SurfacePoint& x0, const SurfacePoint& x1) const {
+double LearnedEmission::density_ratio(const SurfacePoint& x0, const Vec3& w, const Vec3& p) const {
     const Emitter& emitter = scene_->emitter(x0.emitter);
-    const double by_power = scene_->emitter_distribution().probability(x0.emitter) * emitter.point_pdf(x0) *
-                            emitter.ray_pdf(x0, direction(x0, x1));
-    return by_power > 0 ? pdf(x0, x1) / by_power : 0;
+    const double by_power =
+        scene_->emitter_distribution().probability(x0.emitter) * emitter.point_pdf(x0) * emitter.ray_pdf(x0, w);
+    if (!(by_power > 0)) return 0;
+    EmitterRay ray;
+    if (x0.site == Site::infinite) {
+        ray = parallel_ray(*scene_, x0, p);
+    } else {
+        ray.origin = x0;
+        ray.w = w;
+    }
+    return pdf({x0, ray}) / by_power;
 }
 
 double LearnedEmission::effective_emitters() const {

@@ -23,11 +23,12 @@ class LearnedEmission {
     /// find too little of the light that is hardest to find for what is to be gained.
     static bool can_learn(const Scene& scene);
 
-    /// The first edge of a light path. None where nothing emits, and for edges that don't stand.
+    /// The first edge of a light path. None where nothing emits.
     std::optional<EmittedLight> sample(SampleSource& source) const;
 
-    /// Density with which sample() makes the first edge, from `x0` to `x1`, over that of emission by power.
-    double density_ratio(const SurfacePoint& x0, const SurfacePoint& x1) const;
+    /// Density with which sample() makes the first edge, from `x0` along `w` through `p`, over that of emission by
+    /// power.
+    double density_ratio(const SurfacePoint& x0, const Vec3& w, const Vec3& p) const;
 
     /// How many emitters would do: the reciprocal of the sum of their squared shares.
     double effective_emitters() const;
@@ -37,7 +38,7 @@ class LearnedEmission {
     void choose_emitters(std::vector<SeenLight>& seen);
     FirstEdge sample_plain(double u, SampleSource& source) const;
     /// Density of the emitter's point times that of EmitterRay.
-    double pdf(const SurfacePoint& x0, const SurfacePoint& x1) const;
+    double pdf(const FirstEdge& edge) const;
 
     const Scene* scene_;
     EmitterDistribution choice_; ///< of emitters, where no target is aimed at
