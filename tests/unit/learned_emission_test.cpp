@@ -168,6 +168,25 @@ void expect_density_of_edges(const Scene& scene, const LearnedEmission& learned)
 
 TEST_F(LearnedEmissionInARoom, HasTheDensityOfItsEdges) { expect_density_of_edges(*scene, learned); }
 
+TEST_F(LearnedEmissionInARoom, HasTheDensityOfItsLinesThroughTheWindow) {
+    // Of uniform light from all around, half the window's area over the scene's cross-section passes it; a fourth of
+    // that from above, and into the room.
+    RunningStats inverse;
+    for (std::uint64_t i = 0; i < 400'000; ++i) {
+        Rng rng(17, StreamPurpose::test, i);
+        const auto light = learned.sample(rng);
+        ASSERT_TRUE(light);
+        const Vec3 &o = light->ray.origin.p, &w = light->ray.w, at = o - w * (o.z / w.z);
+        const bool through = std::abs(at.x - 1.4f) < 0.4f && std::abs(at.y - 1.4f) < 0.4f && w.z > 0 && w.y < 0;
+        const bool of_sky = is_environment(scene->emitter(light->x0.emitter));
+        inverse.add(through && of_sky ? 1 / learned.density_ratio(light->x0, w, o) : 0);
+    }
+    const double radius = scene->bounding_sphere().radius;
+    const double expected = scene->emitter_distribution().probability(0) * 0.125 * 0.64 / (kPi * radius * radius);
+    EXPECT_LT(inverse.standard_error(), 0.02 * expected);
+    EXPECT_NEAR(inverse.mean(), expected, 4 * inverse.standard_error());
+}
+
 TEST(LearnedEmission, HasTheDensityOfItsEdgesFromLamps) {
     const auto wall = make_diffuse(Rgb(0.5));
     test::SceneMaker m;
