@@ -67,6 +67,7 @@ class PrincipledBsdf {
     class Share {
       public:
         Share() = default;
+        // NOLINTNEXTLINE(bugprone-incorrect-roundings): not negative; a call for each would be slow
         Share(double x) : bits_(static_cast<std::uint16_t>(x * 65535 + 0.5)) {}
         operator double() const { return bits_ * (1 / 65535.0); }
 
