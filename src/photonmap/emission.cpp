@@ -40,6 +40,7 @@ class Collector {
         role_ = role;
         rng_ = &rng;
     }
+
     void sets_out(const SurfacePoint& x0, bool guided) {
         if (observer_ == nullptr) return;
         trail_.assign(1, {x0.p, false, x0.site == Site::infinite});

@@ -1,4 +1,4 @@
-// Rays against shapes. Embree is known in accelerator.cpp only.
+// Rays against shapes. Of Embree accelerator.cpp knows, and ball_tree.cpp, nobody else.
 #pragma once
 
 #include "scene/shape.h"

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <limits>
+#include <stdexcept>
 
 namespace keyhole {
 namespace {
@@ -52,6 +53,7 @@ struct BallTree::Embree {
 
     explicit Embree(std::span<const Ball> these)
         : device(rtcNewDevice(nullptr)), balls(these), around(ball_around(these)) {
+        if (device == nullptr) throw std::runtime_error("Embree gave no device");
         rtcSetDeviceMemoryMonitorFunction(device, count_bytes, &bytes);
         scene = rtcNewScene(device);
         RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);

@@ -88,6 +88,7 @@ void EmissionTargets::add_cell(std::span<const SeenLight* const> seen, std::vect
     std::vector<float> squares;
     for (std::size_t begin = 0, end = 0; begin < seen.size(); begin = end) {
         const std::uint32_t emitter = seen[begin]->emitter;
+        const bool environment = is_environment(scene_->emitter(emitter));
         std::vector<DirectionHistogram::Ray> rays;
         const auto add = [&](const Ball& ball, double weight) {
             balls.push_back(ball);
@@ -98,7 +99,7 @@ void EmissionTargets::add_cell(std::span<const SeenLight* const> seen, std::vect
         for (; end < seen.size() && seen[end]->emitter == emitter; ++end) {
             const SeenLight& s = *seen[end];
             add({s.at.p, std::max(radius_of(s, seen, squares), least)}, (1 - kAroundAll) * s.weight);
-            if (s.environment) rays.push_back({s.at.p, s.towards, s.weight});
+            if (environment) rays.push_back({s.at.p, s.towards, s.weight});
             weight += s.weight;
         }
         add(ball_around(std::span(balls).last(end - begin)), kAroundAll * weight);
@@ -145,7 +146,8 @@ double EmissionTargets::pdf(const FirstEdge& edge) const {
     const auto& [x0, ray] = edge;
     const Vec3& w = ray.w;
     const double own = scene_->emitter(x0.emitter).point_pdf(x0);
-    const DirectionHistogram::Place on_map = DirectionHistogram::place_on_map(-w);
+    DirectionHistogram::Place on_map{};
+    if (x0.site == Site::infinite) on_map = DirectionHistogram::place_on_map(-w);
     const Group* last = nullptr; // targets of a group follow each other
     Ways ways;
     double sum = 0;

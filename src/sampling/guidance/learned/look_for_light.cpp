@@ -25,7 +25,6 @@ std::optional<SeenScattering> scattering_at(const Path& path, std::size_t i, dou
 
 /// Keeps what paths from the eye met whose light is for photon maps.
 struct Eye {
-    const Scene& scene;
     FoundLightPaths& found;
     SampleSource& source;
 
@@ -35,8 +34,7 @@ struct Eye {
         const Path path = make_path();
         const SurfacePoint &x0 = path.x[0].point, &x1 = path.x[1].point;
         const Vec3 towards = direction(x1, x0);
-        found.ends.push_back(
-            {x0.emitter, {x1.p, facing(x1.ng, towards)}, towards, is_environment(scene.emitter(x0.emitter)), y});
+        found.ends.push_back({x0.emitter, {x1.p, facing(x1.ng, towards)}, towards, y});
         // Any of the vertices before that which stores; all together would fill the memory with what is alike.
         const int before = storage_point(diffuse_vertices(path), kind).vertex - 1;
         if (before < 1) return;
@@ -60,7 +58,7 @@ FoundLightPaths look_for_light(const Scene& scene, const LightSearch& search, co
         const std::int64_t end = std::min(search.paths, (b + 1) * kBlock);
         for (std::int64_t i = b * kBlock; i < end && found.ends.size() < most; ++i) {
             Rng rng(search.seed, StreamPurpose::learned_emission, static_cast<std::uint64_t>(i));
-            Eye eye{scene, found, rng};
+            Eye eye{found, rng};
             const Vec2 image = lattice_image_point(search.seed, StreamPurpose::learned_emission, i);
             trace_independent(Technique::path, scene, image, {search.max_scatterings, search.set}, rng, eye);
         }

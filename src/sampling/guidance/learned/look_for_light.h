@@ -24,7 +24,6 @@ struct SeenLight {
     std::uint32_t emitter;
     SurfaceCells::Place at; ///< where its light first arrives; the normal on the side that it comes from
     Vec3 towards;           ///< unit, where it comes from
-    bool environment;       ///< whether the emitter is one
     double weight;          ///< luminance in the picture
 };
 
