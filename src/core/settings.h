@@ -83,6 +83,7 @@ struct Settings {
     bool large_step_mis = true;
     bool irradiance_cache = true;
     double cache_error = 0.3;
+    double cache_min_reach = 4; ///< [pixels]
     std::int64_t cache_rays = 400;
     bool tune_proposals = true;
     ProposalParameters proposals;
@@ -142,6 +143,7 @@ template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
     visit("large_step_mis", s.large_step_mis, "whether large steps deposit as samples on their own account");
     visit("irradiance_cache", s.irradiance_cache, "cache irradiance on diffuse surfaces");
     visit("cache_error", s.cache_error, 0.01, 1.0, "reach of a cached irradiance over the distance to surroundings");
+    visit("cache_min_reach", s.cache_min_reach, 0.1, 60.0, "least reach of a cached irradiance, in pixels");
     visit("cache_rays", s.cache_rays, I{8}, I{1} << 20, "gather rays for a cached irradiance");
     visit("tune_proposals", s.tune_proposals, "weigh the kinds of proposal of mps by how far each moves chains, too");
     for (const ProposalParameter* p : proposal_parameters())

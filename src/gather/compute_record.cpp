@@ -8,8 +8,12 @@
 namespace keyhole {
 
 IrradianceRecord RecordMaker::compute(const VisiblePoint& c, int count, std::uint64_t stream) const {
-    return {c.vertex.point.p, cache_normal(c.vertex, c.back), light(c, count, stream), min_radius(c),
-            static_cast<float>(options_.max_radius * c.pixel)};
+    return {c.vertex.point.p,
+            cache_normal(c.vertex, c.back),
+            light(c, count, stream),
+            min_radius(c),
+            static_cast<float>(options_.max_radius * c.pixel),
+            static_cast<float>(options_.min_radius_by_light * c.pixel)};
 }
 
 HemisphereEstimate RecordMaker::light(const VisiblePoint& c, int count, std::uint64_t stream) const {

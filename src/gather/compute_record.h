@@ -10,11 +10,12 @@
 namespace keyhole {
 
 struct CacheOptions {
-    double error = 0.3;     ///< reach of a record over its distance to surrounding surfaces
-    int rays = 400;         ///< of records' hemispheres on average; hot spots get half as many on top
-    double min_radius = 4;  ///< [pixels], as wide as one is at the record's distance from the eye
-    double max_radius = 60; ///< [pixels]
-    double overlap = 1;     ///< how many times its radius a record is used
+    double error = 0.3;             ///< reach of a record over its distance to surrounding surfaces
+    int rays = 400;                 ///< of records' hemispheres on average; hot spots get half as many on top
+    double min_radius = 4;          ///< [pixels], as wide as one is at the record's distance from the eye
+    double max_radius = 60;         ///< [pixels]
+    double min_radius_by_light = 4; ///< [pixels], see IrradianceRecord
+    double overlap = 1;             ///< how many times its radius a record is used
     std::uint64_t seed = 1;
 };
 

@@ -10,6 +10,10 @@
 namespace keyhole {
 namespace {
 
+/// Samples of direct light at a place, by either technique: for each emitter, and at most. Many rays of many records
+/// meet the same places, so that their noise doesn't average out, and which of many lamps is drawn is most of it.
+constexpr std::size_t kSamplesForEmitter = 4, kMostSamples = 16;
+
 /// The surface that `place` lies on, found again by a short ray from above. None where something lies in between.
 std::optional<SurfacePoint> surface_at(const Scene& scene, const Photon& place) {
     const Vec3 n = place.normal().decode();
@@ -26,27 +30,28 @@ std::optional<SurfacePoint> surface_at(const Scene& scene, const Photon& place) 
 
 } // namespace
 
-DirectIrradianceCache::DirectIrradianceCache(const Scene& scene, std::span<const Photon> places,
-                                             const DirectIrradianceOptions& options, const RunContext& context)
+DirectIrradianceCache::DirectIrradianceCache(const Scene& scene, std::span<const Photon> places, std::uint64_t seed,
+                                             const RunContext& context)
     : places_(places), entries_(places.size()) {
+    const auto samples =
+        static_cast<int>(std::clamp(kSamplesForEmitter * scene.emitters().size(), std::size_t{1}, kMostSamples));
     const Range own = own_part(static_cast<std::int64_t>(places.size()), context);
     context.begin("direct irradiance", static_cast<std::uint64_t>(own.size()), "points");
     shared_blocks(entries_, context, [&](std::int64_t /*block*/, std::int64_t i) {
-        entries_[static_cast<std::size_t>(i)] = at(scene, static_cast<std::uint32_t>(i), options);
+        entries_[static_cast<std::size_t>(i)] = at(scene, static_cast<std::uint32_t>(i), samples, seed);
     });
     context.end();
 }
 
-DirectIrradianceCache::Entry DirectIrradianceCache::at(const Scene& scene, std::uint32_t i,
-                                                       const DirectIrradianceOptions& options) const {
+DirectIrradianceCache::Entry DirectIrradianceCache::at(const Scene& scene, std::uint32_t i, int samples,
+                                                       std::uint64_t seed) const {
     const Photon& place = places_[i];
     const Vec3 n = place.normal().decode();
     Entry site;
     if (const auto point = surface_at(scene, place)) {
-        Rng rng(options.seed, StreamPurpose::irradiance, i);
+        Rng rng(seed, StreamPurpose::irradiance, i);
         const Bsdf bsdf = point->material != nullptr ? point->material->bsdf(*point) : Bsdf();
-        const DirectIrradiance light =
-            direct_irradiance(scene, *point, bsdf, facing(point->ng, n), options.direct_samples, rng);
+        const DirectIrradiance light = direct_irradiance(scene, *point, bsdf, facing(point->ng, n), samples, rng);
         site.direct = SharedExponentRgb(light.irradiance);
         site.reach = light.reach;
     }

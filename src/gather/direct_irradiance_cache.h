@@ -12,16 +12,11 @@
 
 namespace keyhole {
 
-struct DirectIrradianceOptions {
-    int direct_samples = 4; ///< of emitters, at each place
-    std::uint64_t seed = 1;
-};
-
 /// Direct light at the places of an irradiance map. Immutable and thread-safe once built.
 class DirectIrradianceCache {
   public:
     /// `places` are those of the irradiance map, and must outlive this.
-    DirectIrradianceCache(const Scene& scene, std::span<const Photon> places, const DirectIrradianceOptions& options,
+    DirectIrradianceCache(const Scene& scene, std::span<const Photon> places, std::uint64_t seed,
                           const RunContext& context);
 
     /// Irradiance that emitters bring to `position`, near place i [W/m^2]; none where it may change too fast for
@@ -37,7 +32,7 @@ class DirectIrradianceCache {
         SharedExponentRgb direct;
         float reach = 0; ///< [m]
     };
-    Entry at(const Scene& scene, std::uint32_t i, const DirectIrradianceOptions& options) const;
+    Entry at(const Scene& scene, std::uint32_t i, int samples, std::uint64_t seed) const;
 
     std::span<const Photon> places_;
     std::vector<Entry> entries_;

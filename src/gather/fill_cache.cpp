@@ -128,8 +128,9 @@ CacheOptions cache_options(const Settings& settings, double shrink, std::uint64_
     const auto rays = static_cast<double>(settings.cache_rays);
     CacheOptions options;
     options.error = settings.cache_error * shrink;
-    options.min_radius *= shrink;
-    options.max_radius *= shrink;
+    options.min_radius = settings.cache_min_reach * shrink;
+    options.min_radius_by_light = std::max(options.min_radius, options.min_radius_by_light * shrink);
+    options.max_radius = std::max(options.min_radius, options.max_radius * shrink);
     options.rays = static_cast<int>(std::max(rays * shrink * shrink, std::min(rays, kFewestRays)));
     // The rays of all passes count; their number grows as the sixth power of 1 / shrink.
     options.overlap = std::clamp(overlap(rays) * shrink, 1.0, 2.0);

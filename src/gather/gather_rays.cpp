@@ -30,6 +30,10 @@ constexpr double kLeastGlossy = 0.05;
 /// Of a place's radius, how far from it what stands around it is known well enough.
 constexpr float kKnown = 0.25f;
 
+/// Of a place's radius, how far from it direct light may be that of the place. Places are where photons fell, and so in
+/// the light rather than in the shadow beside it: farther away nothing is known of that.
+constexpr float kInTheSameLight = 0.5f;
+
 /// Caustics are the lesser part of the light where they are below this share of the rest; least probability with which
 /// they are looked at there.
 constexpr double kLesserCaustic = 0.1, kLeastLook = 0.1;
@@ -131,8 +135,10 @@ Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSou
 
 Rgb GatherRays::direct(const std::optional<std::uint32_t>& place, const Vertex& v, const Vec3& back,
                        SampleSource& source) const {
-    if (place && !is_fine(*place))
-        if (const auto near = maps_.direct->direct(*place, v.point.p, maps_.irradiance->radius(*place))) return *near;
+    if (place && !is_fine(*place)) {
+        const float farthest = kInTheSameLight * maps_.irradiance->radius(*place);
+        if (const auto near = maps_.direct->direct(*place, v.point.p, farthest)) return *near;
+    }
     return direct_irradiance(scene_, v.point, v.bsdf, facing(v.point.ng, back), 1, source).irradiance;
 }
 

@@ -106,9 +106,11 @@ void IrradianceCache::insert(const IrradianceRecord& record) {
              .translation = e.translation,
              .variance = static_cast<float>(e.variance),
              .variance_by_all = static_cast<float>(e.variance),
+             .around = static_cast<float>(std::min(e.distance, 1e30)),
              .distance = static_cast<float>(std::min(e.distance, 1e30)),
              .min_radius = record.min_radius,
-             .max_radius = record.max_radius};
+             .max_radius = record.max_radius,
+             .min_radius_by_light = record.min_radius_by_light};
     // Where irradiance changes by its own size within that distance, first order says nothing beyond (Ward, Heckbert).
     const float y = static_cast<float>(luminance(e.irradiance));
     const Vec3 slope = r.translation[0] * 0.2126f + r.translation[1] * 0.7152f + r.translation[2] * 0.0722f;
@@ -202,23 +204,27 @@ void IrradianceCache::change(std::uint32_t i, const Rgb& change) {
 }
 
 void IrradianceCache::update_radius(Stored& r) const {
+    const float least = std::max(r.min_radius, std::min(error_ * r.around, r.min_radius_by_light));
     const float radius = error_ * r.distance;
-    r.radius = std::clamp(radius, r.min_radius, r.max_radius);
+    r.radius = std::clamp(radius, least, r.max_radius);
     // Not so where the lower bound decides: things are smaller there than the bound is.
-    r.reach = std::clamp(overlap_ * radius, r.min_radius, overlap_ * r.max_radius);
+    r.reach = std::clamp(overlap_ * radius, least, overlap_ * r.max_radius);
     r.reach = std::min(r.reach, std::max(r.radius, r.border));
 }
 
 void IrradianceCache::clamp_with_neighbours(Stored& r) {
     visit_near(r.position, [&](std::uint32_t i) {
         const Stored& other = records_[i];
-        r.distance = std::min(r.distance, other.distance + (other.position - r.position).length());
+        const float apart = (other.position - r.position).length();
+        r.distance = std::min(r.distance, other.distance + apart);
+        r.around = std::min(r.around, other.around + apart);
     });
     update_radius(r);
     visit_near(r.position, [&](std::uint32_t i) {
         Stored& other = records_[i];
         const float apart = (other.position - r.position).length();
         other.distance = std::min(other.distance, r.distance + apart);
+        other.around = std::min(other.around, r.around + apart);
         update_radius(other);
         // Where light changes over a shorter distance than a record knows of, it ends.
         if (r.radius < kMuchFiner * other.radius) other.border = std::min(other.border, apart);

@@ -18,6 +18,9 @@ struct IrradianceRecord {
     Vec3 normal;   ///< unit, on the side that light arrives at
     HemisphereEstimate light;
     float min_radius, max_radius; ///< bounds on how far it is used [m], 0 < min <= max
+    /// The lower bound unless surfaces around are so near that it has to be less [m]: light that was found, which is
+    /// noisy, doesn't shorten it further.
+    float min_radius_by_light = 0;
 };
 
 /// Records with an index. Filled by one thread; then immutable and thread-safe. The same records in the same order give
@@ -89,9 +92,10 @@ class IrradianceCache {
         RgbGradient rotation, translation;
         float variance;        ///< of the luminance of `irradiance`, by the rays it had at first [(W/m^2)^2]
         float variance_by_all; ///< and by all of them
-        float distance;        ///< to surrounding surfaces, clamped by neighbours' [m]
+        float around;          ///< distance to surrounding surfaces, clamped by neighbours' [m]
+        float distance;        ///< within which light changes by its own size, at most `around`; the same [m]
         float border = std::numeric_limits<float>::infinity(); ///< to where it ends unless its radius is larger [m]
-        float min_radius, max_radius;
+        float min_radius, max_radius, min_radius_by_light;
         float held = 1; ///< factor of its translation gradient
     };
     using Cell = std::vector<std::uint32_t>;

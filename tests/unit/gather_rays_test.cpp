@@ -90,6 +90,45 @@ TEST(GatherRays, TakeNothingFromPlacesThatLieBeyondTheirOwnEstimates) {
     EXPECT_EQ(floor.seen_at(0.8f), 0) << "light from 0.2 m away";
 }
 
+/// A roof keeps the lamp's light from x > 0.55 m. Photons, and with them places of the map, are in the light alone.
+TEST(GatherRays, DontTakeDirectLightToTheShadowBesideIt) {
+    SceneDescription d;
+    const Rectangle floor{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}};
+    const Rectangle roof{{0.4f, 0.5f, -1}, {0.6f, 0, 0}, {0, 0, 3}};
+    const Rectangle lamp{{0.245f, 1, 0.495f}, {0.01f, 0, 0}, {0, 0, 0.01f}};
+    for (const Rectangle& r : {floor, roof, lamp}) {
+        d.shapes.push_back(shape_of(r));
+        d.shapes.back().material = make_diffuse(Rgb(0.5));
+    }
+    d.shapes.back().emission =
+        std::make_unique<SurfaceEmission>(SurfaceEmission{.radiance = Rgb(1e11), .two_sided = true});
+    const Scene scene(std::move(d));
+    const SurfacePatches patches(scene);
+    Rng rng = make_rng(7);
+    PhotonSet photons;
+    const Rectangle lit{{0, 0, 0}, {0, 0, 1}, {0.5f, 0, 0}};
+    throw_photons(lit, 2000, rng, photons.main_photons);
+    throw_photons(lit, 200, rng, photons.pilots);
+    const PilotedMap global(photons);
+    const IrradianceMap irradiance(global.pilots(), global.main_photons(),
+                                   {.k = 60, .max_radius = kReach, .patches = &patches, .scene = &scene}, {});
+    const DirectIrradianceCache direct(scene, irradiance.places(), {}, {});
+    const GatherRays rays(scene, {.global = &global, .irradiance = &irradiance, .direct = &direct, .patches = &patches},
+                          {.max_radius = kReach, .caustic_radius = kReach}, 8);
+    const auto seen_at = [&](float x) {
+        RunningStats found;
+        for (float z = 0.3f; z < 0.7f; z += 0.02f) {
+            Vertex from;
+            from.point.site = Site::point;
+            from.point.p = {x, 0.25f, z};
+            found.add(luminance(rays.trace(from, {0, -1, 0}, 1, 1, rng).indirect));
+        }
+        return found.mean();
+    };
+    ASSERT_GT(seen_at(0.48f), 0);
+    EXPECT_LT(seen_at(0.57f), 0.01 * seen_at(0.48f));
+}
+
 /// From nearer than the estimate looks rays are traced on, and the estimate doesn't count: but no ray that is traced on
 /// finds the light that came here by way of a mirror alone.
 TEST(GatherRays, KeepCausticsWhereTheyAreTracedOn) {

@@ -134,6 +134,20 @@ TEST(IrradianceCache, ClampsRadiiByNeighboursAndBounds) {
     EXPECT_FLOAT_EQ(cache.radius(4), kMax);
 }
 
+TEST(IrradianceCache, LightShortensARecordLessThanWhatStandsAroundMay) {
+    IrradianceCache cache(0.2f);
+    const auto insert = [&](float x, double distance, float slope) {
+        IrradianceRecord r = record({x, 0, 0}, 1, distance, {slope, 0, 0});
+        r.min_radius_by_light = 0.5f;
+        cache.insert(r);
+        return cache.radius(cache.size() - 1);
+    };
+    EXPECT_FLOAT_EQ(insert(0, 5, 1), 0.5f) << "changes by its own size within 1 m: 0.2 m";
+    EXPECT_FLOAT_EQ(insert(100, 1, 0), 0.2f);
+    EXPECT_NEAR(cache.irradiance({0.1f, 0, 0}, {0, 0, 1}).irradiance.x, 1 + 0.1 * 0.4, 1e-5)
+        << "the gradient holds within 0.2 of 0.5 m";
+}
+
 /// What records make wrong together must vanish with passes, in about the same time a pass: finer, with fewer rays.
 TEST(CacheOptions, ShrinkFromPassToPass) {
     Settings s;
@@ -141,7 +155,9 @@ TEST(CacheOptions, ShrinkFromPassToPass) {
     const CacheOptions first = cache_options(s, 1, 1), later = cache_options(s, 0.5, 1),
                        late = cache_options(s, 0.01, 1);
     EXPECT_DOUBLE_EQ(later.error, first.error / 2);
+    EXPECT_DOUBLE_EQ(first.min_radius, s.cache_min_reach);
     EXPECT_DOUBLE_EQ(later.min_radius, first.min_radius / 2);
+    EXPECT_DOUBLE_EQ(later.min_radius_by_light, first.min_radius_by_light / 2);
     EXPECT_DOUBLE_EQ(later.max_radius, first.max_radius / 2);
     EXPECT_EQ(first.rays, 1600);
     EXPECT_EQ(later.rays, 400);

@@ -129,6 +129,8 @@ TEST(Effort, GrowsEverythingButWhatIsGiven) {
     for (const auto member : {&Settings::light_paths, &Settings::mutations, &Settings::photons, &Settings::importons,
                               &Settings::brightness_samples, &Settings::cache_rays})
         EXPECT_GT(more.*member, less.*member);
+    EXPECT_LT(more.cache_min_reach, less.cache_min_reach);
+    EXPECT_EQ(with_effort(s, 8, 320 * 240, {"cache_min_reach"}).cache_min_reach, s.cache_min_reach);
     EXPECT_EQ(more.passes, 1);
 }
 

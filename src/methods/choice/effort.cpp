@@ -47,6 +47,10 @@ Settings with_effort(const Settings& settings, double effort, std::int64_t pixel
     // Where there is time for few rays, they are better spent on few records than on poor ones.
     if (!given.contains("cache_error"))
         s.cache_error = Settings().cache_error * std::clamp(std::pow(effort, -0.3), 1.0, 2.0);
+    // In corners and along edges light changes within the least reach of records: the area where they are wrong goes
+    // with it, and so does their squared error. Where there is little time, more records would be noise.
+    if (!given.contains("cache_min_reach"))
+        s.cache_min_reach = Settings().cache_min_reach * std::clamp(std::pow(effort, -0.75), 0.125, 1.0);
     set("cache_rays", &Settings::cache_rays, 1500 * std::pow(effort, 0.7) / std::sqrt(passes), 64, 1 << 20);
     return s;
 }

@@ -40,6 +40,8 @@ LearnedLightPaths learn_light_paths(const SamplerContext& c, RenderStats& stats,
         learn_light_paths(c, std::clamp(c.settings.light_paths / kPathsOfLearning, kLeastPaths, kMostPaths), run);
     stats.values["emitters that matter"] = learned.emission->effective_emitters();
     stats.values["light scattered as it was learned"] = learned.scattering ? learned.scattering->helped_share() : 0;
+    stats.values["learned_light_paths_bytes"] =
+        static_cast<double>(learned.emission->bytes() + (learned.scattering ? learned.scattering->bytes() : 0));
     return learned;
 }
 

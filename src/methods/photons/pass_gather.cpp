@@ -19,10 +19,6 @@ constexpr double kMostMoreRays = 16;
 /// Roughness that a lobe has at least where one of kUsualRays rays of a record ends.
 constexpr double kLeastAlpha = 0.2, kUsualRays = 300;
 
-/// Samples of direct light at a place, by either technique: for each emitter, and at most. Many rays of many records
-/// meet the same places, so that their noise doesn't average out, and which of many lamps is drawn is most of it.
-constexpr std::size_t kSamplesForEmitter = 4, kMostSamples = 16;
-
 const PilotedMap* null_if_empty(const PilotedMap& map) { return map.main_photons().photons().empty() ? nullptr : &map; }
 
 /// Roughness that lobes have at least where gather rays end. One of roughness alpha reflects a lamp with a radiance
@@ -62,10 +58,7 @@ PassGather::PassGather(const SamplerContext& c, const RenderPlan& plan, std::int
                                               .scene = &c.scene},
                             context);
         report_lookups(*irradiance_, photons_in_region, stats);
-        const std::size_t samples = std::min(kMostSamples, kSamplesForEmitter * c.scene.emitters().size());
-        direct_irradiance_.emplace(
-            c.scene, irradiance_->places(),
-            DirectIrradianceOptions{.direct_samples = std::max(1, static_cast<int>(samples)), .seed = seed}, context);
+        direct_irradiance_.emplace(c.scene, irradiance_->places(), seed, context);
     }
     if (plan.photons) {
         caustic_surroundings_.emplace(caustic_.pilots(), c.patches, static_cast<int>(s.nearest), radii.caustic,

@@ -35,8 +35,6 @@ class TechniqueWeights {
         return weighing_(kind, path.x[i], direction(path.x[i].point, path.x[i - 1].point), *power);
     }
 
-    const LightPathSampling& sampling() const { return sampling_; }
-
   private:
     PhotonWeighing weighing_;
     LightPathSampling sampling_;

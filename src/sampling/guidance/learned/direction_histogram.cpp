@@ -45,13 +45,17 @@ std::optional<Vec3> meeting_point(std::span<const DirectionHistogram::Ray> rays)
     return Vec3(x);
 }
 
-/// Where the ray from `p` along `w` meets the plane, on either side of it, and how far away; none behind `p`.
-std::optional<Imath::V3d> meets_plane(const Vec3& center, const Frame& frame, const Vec3& p, const Vec3& w) {
-    const double cosine = w.dot(frame.n), height = (center - p).dot(frame.n);
-    const double distance = height / cosine;
-    if (!(distance > 0) || !std::isfinite(distance)) return std::nullopt;
-    const Vec3 local = frame.to_local(p + w * static_cast<float>(distance) - center);
-    return Imath::V3d(local.x, local.y, distance);
+/// Where the line through `p` along `w` meets a plane: there, there in the plane's frame, and how far along the line.
+struct Crossing {
+    Vec3 q, local;
+    double along;
+};
+
+std::optional<Crossing> crossing(const Vec3& center, const Frame& frame, const Vec3& p, const Vec3& w) {
+    const double along = static_cast<double>((center - p).dot(frame.n)) / w.dot(frame.n);
+    if (!std::isfinite(along)) return std::nullopt;
+    const Vec3 q = p + w * static_cast<float>(along);
+    return Crossing{q, frame.to_local(q - center), along};
 }
 
 /// Of planes that windows may lie in: across the mean direction, and upright or level as the scene's axes are.
@@ -79,8 +83,8 @@ DirectionHistogram::DirectionHistogram(std::span<const Ray> rays, const std::opt
         on_map.push_back({{place.x, place.y}, ray.weight});
         if (!plane_) continue;
         if (!(std::abs(ray.w.dot(frame_.n)) > kFlattest)) continue;
-        if (const auto at = meets_plane(plane_->center, frame_, ray.p, ray.w))
-            points.push_back({{at->x, at->y}, ray.weight});
+        if (const auto at = crossing(plane_->center, frame_, ray.p, ray.w); at && at->along > 0)
+            points.push_back({{at->local.x, at->local.y}, ray.weight});
     }
     octahedral_ = PlaneHistogram(on_map, {{0, 0}, {1, 1}});
     if (plane_) histogram_ = PlaneHistogram(points);
@@ -127,10 +131,9 @@ Vec3 DirectionHistogram::sample_on_plane(double u0, double u1) const {
 }
 
 std::optional<DirectionHistogram::OnPlane> DirectionHistogram::on_plane(const Vec3& p, const Vec3& w) const {
-    const double cosine = w.dot(frame_.n), along = (plane_->center - p).dot(frame_.n) / cosine;
-    if (!std::isfinite(along)) return std::nullopt;
-    const Vec3 q = p + w * static_cast<float>(along), local = frame_.to_local(q - plane_->center);
-    return OnPlane{q, histogram_.pdf({{local.x, local.y}}) / std::abs(cosine)};
+    const auto at = crossing(plane_->center, frame_, p, w);
+    if (!at) return std::nullopt;
+    return OnPlane{at->q, histogram_.pdf({{at->local.x, at->local.y}}) / std::abs(w.dot(frame_.n))};
 }
 
 Vec3 DirectionHistogram::sample_on_map(double u0, double u1) const {
