@@ -146,6 +146,8 @@ TEST(IrradianceCache, LightShortensARecordLessThanWhatStandsAroundMay) {
     EXPECT_FLOAT_EQ(insert(100, 1, 0), 0.2f);
     EXPECT_NEAR(cache.irradiance({0.1f, 0, 0}, {0, 0, 1}).irradiance.x, 1 + 0.1 * 0.4, 1e-5)
         << "the gradient holds within 0.2 of 0.5 m";
+    insert(0.05f, 0.5, 0);
+    EXPECT_FLOAT_EQ(cache.radius(0), 0.2f * 0.55f) << "what a neighbour sees stands around this one, too";
 }
 
 /// What records make wrong together must vanish with passes, in about the same time a pass: finer, with fewer rays.
