@@ -91,6 +91,9 @@ WorkPartition Checkpoints::share(const std::string& exr, const Picture& render, 
         throw InputError(fmt::format("found passes={} and target_error={}, expected a number of passes that is known "
                                      "beforehand and not below what is to be shared out",
                                      settings.passes, settings.target_error));
+    if (settings.adaptive && (asked() || team != nullptr))
+        throw InputError("found adaptive=true, expected false of a render that is made in parts, or may be: none of "
+                         "them knows how noisy the others' samples are");
     if (team != nullptr) {
         share.take_number = [team] { return team->take_number(); };
         share.processes = team->size();

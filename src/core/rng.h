@@ -63,6 +63,7 @@ enum class StreamPurpose : std::uint64_t {
     guidance_gain,
     inspection,
     masks,
+    sampling_density,
 };
 
 /// PCG32 (O'Neill 2014). One for each chain and each pixel, never for each thread, so that a picture does not

@@ -46,6 +46,7 @@ struct Settings {
     Plan plan = Plan::fitting;
     bool gather_coverage = true;
     std::int64_t spp = 16;
+    bool adaptive = false;
     std::int64_t seed = 1;
     std::int64_t max_depth = 24;
     FilterShape filter = FilterShape::gaussian;
@@ -99,6 +100,7 @@ template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
     visit("gather_coverage", s.gather_coverage,
           "store light that few gather rays could find where it is seen, if there is much of it");
     visit("spp", s.spp, I{1}, I{1} << 24, "samples per pixel");
+    visit("adaptive", s.adaptive, "more samples for noisy pixels, in renders of one pass; spp is the mean");
     visit("seed", s.seed, I{0}, I{1} << 53, "seed of all random streams");
     visit("max_depth", s.max_depth, I{1}, I{126}, "most scatterings between light and eye");
     visit("filter", s.filter, "reconstruction filter");

@@ -45,31 +45,30 @@ RenderResult render_bdpt(const RenderTask& task) {
     const auto& [scene, settings, paths, context, share, findings, observer] = task;
     RenderResult result;
     const ImageWindow& window = scene.camera().window();
-    RunningStats luminance;
     Work work(settings, window, AccumulationBuffer::Parts::both, share, settings.spp, Work::PassStart::free);
+    PixelSampling pixels(scene, settings, share, StreamPurpose::bidirectional);
     SplatFilm splats(window.width, window.height, PixelFilter(settings));
-    // One light sub-path for each pixel and round, each an estimate of the whole window.
+    // A light sub-path comes with each sample of a pixel, and is an estimate of the whole window.
     const double scale = window.pixels() / window.size();
     {
         const StageClock clock(result.stats, kBidirectionalTracing);
         const SamplingStage stage(scene, work.left(), "bidirectional path tracing", context);
         const auto depth = static_cast<int>(settings.max_depth);
         while (const auto round = work.take(context)) {
-            Film& film = *work.unit().film;
-            const bool whole = sample_round(scene, film, *round, static_cast<std::uint64_t>(settings.seed),
-                                            StreamPurpose::bidirectional, context, luminance,
-                                            [&](const Vec2& image, SampleSource& source) {
-                                                return sample_pixel(scene, image, depth, settings.mis, splats, source);
-                                            });
+            const bool whole =
+                pixels.round(*work.unit().film, *round, context, [&](const Vec2& image, SampleSource& source) {
+                    return sample_pixel(scene, image, depth, settings.mis, splats, source);
+                });
             // Of later rounds that are cut short the eye's samples are enough.
-            const double share_of_round = whole ? 1 : work.is_first() ? film.samples_per_pixel() : 0;
-            if (share_of_round > 0) work.unit().drawn->add(splats, scale / share_of_round, work.half());
+            if ((whole || work.is_first()) && pixels.samples_per_pixel() > 0)
+                work.unit().drawn->add(splats, scale / pixels.samples_per_pixel(), work.half());
             splats.clear();
             if (whole) work.end_unit(result.stats);
         }
     }
-    report_samples(luminance, result.stats);
-    report_lost_light(luminance, scene, result.stats);
+    pixels.report(result.stats);
+    report_samples(pixels.luminances(), result.stats);
+    report_lost_light(pixels.luminances(), scene, result.stats);
     result.picture = work.finish(result.stats);
     return result;
 }

@@ -46,13 +46,12 @@ PassStart start_pass(const Scene& scene, const Settings& settings, const StageOn
 
 /// Takes some rounds of samples of everything that the chains leave out. Returns whether it got through them.
 bool sample_direct(const Scene& scene, const Settings& settings, const PathSet& chains, Range rounds, Film& film,
-                   RunningStats& luminance, RenderStats& stats, const RunContext& context) {
+                   PixelSampling& pixels, RenderStats& stats, const RunContext& context) {
     const StageClock clock(stats, stages::direct_light);
     const auto depth = static_cast<int>(settings.max_depth);
     const SamplingStage stage(scene, rounds.size(), "direct light", context);
     for (std::int64_t round = rounds.begin; round < rounds.end; ++round)
-        if (!sample_round(scene, film, round, static_cast<std::uint64_t>(settings.seed), StreamPurpose::path_tracing,
-                          round == 0 ? context.first_round() : context, luminance,
+        if (!pixels.round(film, round, round == 0 ? context.first_round() : context,
                           [&](const Vec2& image, SampleSource& source) {
                               PixelSink sink{&chains};
                               trace_path(scene, image, depth, source, sink);
@@ -104,7 +103,7 @@ RenderResult render_mlt(const RenderTask& task) {
     Work work(settings, scene.camera().window(), AccumulationBuffer::Parts::both, share, groups,
               Work::PassStart::costly);
     ChainReports reports;
-    RunningStats luminance; // of direct light
+    PixelSampling pixels(scene, settings, share, StreamPurpose::path_tracing); // direct light
     if (!findings.plan && !findings.coverage) findings.coverage = find_coverage(scene, settings, context);
     const std::optional<GatherCoverage>& coverage =
         findings.plan ? findings.plan->coverage : findings.coverage->coverage;
@@ -115,7 +114,7 @@ RenderResult render_mlt(const RenderTask& task) {
         const std::int64_t pass = work.pass_of(*unit), group = *unit % groups;
         const Range of_pass = rounds_of_group(settings.spp, groups, group);
         const Range rounds{pass * settings.spp + of_pass.begin, pass * settings.spp + of_pass.end};
-        bool whole = sample_direct(scene, settings, set, rounds, *work.unit().film, luminance, stats, context);
+        bool whole = sample_direct(scene, settings, set, rounds, *work.unit().film, pixels, stats, context);
         if (!whole && !work.is_first()) break;
         if (start.pass != pass) {
             const StageOneSettings first{.set = set,
@@ -137,7 +136,8 @@ RenderResult render_mlt(const RenderTask& task) {
         if (whole) work.end_unit(stats);
     }
     reports.finish(stats);
-    report_eye_samples(luminance, scene, stats);
+    pixels.report(stats);
+    report_eye_samples(pixels.luminances(), scene, stats);
     result.picture = work.finish(stats);
     return result;
 }

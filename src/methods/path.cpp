@@ -14,17 +14,16 @@ constexpr Stage kPathTracing{"path tracing", &Settings::spp, 1};
 RenderResult render_path(const RenderTask& task) {
     const auto& [scene, settings, paths, context, share, findings, observer] = task;
     RenderResult result;
-    RunningStats luminance;
     Work work(settings, scene.camera().window(), AccumulationBuffer::Parts::film, share, settings.spp,
               Work::PassStart::free);
+    PixelSampling pixels(scene, settings, share, StreamPurpose::path_tracing);
     {
         const StageClock clock(result.stats, kPathTracing);
         const SamplingStage stage(scene, work.left(), "path tracing", context);
         const auto depth = static_cast<int>(settings.max_depth);
         while (const auto round = work.take(context)) {
-            const bool whole = sample_round(scene, *work.unit().film, *round, static_cast<std::uint64_t>(settings.seed),
-                                            StreamPurpose::path_tracing, *round == 0 ? context.first_round() : context,
-                                            luminance, [&](const Vec2& image, SampleSource& source) {
+            const bool whole = pixels.round(*work.unit().film, *round, *round == 0 ? context.first_round() : context,
+                                            [&](const Vec2& image, SampleSource& source) {
                                                 PixelSink sink{};
                                                 trace_path(scene, image, depth, source, sink);
                                                 return sink.pixel;
@@ -32,8 +31,9 @@ RenderResult render_path(const RenderTask& task) {
             if (whole) work.end_unit(result.stats);
         }
     }
-    report_eye_samples(luminance, scene, result.stats);
-    report_lost_light(luminance, scene, result.stats);
+    pixels.report(result.stats);
+    report_eye_samples(pixels.luminances(), scene, result.stats);
+    report_lost_light(pixels.luminances(), scene, result.stats);
     result.picture = work.finish(result.stats);
     return result;
 }

@@ -71,7 +71,7 @@ class Passes {
     Passes(const SamplerContext& c, const RenderPlan& plan, PhotonSampler& sampler, Work& work, const RenderTask& task,
            RenderStats& stats)
         : c_(c), plan_(plan), sampler_(sampler), work_(work), for_gather_(task.share.for_gather),
-          observer_(task.observer), stats_(stats) {}
+          observer_(task.observer), stats_(stats), pixels_(c.scene, c.settings, task.share, StreamPurpose::gather) {}
 
     /// All passes that there are units of.
     /// @throws Interrupted if there is nothing to show.
@@ -95,7 +95,7 @@ class Passes {
         } catch (const ProcessLost&) { // whoever collects what is done says so
         }
     }
-    const RunningStats& luminance() const { return luminance_; }
+    const PixelSampling& pixels() const { return pixels_; }
     bool has_saved_photons() const { return saved_; }
 
   private:
@@ -139,9 +139,8 @@ class Passes {
         const StageClock clock(stats_, stages::gather);
         const SamplingStage stage(c_.scene, c_.settings.spp, "gather", context);
         while (next_ && work_.pass_of(*next_) == pass) {
-            if (!sample_round(c_.scene, *work_.unit().film, *next_, static_cast<std::uint64_t>(c_.settings.seed),
-                              StreamPurpose::gather, *next_ == 0 ? context.first_round() : context, luminance_,
-                              [&](const Vec2& image, SampleSource& source) { return gather.sample(image, source); })) {
+            if (!pixels_.round(*work_.unit().film, *next_, *next_ == 0 ? context.first_round() : context,
+                               [&](const Vec2& image, SampleSource& source) { return gather.sample(image, source); })) {
                 next_.reset();
                 return false;
             }
@@ -158,7 +157,7 @@ class Passes {
     double for_gather_; // as WorkPartition's
     PassObserver* observer_;
     RenderStats& stats_;
-    RunningStats luminance_;
+    PixelSampling pixels_;
     bool saved_ = false;
     std::optional<std::int64_t> next_; // unit
 };
@@ -209,7 +208,8 @@ RenderResult render_photons(const RenderTask& task) {
         stats.warnings.emplace_back("no photons were saved: those of the first pass were not made here");
     sampler->finish(stats);
     warn_of_photons(stats, work.passes());
-    report_eye_samples(passes.luminance(), scene, stats);
+    passes.pixels().report(stats);
+    report_eye_samples(passes.pixels().luminances(), scene, stats);
     result.picture = work.finish(stats);
     return result;
 }

@@ -5,32 +5,75 @@
 #include "core/parallel.h"
 #include "core/pixel_sample.h"
 #include "core/progress.h"
+#include "core/render_stats.h"
 #include "core/rng.h"
+#include "core/settings.h"
 #include "core/statistics.h"
 #include "film/film.h"
 #include "scene/scene.h"
+#include "session/sampling_density.h"
+#include "session/work_partition.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <optional>
 #include <string_view>
 #include <vector>
 
 namespace keyhole {
 
-/// Takes one sample of every pixel: sample(window point, random source) -> PixelSample. Each has a random stream of its
-/// own, by `round`, and shares the pixel with those of other rounds evenly (LatticeSource). Returns whether it got
-/// round before a stop. `luminance_of_samples` receives that of the samples.
+/// Samples pixels, round by round. Each sample has a random stream of its own, by its number, and shares its pixel with
+/// the others evenly (LatticeSource).
+class PixelSampling {
+  public:
+    /// @param share adaptive sampling asks for a render that is made in one go: what has to agree with other parts of
+    /// it is sampled evenly.
+    PixelSampling(const Scene& scene, const Settings& settings, const WorkPartition& share, StreamPurpose purpose);
+
+    /// Takes a round, of one sample of every pixel, or of one on average once the sampling density is known:
+    /// sample(window point, random source) -> PixelSample. Returns whether it got round before a stop. Rounds of an
+    /// adaptive render have to be taken one after the other, from 0.
+    template <class Sample> bool round(Film& film, std::int64_t round, const RunContext& context, Sample&& sample);
+
+    /// Of the picture [W/(m^2 sr)], as all samples tell it.
+    const RunningStats& luminances() const { return luminances_; }
+    /// Puts what adaptive sampling should gain among the values.
+    void report(RenderStats& stats) const;
+    /// Of the last round, over the number of pixels.
+    double samples_per_pixel() const { return static_cast<double>(samples_) / static_cast<double>(pixels_); }
+
+  private:
+    static constexpr int kTile = 16;
+    struct Tile {
+        RunningStats luminance;
+        std::int64_t samples = 0;
+    };
+    template <class Sample>
+    void sample_pixel(Film& film, int x, int y, std::int64_t round, Tile& tile, const Sample& sample);
+    /// The numbers of a pixel's samples in a round.
+    Range samples_of(std::size_t pixel, std::int64_t round) const;
+    void end_of_round(std::int64_t round, const RunContext& context);
+
+    const Scene& scene_;
+    std::uint64_t seed_;
+    StreamPurpose purpose_;
+    std::uint64_t pixels_;
+    std::int64_t longest_pilot_; // rounds
+    std::optional<SamplingDensity> density_;
+    std::int64_t pilot_ = 0; // rounds, once they are over
+    double at_begin_ = 0;    // time that was left then [s]
+    RunningStats luminances_;
+    std::int64_t samples_ = 0;
+};
+
 template <class Sample>
-bool sample_round(const Scene& scene, Film& film, std::int64_t round, std::uint64_t seed, StreamPurpose purpose,
-                  const RunContext& context, RunningStats& luminance_of_samples, Sample&& sample) {
-    const ImageWindow& window = scene.camera().window();
-    constexpr int kTile = 16;
+bool PixelSampling::round(Film& film, std::int64_t round, const RunContext& context, Sample&& sample) {
+    const ImageWindow& window = scene_.camera().window();
     const int across = (window.width + kTile - 1) / kTile, down = (window.height + kTile - 1) / kTile;
-    const auto pixels = static_cast<std::uint64_t>(window.width) * static_cast<std::uint64_t>(window.height);
-    const auto sample_number = static_cast<std::uint64_t>(round);
+    if (round == 0) at_begin_ = context.seconds_left();
     std::atomic<bool> whole = true;
-    std::vector<RunningStats> tiles(static_cast<std::size_t>(across) * static_cast<std::size_t>(down));
+    std::vector<Tile> tiles(static_cast<std::size_t>(across) * static_cast<std::size_t>(down));
     parallel_for(static_cast<std::int64_t>(across) * down, [&](std::int64_t tile) {
         if (context.stopped()) {
             whole = false;
@@ -38,24 +81,40 @@ bool sample_round(const Scene& scene, Film& film, std::int64_t round, std::uint6
         }
         const int x0 = static_cast<int>(tile % across) * kTile, y0 = static_cast<int>(tile / across) * kTile;
         const int x1 = std::min(x0 + kTile, window.width), y1 = std::min(y0 + kTile, window.height);
-        for (int y = y0; y < y1; ++y) {
-            for (int x = x0; x < x1; ++x) {
-                const auto pixel = static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(window.width) +
-                                   static_cast<std::uint64_t>(x);
-                LatticeSource source(Rng(seed, StreamPurpose::lattice, pixel), sample_number,
-                                     Rng(seed, purpose, pixel + pixels * sample_number));
-                const double u0 = source.next(), u1 = source.next();
-                const Vec2 centre(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-                const PixelSample s = sample(window.to_window(centre + film.filter().sample_offset(u0, u1)), source);
-                film.add(x, y, s, half_of(round));
-                const double l = luminance(s.direct + s.indirect + s.caustic);
-                if (std::isfinite(l)) tiles[static_cast<std::size_t>(tile)].add(l);
-            }
-        }
+        for (int y = y0; y < y1; ++y)
+            for (int x = x0; x < x1; ++x)
+                sample_pixel(film, x, y, round, tiles[static_cast<std::size_t>(tile)], sample);
         context.advance(static_cast<std::uint64_t>((x1 - x0) * (y1 - y0)));
     });
-    for (const RunningStats& t : tiles) luminance_of_samples.merge(t);
+    samples_ = 0;
+    for (const Tile& t : tiles) {
+        luminances_.merge(t.luminance);
+        samples_ += t.samples;
+    }
+    if (whole) end_of_round(round, context);
     return whole;
+}
+
+template <class Sample>
+void PixelSampling::sample_pixel(Film& film, int x, int y, std::int64_t round, Tile& tile, const Sample& sample) {
+    const ImageWindow& window = scene_.camera().window();
+    const auto pixel =
+        static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(window.width) + static_cast<std::uint64_t>(x);
+    const Range numbers = samples_of(pixel, round);
+    for (std::int64_t n = numbers.begin; n < numbers.end; ++n) {
+        const auto number = static_cast<std::uint64_t>(n);
+        LatticeSource source(Rng(seed_, StreamPurpose::lattice, pixel), number,
+                             Rng(seed_, purpose_, pixel + pixels_ * number));
+        const double u0 = source.next(), u1 = source.next();
+        const Vec2 centre(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+        const PixelSample s = sample(window.to_window(centre + film.filter().sample_offset(u0, u1)), source);
+        film.add(x, y, s, half_of(n));
+        const double l = luminance(s.direct + s.indirect + s.caustic);
+        ++tile.samples;
+        if (!std::isfinite(l)) continue;
+        tile.luminance.add(density_ ? l / density_->at(pixel) : l);
+        if (density_ && !density_->is_decided()) density_->add(pixel, l, half_of(n));
+    }
 }
 
 /// A stage of `rounds` rounds. Begins in its constructor, ends at the end of its scope.

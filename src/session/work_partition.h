@@ -44,6 +44,11 @@ struct WorkPartition {
     /// All processes, which do what comes before the first unit of a pass together where there are fewer passes than
     /// processes. Null: there is only this one.
     Communicator* communicator = nullptr;
+
+    /// Whether one process does all of it from begin to end, and nothing of it is kept to go on from.
+    bool is_whole_render() const {
+        return first_pass == 0 && !end_pass && done == nullptr && !keep_sums && !save && !take_number;
+    }
 };
 
 } // namespace keyhole

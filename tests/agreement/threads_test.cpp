@@ -13,7 +13,8 @@ class Picture_IsTheSameOnAnyNumberOfThreads : public testing::TestWithParam<cons
 TEST_P(Picture_IsTheSameOnAnyNumberOfThreads, BitForBit) {
     Settings settings;
     settings.method = &method_named(GetParam());
-    settings.spp = 2;
+    settings.spp = 18; // more than a pilot
+    settings.adaptive = true;
     settings.brightness_samples = 5'000; // more than one round of them
     settings.brightness_error = 0.05;
     settings.importons = 20'000;

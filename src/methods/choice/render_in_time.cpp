@@ -176,6 +176,7 @@ class RenderInTime {
     Settings settings_for(double seconds, bool open_ended) {
         Settings s = settings_;
         s.method = method_;
+        if (!given_.contains("adaptive")) s.adaptive = true;
         if (method_->samples_pixels) {
             if (!given_.contains("spp")) s.spp = 1 << 24;
             return s;

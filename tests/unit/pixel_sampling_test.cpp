@@ -1,0 +1,190 @@
+// The loop over pixels: numbers of samples, their streams, and what an adaptive render makes of them.
+#include "session/pixels.h"
+
+#include "methods/method.h"
+#include "methods/render.h"
+#include "support/test_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+namespace keyhole {
+namespace {
+
+Settings adaptive_settings(std::int64_t spp, std::int64_t seed = 1) {
+    Settings s;
+    s.spp = spp;
+    s.seed = seed;
+    s.adaptive = true;
+    return s;
+}
+
+/// Takes all rounds of samples sample(window point, random source).
+template <class Sample> void take_rounds(PixelSampling& pixels, Film& film, const Settings& s, const Sample& sample) {
+    for (std::int64_t round = 0; round < s.spp; ++round) ASSERT_TRUE(pixels.round(film, round, {}, sample));
+}
+
+PixelSample of_light(double light) {
+    PixelSample s{};
+    s.direct = Rgb(light, light, light);
+    return s;
+}
+
+/// Half of the picture is noisy, by rare bright samples; the mean of a pixel is 1 everywhere.
+PixelSample uneven(const Vec2& image, SampleSource& source, double chance) {
+    if (image.x > 0.5f) return of_light(0.9 + 0.2 * source.next());
+    return of_light(source.next() < chance ? 1 / chance : 0);
+}
+
+TEST(PixelSampling, PutsSamplesWhereTheNoiseIs) {
+    const auto scene = test::mirror_glass_box();
+    const ImageWindow& window = scene->camera().window();
+    const Settings s = adaptive_settings(64);
+    PixelSampling pixels(*scene, s, {}, StreamPurpose::test);
+    Film film(window.width, window.height);
+    std::array<double, 2> samples{};
+    double last_round = 0;
+    for (std::int64_t round = 0; round < s.spp; ++round) {
+        std::array<std::atomic<int>, 2> of_round{};
+        pixels.round(film, round, {}, [&](const Vec2& image, SampleSource& source) {
+            ++of_round[image.x > 0.5f ? 1 : 0];
+            return uneven(image, source, 0.25);
+        });
+        for (std::size_t i = 0; i < 2; ++i) samples[i] += of_round[i];
+        last_round = of_round[0] + of_round[1];
+        EXPECT_DOUBLE_EQ(pixels.samples_per_pixel() * window.size(), last_round);
+    }
+    EXPECT_GT(samples[0], 2 * samples[1]);
+    EXPECT_NEAR(last_round / window.size(), 1, 0.1);
+    EXPECT_NEAR(film.samples_per_pixel(), static_cast<double>(s.spp), 1);
+    EXPECT_EQ(film.empty_pixels(), 0u);
+    RenderStats stats;
+    pixels.report(stats);
+    EXPECT_LT(stats.values.at("adaptive sampling, squared error over that of even samples"), 0.8);
+}
+
+TEST(PixelSampling, TakesEverySampleOnce) {
+    const auto scene = test::mirror_glass_box();
+    const ImageWindow& window = scene->camera().window();
+    const Settings s = adaptive_settings(40);
+    PixelSampling pixels(*scene, s, {}, StreamPurpose::test);
+    Film film(window.width, window.height);
+    std::mutex mutex;
+    std::set<std::pair<float, float>> points;
+    std::size_t samples = 0;
+    take_rounds(pixels, film, s, [&](const Vec2& image, SampleSource& source) {
+        const std::lock_guard lock(mutex);
+        points.emplace(image.x, image.y);
+        ++samples;
+        return uneven(image, source, 0.25);
+    });
+    EXPECT_GT(static_cast<double>(points.size()), 0.999 * static_cast<double>(samples));
+}
+
+/// The mistake that the density is made to avoid: pixels that missed what is bright would get no more samples.
+TEST(PixelSampling, LeavesTheMeanOfPixelsAlone) {
+    const auto scene = test::mirror_glass_box();
+    const ImageWindow& window = scene->camera().window();
+    RunningStats noisy, quiet;
+    for (int seed = 1; seed <= 60; ++seed) {
+        const Settings s = adaptive_settings(16, seed);
+        PixelSampling pixels(*scene, s, {}, StreamPurpose::test);
+        Film film(window.width, window.height);
+        take_rounds(pixels, film, s,
+                    [](const Vec2& image, SampleSource& source) { return uneven(image, source, 0.1); });
+        for (int y = 0; y < window.height; ++y)
+            for (int x = 0; x < window.width; ++x) {
+                if (std::abs(x - window.width / 2) < 2) continue;
+                const auto p =
+                    static_cast<std::size_t>(y) * static_cast<std::size_t>(window.width) + static_cast<std::size_t>(x);
+                (x > window.width / 2 ? quiet : noisy).add(film.mean_luminance(p));
+            }
+    }
+    EXPECT_NEAR(noisy.mean(), 1, 4 * noisy.standard_error());
+    EXPECT_NEAR(quiet.mean(), 1, 4 * quiet.standard_error());
+    EXPECT_LT(noisy.standard_error(), 0.005);
+}
+
+TEST(PixelSampling, KnowsTheMeanOfThePicture) {
+    const auto scene = test::mirror_glass_box();
+    const ImageWindow& window = scene->camera().window();
+    const Settings s = adaptive_settings(64);
+    PixelSampling pixels(*scene, s, {}, StreamPurpose::test);
+    Film film(window.width, window.height);
+    // Where samples are many there is twice the light: their plain mean would be too bright.
+    take_rounds(pixels, film, s, [](const Vec2& image, SampleSource& source) {
+        PixelSample sample = uneven(image, source, 0.25);
+        if (image.x <= 0.5f) sample.direct *= 2;
+        return sample;
+    });
+    EXPECT_NEAR(pixels.luminances().mean(), 1.5, 4 * pixels.luminances().standard_error());
+    EXPECT_LT(pixels.luminances().standard_error(), 0.02);
+}
+
+TEST(PixelSampling, IsEvenWhereTheRenderHasOtherParts) {
+    const auto scene = test::mirror_glass_box();
+    const ImageWindow& window = scene->camera().window();
+    const auto is_even = [&](const Settings& s, const WorkPartition& share) {
+        PixelSampling pixels(*scene, s, share, StreamPurpose::test);
+        Film film(window.width, window.height);
+        for (std::int64_t round = 0; round < s.spp; ++round) {
+            pixels.round(film, round, {},
+                         [](const Vec2& image, SampleSource& source) { return uneven(image, source, 0.25); });
+            if (pixels.samples_per_pixel() != 1) return false;
+        }
+        return true;
+    };
+    EXPECT_FALSE(is_even(adaptive_settings(32), {}));
+    WorkPartition later, first, kept;
+    later.first_pass = 1;
+    first.end_pass = 1;
+    kept.save = [](const Picture&) {};
+    for (const WorkPartition& share : {later, first, kept}) EXPECT_TRUE(is_even(adaptive_settings(32), share));
+    Settings s = adaptive_settings(32);
+    s.adaptive = false;
+    EXPECT_TRUE(is_even(s, {}));
+    s = adaptive_settings(32);
+    s.passes = 2;
+    EXPECT_TRUE(is_even(s, {}));
+    EXPECT_TRUE(is_even(adaptive_settings(15), {})); // too few for a pilot
+}
+
+/// Renders of a method with many samples, even and adaptive, have the same light in each layer.
+class AdaptiveSampling : public testing::TestWithParam<const char*> {};
+
+TEST_P(AdaptiveSampling, LeavesEachLayerAlone) {
+    const auto scene = test::mirror_glass_box();
+    Settings s = adaptive_settings(24);
+    s.method = &method_named(GetParam());
+    s.light_paths = 10'000;
+    s.mutations = 40'000;
+    s.brightness_samples = s.importons = 10'000;
+    s.chains = 100;
+    s.cache_rays = 100;
+    std::map<std::string, std::array<RunningStats, 2>> means;
+    for (s.seed = 1; s.seed <= 5; ++s.seed)
+        for (const std::size_t k : {std::size_t{0}, std::size_t{1}}) {
+            s.adaptive = k == 1;
+            const Picture picture = render(*scene, s, {}).picture;
+            for (const char* name : {"direct", "indirect", "caustic", "albedo", "depth"}) {
+                const auto layer = picture.layers.find(name);
+                if (layer == picture.layers.end()) continue;
+                double sum = 0;
+                for (const float v : layer->second.data) sum += static_cast<double>(v);
+                means[name][k].add(sum / static_cast<double>(layer->second.data.size()));
+            }
+        }
+    for (const auto& [name, of] : means) {
+        const double error = std::hypot(of[0].standard_error(), of[1].standard_error());
+        EXPECT_NEAR(of[0].mean(), of[1].mean(), 4 * error + 1e-6) << name;
+        EXPECT_LT(error, 0.3 * of[0].mean() + 1e-6) << name;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, AdaptiveSampling, testing::Values("path", "bdpt", "ipm", "mlt"),
+                         [](const auto& info) { return std::string(info.param); });
+
+} // namespace
+} // namespace keyhole
