@@ -178,9 +178,7 @@ LoadedScene load_scene(const RenderOptions& options, std::vector<std::string>& w
     std::set<std::string> named = named_settings(options.overrides);
     // An error to reach asks for as many passes as that takes, unless somebody says how many.
     std::vector<std::string> overrides = options.overrides;
-    const bool in_parts = options.team != nullptr || options.checkpoints.asked();
-    const bool in_passes = options.in_time() && in_parts;
-    if (in_parts) named.insert("adaptive"); // no part knows how noisy the others' samples are
+    const bool in_passes = options.in_time() && (options.team != nullptr || options.checkpoints.asked());
     if (named.contains("target_error") || in_passes) {
         overrides.insert(overrides.begin(), "passes=0");
         named.insert("passes"); // an effort has no say in it

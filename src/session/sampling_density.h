@@ -39,7 +39,7 @@ class SamplingDensity {
     /// Samples of a pixel over the mean of all pixels. 1 until it is decided.
     double at(std::size_t pixel) const { return is_decided() ? static_cast<double>(density_[pixel]) : 1; }
     /// The squared error that samples of pixels leave over that of as many even ones, as the halves of the pilot
-    /// foretell it of each other: 1 where the density is even.
+    /// predict it of each other: 1 where the density is even.
     double error_over_even() const { return error_over_even_; }
 
     /// How many samples a pixel has before round number `round` of those that follow the pilot: at(pixel) of each

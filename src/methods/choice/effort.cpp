@@ -58,7 +58,6 @@ Settings with_effort(const Settings& settings, double effort, std::int64_t pixel
 Settings with_quality(const Settings& settings, Quality quality, const std::set<std::string>& given) {
     const double effort = quality == Quality::draft ? 0.5 : quality == Quality::good ? 4 : 24;
     Settings s = with_effort(settings, effort, static_cast<std::int64_t>(kPixels), given);
-    if (!given.contains("adaptive")) s.adaptive = true;
     if (quality == Quality::draft && !given.contains("denoise")) s.denoise = Denoise::exr;
     return s;
 }
