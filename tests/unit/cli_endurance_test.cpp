@@ -193,5 +193,9 @@ TEST_F(LongRender, MergesSharesAndSeeds) {
     for (const char* range : {"3", "3:", ":3", "3:3", "4:2", "-1:2", "0:6", "0:2x"})
         EXPECT_EQ(run(render + "-o d.exr --pass-range=" + range), 2) << range;
     EXPECT_EQ(run(render + "-o d.exr --checkpoint nan"), 2);
+    for (const char* part : {"--checkpoint 1", "--resume", "--pass-range 0:1"}) {
+        EXPECT_EQ(run(render + "-o d.exr -D adaptive=true " + part), 2) << part;
+        EXPECT_THAT(read("err"), HasSubstr("found adaptive=true")) << part;
+    }
     EXPECT_FALSE(exists("m.exr") || exists("d.exr"));
 }

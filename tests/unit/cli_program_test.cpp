@@ -24,7 +24,8 @@ TEST_F(Program, RenderWritesPicturesWithTheirHistory) {
     EXPECT_EQ(p.metadata.at("command"), "keyhole render scene.yaml -D seed=5 --resolution 20x10 --stats s.json");
     EXPECT_EQ(p.metadata.at("seed"), "5");
     EXPECT_EQ(p.metadata.at("scene"), "scene.yaml");
-    EXPECT_THAT(p.metadata.at("settings"), HasSubstr("method=path plan=auto gather_coverage=true spp=2 adaptive=false seed=5"));
+    EXPECT_THAT(p.metadata.at("settings"),
+                HasSubstr("method=path plan=auto gather_coverage=true spp=2 adaptive=false seed=5"));
     for (const char* key : {"program", "rays", "seconds", "peak memory", "stage path tracing"})
         EXPECT_TRUE(p.metadata.contains(key)) << key;
     EXPECT_TRUE(exists("scene.png"));
