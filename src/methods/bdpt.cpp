@@ -5,7 +5,7 @@
 #include "methods/pixel_sink.h"
 #include "methods/sample_report.h"
 #include "sampling/paths/bidirectional_tracer.h"
-#include "session/pixels.h"
+#include "session/pixel_sampling.h"
 #include "session/stage_clock.h"
 #include "session/work.h"
 
@@ -56,7 +56,7 @@ RenderResult render_bdpt(const RenderTask& task) {
         const auto depth = static_cast<int>(settings.max_depth);
         while (const auto round = work.take(context)) {
             const bool whole =
-                pixels.round(*work.unit().film, *round, context, [&](const Vec2& image, SampleSource& source) {
+                pixels.take_round(*work.unit().film, *round, context, [&](const Vec2& image, SampleSource& source) {
                     return sample_pixel(scene, image, depth, settings.mis, splats, source);
                 });
             // Of later rounds that are cut short the eye's samples are enough.

@@ -13,7 +13,7 @@
 #include "sampling/markov/chain_rounds.h"
 #include "sampling/proposals/registry.h"
 #include "session/passes.h"
-#include "session/pixels.h"
+#include "session/pixel_sampling.h"
 #include "session/stage_clock.h"
 #include "session/work.h"
 
@@ -51,12 +51,12 @@ bool sample_direct(const Scene& scene, const Settings& settings, const PathSet& 
     const auto depth = static_cast<int>(settings.max_depth);
     const SamplingStage stage(scene, rounds.size(), "direct light", context);
     for (std::int64_t round = rounds.begin; round < rounds.end; ++round)
-        if (!pixels.round(film, round, round == 0 ? context.first_round() : context,
-                          [&](const Vec2& image, SampleSource& source) {
-                              PixelSink sink{&chains};
-                              trace_path(scene, image, depth, source, sink);
-                              return sink.pixel;
-                          }))
+        if (!pixels.take_round(film, round, round == 0 ? context.first_round() : context,
+                               [&](const Vec2& image, SampleSource& source) {
+                                   PixelSink sink{&chains};
+                                   trace_path(scene, image, depth, source, sink);
+                                   return sink.pixel;
+                               }))
             return false;
     return true;
 }

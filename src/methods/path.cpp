@@ -2,7 +2,7 @@
 #include "methods/method.h"
 #include "methods/pixel_sink.h"
 #include "methods/sample_report.h"
-#include "session/pixels.h"
+#include "session/pixel_sampling.h"
 #include "session/stage_clock.h"
 #include "session/work.h"
 
@@ -22,12 +22,13 @@ RenderResult render_path(const RenderTask& task) {
         const SamplingStage stage(scene, work.left(), "path tracing", context);
         const auto depth = static_cast<int>(settings.max_depth);
         while (const auto round = work.take(context)) {
-            const bool whole = pixels.round(*work.unit().film, *round, *round == 0 ? context.first_round() : context,
-                                            [&](const Vec2& image, SampleSource& source) {
-                                                PixelSink sink{};
-                                                trace_path(scene, image, depth, source, sink);
-                                                return sink.pixel;
-                                            });
+            const bool whole =
+                pixels.take_round(*work.unit().film, *round, *round == 0 ? context.first_round() : context,
+                                  [&](const Vec2& image, SampleSource& source) {
+                                      PixelSink sink{};
+                                      trace_path(scene, image, depth, source, sink);
+                                      return sink.pixel;
+                                  });
             if (whole) work.end_unit(result.stats);
         }
     }

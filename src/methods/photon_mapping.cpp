@@ -10,7 +10,7 @@
 #include "methods/photons/trials/sampler_trial.h"
 #include "methods/sample_report.h"
 #include "session/passes.h"
-#include "session/pixels.h"
+#include "session/pixel_sampling.h"
 #include "session/stage_clock.h"
 #include "session/work.h"
 
@@ -139,8 +139,9 @@ class Passes {
         const StageClock clock(stats_, stages::gather);
         const SamplingStage stage(c_.scene, c_.settings.spp, "gather", context);
         while (next_ && work_.pass_of(*next_) == pass) {
-            if (!pixels_.round(*work_.unit().film, *next_, *next_ == 0 ? context.first_round() : context,
-                               [&](const Vec2& image, SampleSource& source) { return gather.sample(image, source); })) {
+            if (!pixels_.take_round(
+                    *work_.unit().film, *next_, *next_ == 0 ? context.first_round() : context,
+                    [&](const Vec2& image, SampleSource& source) { return gather.sample(image, source); })) {
                 next_.reset();
                 return false;
             }

@@ -1,5 +1,5 @@
 // The loop over pixels: numbers of samples, their streams, and what an adaptive render makes of them.
-#include "session/pixels.h"
+#include "session/pixel_sampling.h"
 
 #include "methods/method.h"
 #include "methods/render.h"
@@ -23,7 +23,7 @@ Settings adaptive_settings(std::int64_t spp, std::int64_t seed = 1) {
 
 /// Takes all rounds of samples sample(window point, random source).
 template <class Sample> void take_rounds(PixelSampling& pixels, Film& film, const Settings& s, const Sample& sample) {
-    for (std::int64_t round = 0; round < s.spp; ++round) ASSERT_TRUE(pixels.round(film, round, {}, sample));
+    for (std::int64_t round = 0; round < s.spp; ++round) ASSERT_TRUE(pixels.take_round(film, round, {}, sample));
 }
 
 PixelSample of_light(double light) {
@@ -48,7 +48,7 @@ TEST(PixelSampling, PutsSamplesWhereTheNoiseIs) {
     double last_round = 0;
     for (std::int64_t round = 0; round < s.spp; ++round) {
         std::array<std::atomic<int>, 2> of_round{};
-        pixels.round(film, round, {}, [&](const Vec2& image, SampleSource& source) {
+        pixels.take_round(film, round, {}, [&](const Vec2& image, SampleSource& source) {
             ++of_round[image.x > 0.5f ? 1 : 0];
             return uneven(image, source, 0.25);
         });
@@ -130,8 +130,8 @@ TEST(PixelSampling, IsEvenWhereTheRenderHasOtherParts) {
         PixelSampling pixels(*scene, s, share, StreamPurpose::test);
         Film film(window.width, window.height);
         for (std::int64_t round = 0; round < s.spp; ++round) {
-            pixels.round(film, round, {},
-                         [](const Vec2& image, SampleSource& source) { return uneven(image, source, 0.25); });
+            pixels.take_round(film, round, {},
+                              [](const Vec2& image, SampleSource& source) { return uneven(image, source, 0.25); });
             if (pixels.samples_per_pixel() != 1) return false;
         }
         return true;

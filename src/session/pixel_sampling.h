@@ -34,7 +34,7 @@ class PixelSampling {
     /// Takes a round, of one sample of every pixel, or of one on average once the sampling density is known:
     /// sample(window point, random source) -> PixelSample. Returns whether it got round before a stop. Rounds of an
     /// adaptive render have to be taken one after the other, from 0.
-    template <class Sample> bool round(Film& film, std::int64_t round, const RunContext& context, Sample&& sample);
+    template <class Sample> bool take_round(Film& film, std::int64_t round, const RunContext& context, Sample&& sample);
 
     /// Of the picture [W/(m^2 sr)], as all samples tell it.
     const RunningStats& luminances() const { return luminances_; }
@@ -68,7 +68,7 @@ class PixelSampling {
 };
 
 template <class Sample>
-bool PixelSampling::round(Film& film, std::int64_t round, const RunContext& context, Sample&& sample) {
+bool PixelSampling::take_round(Film& film, std::int64_t round, const RunContext& context, Sample&& sample) {
     const ImageWindow& window = scene_.camera().window();
     const int across = (window.width + kTile - 1) / kTile, down = (window.height + kTile - 1) / kTile;
     if (round == 0) at_begin_ = context.seconds_left();

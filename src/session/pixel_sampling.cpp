@@ -1,4 +1,4 @@
-#include "session/pixels.h"
+#include "session/pixel_sampling.h"
 
 namespace keyhole {
 namespace {
