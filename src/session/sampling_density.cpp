@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
+#include <optional>
 
 namespace keyhole {
 namespace {
@@ -25,10 +27,11 @@ double mean(const Values& values) {
     return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// A number for each pixel, and their sums over rectangles.
-class Plane {
+/// A number for each pixel, and their sums over squares, by a summed-area table (Crow 1984). In double precision: a
+/// pixel is taken out of the sum around it again, and may be a million times as large as its neighbours.
+class SummedArea {
   public:
-    Plane(int width, int height, Values values)
+    SummedArea(int width, int height, Values values)
         : width_(width), height_(height), values_(std::move(values)),
           sums_((static_cast<std::size_t>(width) + 1) * (static_cast<std::size_t>(height) + 1), 0.0) {
         auto value = values_.begin();
@@ -139,7 +142,7 @@ class Pilot {
     }
     static double ratio(double variance, double square) { return variance > 0 ? variance / square : 0; }
 
-    Plane light_, variance_;
+    SummedArea light_, variance_;
     double dark_; // added to the square of light
 };
 
@@ -163,12 +166,14 @@ void SamplingDensity::decide() {
     density_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), 1.0f);
     const Values of_first = first.errors(), of_second = second.errors();
     const double even = error_left(of_first, density_) + error_left(of_second, density_);
+    std::optional<int> best; // reach; none: even
     for (const int reach : kReaches) {
         const double left = error_left(of_second, first.density(reach)) + error_left(of_first, second.density(reach));
         if (left >= error_over_even_ * even) continue;
         error_over_even_ = left / even;
-        density_ = both.density(reach);
+        best = reach;
     }
+    if (best) density_ = both.density(*best);
 }
 
 std::int64_t SamplingDensity::samples_before(std::size_t pixel, std::int64_t round, double shift) const {

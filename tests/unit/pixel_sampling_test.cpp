@@ -21,10 +21,22 @@ Settings adaptive_settings(std::int64_t spp, std::int64_t seed = 1) {
     return s;
 }
 
-/// Takes all rounds of samples sample(window point, random source).
-template <class Sample> void take_rounds(PixelSampling& pixels, Film& film, const Settings& s, const Sample& sample) {
-    for (std::int64_t round = 0; round < s.spp; ++round) ASSERT_TRUE(pixels.take_round(film, round, {}, sample));
-}
+/// A render of a scene by samples that a test makes up.
+struct MadeUp {
+    explicit MadeUp(const Settings& settings, const WorkPartition& share = {})
+        : s(settings), pixels(*scene, settings, share, StreamPurpose::test), film(window.width, window.height) {}
+
+    /// Takes all rounds of samples sample(window point, random source).
+    template <class Sample> void take_rounds(const Sample& sample) {
+        for (std::int64_t round = 0; round < s.spp; ++round) ASSERT_TRUE(pixels.take_round(film, round, {}, sample));
+    }
+
+    const Settings s;
+    const decltype(test::mirror_glass_box()) scene = test::mirror_glass_box();
+    const ImageWindow& window = scene->camera().window();
+    PixelSampling pixels;
+    Film film;
+};
 
 PixelSample of_light(double light) {
     PixelSample s{};
@@ -39,42 +51,34 @@ PixelSample uneven(const Vec2& image, SampleSource& source, double chance) {
 }
 
 TEST(PixelSampling, PutsSamplesWhereTheNoiseIs) {
-    const auto scene = test::mirror_glass_box();
-    const ImageWindow& window = scene->camera().window();
-    const Settings s = adaptive_settings(64);
-    PixelSampling pixels(*scene, s, {}, StreamPurpose::test);
-    Film film(window.width, window.height);
+    MadeUp render(adaptive_settings(64));
     std::array<double, 2> samples{};
     double last_round = 0;
-    for (std::int64_t round = 0; round < s.spp; ++round) {
+    for (std::int64_t round = 0; round < render.s.spp; ++round) {
         std::array<std::atomic<int>, 2> of_round{};
-        pixels.take_round(film, round, {}, [&](const Vec2& image, SampleSource& source) {
+        render.pixels.take_round(render.film, round, {}, [&](const Vec2& image, SampleSource& source) {
             ++of_round[image.x > 0.5f ? 1 : 0];
             return uneven(image, source, 0.25);
         });
         for (std::size_t i = 0; i < 2; ++i) samples[i] += of_round[i];
         last_round = of_round[0] + of_round[1];
-        EXPECT_DOUBLE_EQ(pixels.samples_per_pixel() * window.size(), last_round);
+        EXPECT_DOUBLE_EQ(render.pixels.samples_per_pixel() * render.window.size(), last_round);
     }
     EXPECT_GT(samples[0], 2 * samples[1]);
-    EXPECT_NEAR(last_round / window.size(), 1, 0.1);
-    EXPECT_NEAR(film.samples_per_pixel(), static_cast<double>(s.spp), 1);
-    EXPECT_EQ(film.empty_pixels(), 0u);
+    EXPECT_NEAR(last_round / render.window.size(), 1, 0.1);
+    EXPECT_NEAR(render.film.samples_per_pixel(), static_cast<double>(render.s.spp), 1);
+    EXPECT_EQ(render.film.empty_pixels(), 0u);
     RenderStats stats;
-    pixels.report(stats);
+    render.pixels.report(stats);
     EXPECT_LT(stats.values.at("adaptive sampling, squared error over that of even samples"), 0.8);
 }
 
 TEST(PixelSampling, TakesEverySampleOnce) {
-    const auto scene = test::mirror_glass_box();
-    const ImageWindow& window = scene->camera().window();
-    const Settings s = adaptive_settings(40);
-    PixelSampling pixels(*scene, s, {}, StreamPurpose::test);
-    Film film(window.width, window.height);
+    MadeUp render(adaptive_settings(40));
     std::mutex mutex;
     std::set<std::pair<float, float>> points;
     std::size_t samples = 0;
-    take_rounds(pixels, film, s, [&](const Vec2& image, SampleSource& source) {
+    render.take_rounds([&](const Vec2& image, SampleSource& source) {
         const std::lock_guard lock(mutex);
         points.emplace(image.x, image.y);
         ++samples;
@@ -85,21 +89,17 @@ TEST(PixelSampling, TakesEverySampleOnce) {
 
 /// The mistake that the density is made to avoid: pixels that missed what is bright would get no more samples.
 TEST(PixelSampling, LeavesTheMeanOfPixelsAlone) {
-    const auto scene = test::mirror_glass_box();
-    const ImageWindow& window = scene->camera().window();
     RunningStats noisy, quiet;
     for (int seed = 1; seed <= 60; ++seed) {
-        const Settings s = adaptive_settings(16, seed);
-        PixelSampling pixels(*scene, s, {}, StreamPurpose::test);
-        Film film(window.width, window.height);
-        take_rounds(pixels, film, s,
-                    [](const Vec2& image, SampleSource& source) { return uneven(image, source, 0.1); });
+        MadeUp render(adaptive_settings(16, seed));
+        const ImageWindow& window = render.window;
+        render.take_rounds([](const Vec2& image, SampleSource& source) { return uneven(image, source, 0.1); });
         for (int y = 0; y < window.height; ++y)
             for (int x = 0; x < window.width; ++x) {
                 if (std::abs(x - window.width / 2) < 2) continue;
                 const auto p =
                     static_cast<std::size_t>(y) * static_cast<std::size_t>(window.width) + static_cast<std::size_t>(x);
-                (x > window.width / 2 ? quiet : noisy).add(film.mean_luminance(p));
+                (x > window.width / 2 ? quiet : noisy).add(render.film.mean_luminance(p));
             }
     }
     EXPECT_NEAR(noisy.mean(), 1, 4 * noisy.standard_error());
@@ -108,31 +108,26 @@ TEST(PixelSampling, LeavesTheMeanOfPixelsAlone) {
 }
 
 TEST(PixelSampling, KnowsTheMeanOfThePicture) {
-    const auto scene = test::mirror_glass_box();
-    const ImageWindow& window = scene->camera().window();
-    const Settings s = adaptive_settings(64);
-    PixelSampling pixels(*scene, s, {}, StreamPurpose::test);
-    Film film(window.width, window.height);
+    MadeUp render(adaptive_settings(64));
     // Where samples are many there is twice the light: their plain mean would be too bright.
-    take_rounds(pixels, film, s, [](const Vec2& image, SampleSource& source) {
+    render.take_rounds([](const Vec2& image, SampleSource& source) {
         PixelSample sample = uneven(image, source, 0.25);
         if (image.x <= 0.5f) sample.direct *= 2;
         return sample;
     });
-    EXPECT_NEAR(pixels.luminances().mean(), 1.5, 4 * pixels.luminances().standard_error());
-    EXPECT_LT(pixels.luminances().standard_error(), 0.02);
+    const RunningStats& luminances = render.pixels.luminances();
+    EXPECT_NEAR(luminances.mean(), 1.5, 4 * luminances.standard_error());
+    EXPECT_LT(luminances.standard_error(), 0.02);
 }
 
 TEST(PixelSampling, IsEvenWhereTheRenderHasOtherParts) {
-    const auto scene = test::mirror_glass_box();
-    const ImageWindow& window = scene->camera().window();
-    const auto is_even = [&](const Settings& s, const WorkPartition& share) {
-        PixelSampling pixels(*scene, s, share, StreamPurpose::test);
-        Film film(window.width, window.height);
-        for (std::int64_t round = 0; round < s.spp; ++round) {
-            pixels.take_round(film, round, {},
-                              [](const Vec2& image, SampleSource& source) { return uneven(image, source, 0.25); });
-            if (pixels.samples_per_pixel() != 1) return false;
+    const auto is_even = [](const Settings& settings, const WorkPartition& share) {
+        MadeUp render(settings, share);
+        for (std::int64_t round = 0; round < settings.spp; ++round) {
+            render.pixels.take_round(render.film, round, {}, [](const Vec2& image, SampleSource& source) {
+                return uneven(image, source, 0.25);
+            });
+            if (render.pixels.samples_per_pixel() != 1) return false;
         }
         return true;
     };
