@@ -2,11 +2,11 @@
 
 #include "core/shared_work.h"
 #include "photonmap/map_stores.h"
+#include "photonmap/power/outlying_power.h"
 #include "photonmap/power/power.h"
 #include "sampling/guidance/guided_light.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace keyhole {
@@ -104,16 +104,13 @@ class Collector {
 
 constexpr std::int64_t kPathsOfBlock = 64; // paths
 constexpr std::int64_t kPilot = 8192;      // paths
-constexpr double kOutlier = 2;             // times the root of their number and their mean visible power
 
-/// Visible power that a photon may have, where `paths` are traced of which `known` left these weights. A mean of n
-/// samples whose tail is heavy is nearest to the truth where they are cut off at about the root of n times the mean
-/// (Catoni 2012); with more paths, nothing is.
+/// Visible power that a photon may have, where `paths` are traced of which `known` left these weights.
 double most_visible(const PhotonWeights& weights, std::int64_t known, std::int64_t paths) {
     const auto seen = static_cast<double>(weights.seen);
     if (!(seen > 0)) return std::numeric_limits<double>::infinity();
     const double in_all = seen * static_cast<double>(paths) / static_cast<double>(known);
-    return kOutlier * weights.known() / seen * std::sqrt(in_all);
+    return outlier_bound(weights.known() / seen, in_all);
 }
 
 void trace_one(const Scene& scene, const EmissionOptions& options, Rng& rng, Collector& collector) {

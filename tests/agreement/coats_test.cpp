@@ -88,11 +88,12 @@ Settings settings(const char* method, bool cache) {
     s.spp = 4;
     s.irradiance_cache = cache;
     s.brightness_samples = 30'000;
-    s.importons = 30'000;
+    s.importons = 20'000;
     s.mutations = 80'000;
-    s.light_paths = 80'000;
-    s.photons = 40'000;
+    s.light_paths = 40'000;
+    s.photons = 20'000;
     s.chains = 200;
+    s.cache_rays = 200;
     return s;
 }
 

@@ -10,7 +10,7 @@
 namespace keyhole {
 namespace {
 
-constexpr int kRuns = 8;
+constexpr int kRuns = 6;
 
 TEST(Reach_AgreesWithBidirectionalTracing, BlockByBlock) {
     const auto scene = test::two_rooms(0.3f);
@@ -22,6 +22,7 @@ TEST(Reach_AgreesWithBidirectionalTracing, BlockByBlock) {
     Settings photons;
     photons.plan = Plan::all; // whether light outside gather coverage is worth it or not
     photons.spp = 2;
+    photons.cache_rays = 200;
     photons.brightness_samples = 40'000;
     photons.importons = 240'000; // what power by importance is wrong by falls with their number
     photons.mutations = 100'000;

@@ -20,7 +20,7 @@ class Mps_AgreesWithPathTracing : public testing::TestWithParam<MpsCase> {};
 
 TEST_P(Mps_AgreesWithPathTracing, BlockByBlock) {
     Scene scene(load_scene(std::string(KEYHOLE_SOURCE_DIR "/scenes/") + GetParam().scene + ".yaml").description);
-    scene.set_window({96, 64, 0});
+    scene.set_window({64, 48, 0});
     Settings paths; // from both ends: through a door those from the eye alone would be noise
     paths.method = &methods::bdpt;
     paths.spp = 24;
@@ -28,10 +28,11 @@ TEST_P(Mps_AgreesWithPathTracing, BlockByBlock) {
     Settings mps;
     mps.method = &methods::mps;
     mps.spp = 4;
-    mps.brightness_samples = 200'000;
-    mps.importons = 200'000;
-    mps.mutations = 300'000;
-    mps.photons = 60'000;
+    mps.brightness_samples = 100'000;
+    mps.importons = 100'000;
+    mps.mutations = 200'000;
+    mps.photons = 40'000;
+    mps.cache_rays = 200;
     const test::Blocks reference = test::render_blocks(scene, paths, 4);
     const test::Disagreement d = test::compare(test::render_blocks(scene, mps, 4), reference, 0.03);
     EXPECT_EQ(d.rejected, 0) << d.report << "mean brightness ratio " << d.ratio;

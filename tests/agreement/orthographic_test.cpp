@@ -12,13 +12,14 @@ namespace {
 Settings base() {
     Settings s;
     s.max_depth = 8;
-    s.spp = 8;
+    s.spp = 4;
     s.brightness_samples = 150'000;
     s.importons = 30'000;
     s.mutations = 400'000;
-    s.light_paths = 250'000;
-    s.photons = 120'000;
+    s.light_paths = 120'000;
+    s.photons = 60'000;
     s.chains = 200;
+    s.cache_rays = 200;
     return s;
 }
 
@@ -28,7 +29,7 @@ TEST(ParallelSight_Light, IsTheSameByEveryMethod) {
     paths.method = &methods::bdpt;
     paths.spp = 100;
     std::vector<Settings> others = test::by_methods(base(), {"path", "mlt", "mmlt", "pm", "ipm", "mps"});
-    others[0].spp = 200;
+    others[0].spp = 100;
     test::expect_same_light(*test::parallel_sight_box(), paths, others, 4);
 }
 

@@ -31,7 +31,7 @@ TEST_P(Passes, ConvergeToPathTracing) {
     const auto scene = test::diffuse_box();
     Settings path;
     path.method = &methods::path;
-    path.spp = 64;
+    path.spp = 48;
     path.seed = 1000;
     Settings passes = settings();
     passes.passes = 3;

@@ -35,7 +35,7 @@ def interior():
 @test
 def door_with_a_path():
     whole_scenes.door()
-    return compare(2500, "--spp 24 -D light_paths=1M", "ipm")
+    return compare(2000, "--spp 24 -D light_paths=400k", "ipm")
 
 
 @test

@@ -2,6 +2,7 @@
 #include "photon_energy.h"
 
 #include "photonmap/emission.h"
+#include "photonmap/power/outlying_power.h"
 #include "scene/emitters/emitters.h"
 #include "support/test_scenes.h"
 #include "support/window_room.h"
@@ -47,6 +48,36 @@ TEST(OutlyingPhotons, LoseWhatIsTooMuchUntilThereAreEnough) {
     EXPECT_GT(few.cut, 0.05);
     EXPECT_LT(power_of(few), power_of(emit(*scene, 20'000, false)));
     EXPECT_LT(many.cut, few.cut / 2) << "it is for want of paths that light is lost";
+}
+
+Photon of_power(const Rgb& power, bool caustic = false) {
+    return {Vec3(0), Vec3(0, 1, 0), Vec3(0, 1, 0), power, caustic};
+}
+
+TEST(OutlyingPower, IsCutToWhatTheOthersAllow) {
+    constexpr std::size_t kPhotons = 10'000;
+    std::vector<Photon> photons(kPhotons, of_power(Rgb(1.0)));
+    EXPECT_EQ(cut_outlying_power(photons), 0);
+    // One is brighter by far than all others together: it is not to raise the bound that it is cut by.
+    photons[17] = of_power(Rgb(1e6, 2e6, 0), true);
+    const double power = luminance(photons[17].power());
+    const double lost = cut_outlying_power(photons), bound = 2 * std::sqrt(kPhotons);
+    const double left = luminance(photons[17].power());
+    EXPECT_NEAR(left, bound, 0.05 * bound);
+    EXPECT_NEAR(lost, (power - left) / (power + kPhotons - 1), 1e-6);
+    EXPECT_NEAR(photons[17].power()[1] / photons[17].power()[0], 2, 0.02) << "another hue";
+    EXPECT_TRUE(photons[17].caustic());
+    EXPECT_EQ(photons[16], of_power(Rgb(1.0)));
+}
+
+TEST(OutlyingPower, IsNoneWhereItIsFrequent) {
+    std::vector<Photon> photons(10'000, of_power(Rgb(1.0)));
+    for (std::size_t i = 0; i < photons.size(); i += 100) photons[i] = of_power(Rgb(150.0));
+    const std::vector<Photon> before = photons;
+    EXPECT_EQ(cut_outlying_power(photons), 0);
+    EXPECT_EQ(photons, before);
+    std::vector<Photon> none;
+    EXPECT_EQ(cut_outlying_power(none), 0);
 }
 
 } // namespace

@@ -4,6 +4,7 @@
 #include "methods/method.h"
 #include "methods/photons/guides.h"
 #include "methods/photons/memory_plan.h"
+#include "methods/photons/photon_report.h"
 #include "methods/photons/photon_sampler.h"
 #include "methods/primary_report.h"
 #include "photonmap/light_chains/light_chains.h"
@@ -43,6 +44,7 @@ class LightChainSampler final : public PhotonSampler {
         LightChainPhotons photons = run_light_chains(c_.scene, guides.both(), start, options, context);
         stats.photon_bytes = std::max<std::uint64_t>(stats.photon_bytes, photons.bytes + stats.importon_bytes);
         if (photons.chains > 0) report(photons, stats);
+        cut_outliers(photons, s.passes, stats);
         return photons;
     }
 

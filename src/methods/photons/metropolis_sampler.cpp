@@ -4,6 +4,7 @@
 #include "methods/method.h"
 #include "methods/photons/chain_importance.h"
 #include "methods/photons/memory_plan.h"
+#include "methods/photons/photon_report.h"
 #include "photonmap/photon_sampling.h"
 #include "sampling/proposals/tuning.h"
 #include "session/stage_clock.h"
@@ -58,6 +59,7 @@ class MetropolisSampler final : public PhotonSampler {
                                                 context);
         stats.photon_bytes = std::max<std::uint64_t>(stats.photon_bytes, photons.bytes + stats.importon_bytes);
         report_power(photons.tally, stats);
+        cut_outliers(photons, s.passes, stats);
         reports_.add(mixtures.mixture, photons.chains, stats);
         return photons;
     }

@@ -3,6 +3,7 @@
 #include "core/parallel.h"
 #include "core/statistics.h"
 #include "core/vec.h"
+#include "photonmap/power/outlying_power.h"
 #include "sampling/paths/image_lattice.h"
 
 #include <fmt/format.h>
@@ -53,6 +54,13 @@ void report_photons(const Photons& photons, RenderStats& stats) {
     stats.photons_caustic = photons.caustic.size();
     stats.photon_quality.of_brightest =
         std::max(share_of_brightest(photons.global.main_photons), share_of_brightest(photons.caustic.main_photons));
+}
+
+void cut_outliers(Photons& photons, std::int64_t passes, RenderStats& stats) {
+    if (passes != 1) return;
+    const double cut =
+        std::max(cut_outlying_power(photons.global.main_photons), cut_outlying_power(photons.caustic.main_photons));
+    if (cut > 0) stats.values["photon power, share cut off outliers"] = cut;
 }
 
 void report_lookups(const IrradianceMap& map, double asked, RenderStats& stats) {

@@ -15,6 +15,9 @@ namespace keyhole {
 /// map where that is more.
 void report_photons(const Photons& photons, RenderStats& stats);
 
+/// Cuts outliers among the photons of chains, where one of `passes` is all there is: a mean over many needs no cut.
+void cut_outliers(Photons& photons, std::int64_t passes, RenderStats& stats);
+
 /// Puts into `stats` how many photons went into an estimate, on average, how many equal ones would be as good, and what
 /// share of `asked` was found.
 void report_lookups(const IrradianceMap& map, double asked, RenderStats& stats);
