@@ -47,7 +47,8 @@ DirectIrradiance direct_irradiance(const Scene& scene, const SurfacePoint& point
     for (int i = 0; i < samples; ++i) {
         if (const auto light = sample_direct_light(scene, v, n, source)) {
             distance.add(light->x0.point, light->value);
-            if (scene.visible(point, light->x0.point)) sum += light->value * weight(light->x0.point);
+            const Rgb clear = straight_transmittance(scene, point, light->x0.point);
+            sum += clear * light->value * weight(light->x0.point);
         }
         sample_emission(scene, v, n, source, [&](const SurfacePoint& emitter, const Rgb& value) {
             distance.add(emitter, value);

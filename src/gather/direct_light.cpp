@@ -41,7 +41,7 @@ Rgb next_event(const Scene& scene, const Vertex& v, const Vec3& back, int sample
     for (int i = 0; i < samples; ++i) {
         numbers.begin(i);
         const auto light = sample_direct_light(scene, v, back, numbers);
-        if (light && scene.visible(v.point, light->x0.point)) sum += light->value;
+        if (light) sum += light->value * straight_transmittance(scene, v.point, light->x0.point);
     }
     return sum / samples;
 }

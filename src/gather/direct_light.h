@@ -1,6 +1,7 @@
-// Direct light at a vertex, visibility included.
+// Direct light at a vertex, visibility included: what comes through clear glass, too.
 #pragma once
 
+#include "sampling/paths/clear_glass.h"
 #include "sampling/paths/direct_light.h"
 #include "sampling/paths/walk.h"
 
@@ -20,10 +21,10 @@ struct DrawnDirection {
 /// What lies in that direction of emitters: as sample_emission().
 template <class Visit>
 void visit_emission(const Scene& scene, const Vertex& v, const DrawnDirection& drawn, const Visit& visit) {
-    const auto hit = next_vertex(scene, v, drawn.w);
-    if (!hit || !hit->point.is_emitter()) return;
-    visit(hit->point, drawn.weight * scene.transmittance(v.point, hit->point) *
-                          emission_with_mis(scene, v, *hit, drawn.w, drawn.pdf));
+    const auto view = look_straight(scene, v.point, drawn.w);
+    if (!view || !view->end.point.is_emitter()) return;
+    visit(view->end.point,
+          drawn.weight * view->transmittance * emission_with_mis(scene, v, view->end, drawn.w, drawn.pdf));
 }
 
 /// What a direction drawn from the BSDF meets of emitters, weighted against next_event(): `visit(const SurfacePoint&

@@ -64,22 +64,25 @@ struct GatherRays::Walk : SpecularWalkHooks {
     double pdf; // of the first ray
     Leg leg;
     Arrival arrival{};
+    StraightLight light{};
     LastTwoVertices vertices{};
 
     Vertex& place() { return vertices.place(); }
     bool arrive(Vertex& v, const WalkRay& ray) {
         leg.distance = v.point.site == Site::infinite ? std::numeric_limits<float>::infinity()
                                                       : (v.point.p - ray.last->p).length();
-        // An emitter seen straight is direct light; seen through specular vertices the caustic map has it.
-        if (ray.last == &from.point) {
-            if (v.point.is_emitter())
-                arrival.emitted = ray.throughput * emission_with_mis(rays.scene_, from, v, ray.w, pdf);
-            arrival.distance = leg.distance;
-        }
+        // An emitter seen straight is direct light; seen through other specular vertices the caustic map has it.
+        if (v.point.is_emitter() && light.straight(ray.w, v.point.site == Site::infinite))
+            arrival.emitted += ray.throughput * emission_with_mis(rays.scene_, from, v, ray.w, pdf);
+        if (ray.last == &from.point) arrival.distance = leg.distance;
         if (leg.scatterings == rays.max_scatterings_) return false;
         if (v.bsdf.traits().finite) arrival.indirect += ray.throughput * rays.reflected(v, -ray.w, leg, source);
         ++leg.scatterings;
         return v.bsdf.traits().delta;
+    }
+    bool leave(const Vertex& v, const Continuation& next, const WalkRay& ray) {
+        light.meet(v, ray.w);
+        return SpecularWalkHooks::leave(v, next, ray);
     }
 };
 

@@ -10,13 +10,16 @@ namespace keyhole {
 
 /// Collects one path-traced sample. Paths of `elsewhere` are left out, and no walk goes on that could make only these.
 struct PixelSink {
+    using LooksThroughGlass = std::true_type;
+
     const PathSet* elsewhere = nullptr; ///< what chains sample; null: nothing
     PixelSample pixel{};
     bool saw_surface = false; ///< that is not specular
 
     bool arrival(const EyeWalk& walk, const Rgb& throughput, int finite) {
         if (finite == 0) see(walk.back(), walk[walk.size() - 2], throughput, walk.size() == 2);
-        return elsewhere == nullptr || finite < 2;
+        // Beyond d2 an emitter is direct light there, seen straight or through clear glass.
+        return elsewhere == nullptr || finite < 2 || (finite == 2 && clear_glass(walk.back()) != ClearGlass::none);
     }
 
     void contribution(EyeWalk& walk, const Vertex& x0, const Rgb& value, LightClass light) {

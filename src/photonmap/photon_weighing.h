@@ -30,8 +30,9 @@ struct StorageRule {
     /// Of light that reached finite vertex `v` from `to_light`.
     Kinds operator()(Vertex& v, const Vec3& to_light, const LightPast& past) const {
         const int here = past.scatterings + 1; // from the light's end
-        const LightClass as_d1 = light_class({here, past.last ? past.last->index : 0});
-        const LightClass as_d2 = light_class({here + 1, here}); // light still has to be scattered at d1
+        const int lit = past.first_lit(to_light);
+        const LightClass as_d1 = light_class({here, past.last ? past.last->index : 0}, lit);
+        const LightClass as_d2 = light_class({here + 1, here}, lit); // light still has to be scattered at d1
         const auto covered = [&] { return is_covered(coverage, v, to_light); };
         const auto last_covered = [&] {
             if (coverage == nullptr || past.last->covered) return coverage == nullptr || *past.last->covered;

@@ -118,6 +118,17 @@ bool is_invisible_light(const Shape& shape) {
     return shape.emission && shape.alpha && shape.alpha->is_constant() && !(shape.alpha->value({}) > 0);
 }
 
+bool may_be_clear(const Shape& shape) {
+    const ClearGlass glass = shape.material->traits().clear;
+    const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
+    if (glass != ClearGlass::face) return glass == ClearGlass::pane;
+    if (mesh == nullptr || mesh->normals.empty()) return mesh != nullptr;
+    return std::ranges::any_of(mesh->triangles, [&](const auto& corners) {
+        const auto& [a, b, c] = corners;
+        return mesh->normals[a] == mesh->normals[b] && mesh->normals[a] == mesh->normals[c];
+    });
+}
+
 bool is_interface(const Shape& shape) {
     if (shape.emission) return false;
     return shape.material ? std::string_view(shape.material->kind()) == "interface" : bounds_media(shape);

@@ -3,6 +3,7 @@
 
 #include "core/vec.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 
@@ -47,16 +48,25 @@ inline std::optional<BsdfSample> finite_sample(const Vec3& to, double pdf) {
     return BsdfSample{to, Event::finite, pdf};
 }
 
+/// Smooth glass, by what it does to light that goes through.
+enum class ClearGlass : std::uint8_t {
+    none, ///< it isn't that, or light goes on elsewhere
+    face, ///< light is turned, and turned back by a parallel face
+    pane, ///< light goes straight on
+};
+
 /// What the renderer may leave out for a BSDF that lacks it.
 struct BsdfTraits {
     bool finite = false;  ///< has a D part: diffuse, glossy, or both
     bool delta = false;   ///< has S parts
     bool diffuse = false; ///< of its finite part something follows from irradiance alone: Bsdf::diffuse_reflectance()
     bool glossy = false;  ///< and something doesn't
+    ClearGlass clear = ClearGlass::none; ///< the clearest glass that it may be, where it is flat
 
     /// What either has.
     friend constexpr BsdfTraits operator|(const BsdfTraits& a, const BsdfTraits& b) {
-        return {a.finite || b.finite, a.delta || b.delta, a.diffuse || b.diffuse, a.glossy || b.glossy};
+        return {a.finite || b.finite, a.delta || b.delta, a.diffuse || b.diffuse, a.glossy || b.glossy,
+                std::max(a.clear, b.clear)};
     }
 };
 

@@ -93,7 +93,9 @@ void Scene::attach_shapes() {
         }
         if (is_invisible_light(shape)) continue;
         accelerator_.attach(shape, i);
-        if (shape.material) traits_ = traits_ | shape.material->traits();
+        if (!shape.material) continue;
+        traits_ = traits_ | shape.material->traits();
+        has_clear_glass_ = has_clear_glass_ || may_be_clear(shape);
     }
     accelerator_.commit();
     lower_ = accelerator_.lower();

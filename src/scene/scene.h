@@ -73,6 +73,8 @@ class Scene {
     const std::vector<Shape>& shapes() const { return shapes_; }
     /// Union of what the materials may do.
     const BsdfTraits& traits() const { return traits_; }
+    /// Whether there may be glass that light goes straight through: panes, or what is flat in part.
+    bool has_clear_glass() const { return has_clear_glass_; }
 
     /// Bounding box of the geometry, world space; where there is none, a box around the camera.
     const Vec3& lower() const { return lower_; }
@@ -102,6 +104,7 @@ class Scene {
     std::uint32_t environment_ = SurfacePoint::kNone; // index of the emitter that misses meet
     Camera camera_;
     BsdfTraits traits_;
+    bool has_clear_glass_ = false;
     Vec3 lower_{0, 0, 0}, upper_{0, 0, 0};
     Accelerator accelerator_;
 };

@@ -59,6 +59,10 @@ inline bool reads_parametrisation(const Shape& shape) {
 /// no shadow, but its points are sampled like those of other lights.
 bool is_invisible_light(const Shape& shape);
 
+/// Whether light may go straight through `shape`, which has a material: a pane, or glass of which a triangle, at least,
+/// has one shading normal.
+bool may_be_clear(const Shape& shape);
+
 /// Whether rays and light pass `shape` as if it weren't there, but for the media that it parts.
 bool is_interface(const Shape& shape);
 

@@ -34,6 +34,7 @@ constexpr double kMany = 20;
 
 /// What a gather ray finds.
 struct GatheredLight {
+    using LooksThroughGlass = std::true_type;
     const PathSet* set = nullptr;
     double near = 0, beyond = 0;
 

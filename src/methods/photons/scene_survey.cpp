@@ -12,6 +12,7 @@ constexpr std::int64_t kBlocks = 64;
 /// Adds up one path after the other.
 struct SurveySink {
     SceneSurvey survey;
+    using LooksThroughGlass = std::true_type;
     std::array<double, 5> path{};
     bool saw_surface = false;
 

@@ -29,6 +29,7 @@ void LightBuilder::build(LightSources sources, LightArrivals& sample) const {
     TracedSubPath& walk = SubPathPair::scratch().light;
     trace_light_subpath(*scene_, most_light_vertices(rule_.max_scatterings), sources.light, &sources.roulette, walk);
     LightPast past;
+    past.from_infinity = walk.size() > 0 && walk.vertices[0].point.site == Site::infinite;
     for (int i = 1; i < walk.size(); ++i) {
         const auto at = static_cast<std::size_t>(i);
         Vertex& v = walk.vertices[at];

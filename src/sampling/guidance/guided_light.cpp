@@ -19,6 +19,7 @@ bool GuidedLightWalk::emit(const Vertex& x0, const Vec3& w) {
     path_->x.push_back(x0);
     Vertex& v = path_->x.back();
     v.event = Event::finite;
+    past_.from_infinity = v.point.site == Site::infinite;
     const Emitter& emitter = scene_->emitter(v.point.emitter);
     v.pdf_from_light = product_ = emitter_point_pdf(*scene_, v.point);
     next_pdf_ = emitter.ray_pdf(v.point, w);

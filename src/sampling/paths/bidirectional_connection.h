@@ -58,7 +58,7 @@ class Connection {
     /// False where the two can't be joined at all; nothing else may be asked then.
     bool possible() const { return possible_; }
     const Vec2& image() const { return image_; }
-    LightClass light_class() const { return keyhole::light_class(diffuse()); }
+    LightClass light_class() const { return keyhole::light_class(diffuse(), first_lit()); }
     const Vertex& vertex(int i) const; ///< of the path, 0 at the light
     /// Whether gather rays come to the path's d2, if it has one; its sub-path keeps the answer.
     bool is_d2_covered(const PathSet& set) const;
@@ -80,6 +80,10 @@ class Connection {
   private:
     DiffuseVertices diffuse() const {
         return find_diffuse(s_ + t_ - 1, [&](int i) { return specular(i); });
+    }
+    int first_lit() const {
+        return keyhole::first_lit(
+            s_ + t_ - 1, [&](int i) -> const Vertex& { return vertex(i); }, [&](int i) { return specular(i); });
     }
     bool specular(int i) const { return i != s_ - 1 && i != s_ && vertex(i).specular(); }
     Rgb join();

@@ -24,9 +24,8 @@ std::optional<DirectLight> sample_direct_light(const Scene& scene, const Vertex&
     const Vec3 to_light = direction(v.point, light);
     const ScatterValue s = scatter(v.point, v.bsdf, Event::finite, to_light, back);
     const Emitter& emitter = scene.emitter(light.emitter);
-    Rgb value = s.value * emitter.radiance(light, -to_light) * (geometry_term(v.point, light) / light_pdf);
+    const Rgb value = s.value * emitter.radiance(light, -to_light) * (geometry_term(v.point, light) / light_pdf);
     if (is_black(value)) return std::nullopt;
-    value *= scene.transmittance(v.point, light);
     const double weight =
         emitter.is_delta() ? 1.0 : mis_power(light_pdf, solid_angle_to_area(s.pdf_to_light, v.point, light));
     return DirectLight{make_vertex(light), value * weight};

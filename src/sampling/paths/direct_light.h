@@ -17,7 +17,8 @@ inline double mis_power(double pdf, double other) {
 
 struct DirectLight {
     Vertex x0;
-    Rgb value; ///< radiance scattered towards `back` [W/(m^2 sr)] if x0 is visible, MIS weight included
+    Rgb value; ///< radiance scattered towards `back` [W/(m^2 sr)] if nothing stands or lies between, MIS weight
+               ///< included
 };
 
 /// How points on emitters are drawn where nothing was learned: the emitter by the light tree, the point by the emitter.
@@ -26,7 +27,7 @@ EmitterPoint sample_by_light_tree(const Scene& scene, const SurfacePoint& at, Sa
 double light_tree_pdf(const Scene& scene, const SurfacePoint& at, const SurfacePoint& x0);
 
 /// Draws a point on an emitter, chosen by what it may do at `v`, or as the scene has learned, and scatters its light at
-/// `v`. None where that carries nothing. Visibility is left to the caller.
+/// `v`. None where that carries nothing. Visibility and media are left to the caller.
 std::optional<DirectLight> sample_direct_light(const Scene& scene, const Vertex& v, const Vec3& back,
                                                SampleSource& source);
 

@@ -30,6 +30,18 @@ ImageWeight::Cells filtered(const ImageWeight::Cells& from) {
     return to;
 }
 
+/// Adds up what paths bring.
+struct LuminanceSink {
+    using LooksThroughGlass = std::true_type;
+    double luminance_sum = 0;
+
+    static bool arrival(const EyeWalk& /*walk*/, const Rgb& /*throughput*/, int /*finite*/) { return true; }
+    void contribution(const EyeWalk& /*walk*/, const Vertex& /*x0*/, const Rgb& value, LightClass /*light*/) {
+        const double y = luminance(value);
+        if (std::isfinite(y)) luminance_sum += y;
+    }
+};
+
 } // namespace
 
 ImageWeight::ImageWeight(const Cells& luminance) {
@@ -53,14 +65,6 @@ std::size_t ImageWeight::index(const Vec2& image) {
 
 ImageWeight measure_image_weight(const Scene& scene, int max_scatterings, std::uint64_t seed,
                                  const RunContext& context) {
-    struct Sink {
-        double luminance_sum = 0;
-        bool arrival(const EyeWalk&, const Rgb&, int) { return true; }
-        void contribution(const EyeWalk&, const Vertex&, const Rgb& value, LightClass) {
-            const double y = luminance(value);
-            if (std::isfinite(y)) luminance_sum += y;
-        }
-    };
     constexpr std::int64_t kSamples = kSamplesOfCell * kCells * kCells, kBlocks = 64, kBlock = kSamples / kBlocks;
     std::vector<ImageWeight::Cells> parts(kBlocks, ImageWeight::Cells{});
     context.begin("brightness of pixels", kSamples, "paths");
@@ -68,7 +72,7 @@ ImageWeight measure_image_weight(const Scene& scene, int max_scatterings, std::u
         for (std::int64_t i = b * kBlock; i < (b + 1) * kBlock; ++i) {
             Rng rng(seed, StreamPurpose::image_weight, static_cast<std::uint64_t>(i));
             const Vec2 image = lattice_image_point(seed, StreamPurpose::image_weight, i);
-            Sink sink;
+            LuminanceSink sink;
             trace_path(scene, image, max_scatterings, rng, sink);
             parts[static_cast<std::size_t>(b)][ImageWeight::index(image)] += sink.luminance_sum;
         }

@@ -1,6 +1,7 @@
 // Light tracing: power carried from the emitters.
 #pragma once
 
+#include "sampling/paths/clear_glass.h"
 #include "sampling/paths/random_walk.h"
 
 #include <optional>
@@ -14,25 +15,38 @@ struct LightPast {
         int index;                   ///< of the vertex from the light's end, as in DiffuseVertices
         std::optional<bool> covered; ///< whether gather rays come to it, if that was asked
     };
-    std::optional<Place> last; ///< where it was last scattered by a vertex that isn't specular; none: nowhere
-    bool specular = false;     ///< whether there was a specular one
-    int scatterings = 0;       ///< how many vertices scattered it
-    double density = 1;        ///< of the walks that may have led there, over that of a free one without roulette
+    std::optional<Place> last;  ///< where it was last scattered by a vertex that isn't specular; none: nowhere
+    bool specular = false;      ///< whether there was a specular one
+    bool from_infinity = false; ///< whether its emitter lies there
+    int scatterings = 0;        ///< how many vertices scattered it
+    double density = 1;         ///< of the walks that may have led there, over that of a free one without roulette
 
     /// Whether only specular vertices scattered it, and at least one did.
     bool caustic() const { return specular && !last; }
 
+    /// The first vertex that it comes straight to, where it arrives from `to_light` now: see light_class().
+    int first_lit(const Vec3& to_light) const {
+        if (last) return lit_;
+        return straight_.straight(-to_light, from_infinity) ? scatterings + 1 : 1;
+    }
+
     /// Light that comes from `to_light` goes on from `v` by its event.
     void meet(const Vertex& v, const Vec3& to_light) {
+        if (!last && !v.specular()) lit_ = first_lit(to_light);
         ++scatterings;
         if (v.specular()) {
             specular = true;
+            if (!last) straight_.meet(v, -to_light);
             return;
         }
         last = {v.point.p, facing(v.point.ng, to_light), scatterings, {}};
         const std::uint8_t side = KnownCoverage::side(v.point.ng, to_light);
         if ((v.coverage.asked & side) != 0) last->covered = (v.coverage.covered & side) != 0;
     }
+
+  private:
+    StraightLight straight_{}; // before `last`
+    int lit_ = 1;              // where there is that
 };
 
 /// How light paths go on that know nothing of where they are wanted.
@@ -82,6 +96,7 @@ void trace_light_path(const Scene& scene, const EmittedLight& light, int max_sca
     if (is_black(light.power)) return;
     if constexpr (requires { sink.sets_out(light.x0, false); }) sink.sets_out(light.x0, false);
     LightTracing<Sink, Scattering> tracing{{}, sink, scattering, luminance(light.power)};
+    tracing.past.from_infinity = light.x0.site == Site::infinite;
     random_walk(scene, From::light, {&light.ray.origin, &light.x0, light.ray.w, light.power}, max_scatterings, source,
                 tracing);
 }

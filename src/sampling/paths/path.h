@@ -66,6 +66,4 @@ inline int nth_finite_from_eye(const Path& path, int n) {
     return n == 1 ? d.d1 : d.d2;
 }
 
-inline LightClass light_class(const Path& path) { return light_class(diffuse_vertices(path)); }
-
 } // namespace keyhole

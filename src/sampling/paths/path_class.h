@@ -30,10 +30,12 @@ template <class Specular> DiffuseVertices find_diffuse(int eye, const Specular& 
     return found;
 }
 
-/// By whether there is a specular vertex between the light and the last D before it, and by how many D there are.
-constexpr LightClass light_class(const DiffuseVertices& d) {
-    if (d.d2 > 0) return d.d2 > 1 ? LightClass::indirect : LightClass::second;
-    return d.d1 == 0 ? LightClass::emission : d.d1 == 1 ? LightClass::direct : LightClass::caustic;
+/// By whether light has been scattered before the last D, and by how many D there are. `lit`: the first vertex that it
+/// comes straight to, by its index; beyond 1 where it goes through clear glass (clear_glass.h), which counts as
+/// nothing.
+constexpr LightClass light_class(const DiffuseVertices& d, int lit) {
+    if (d.d2 > 0) return d.d2 > lit ? LightClass::indirect : LightClass::second;
+    return d.d1 == 0 ? LightClass::emission : d.d1 > lit ? LightClass::caustic : LightClass::direct;
 }
 
 /// Which photon map a path stores its light sub-path in.

@@ -1,6 +1,7 @@
 // Which paths chains sample, and in proportion to what.
 #pragma once
 
+#include "sampling/paths/clear_glass.h"
 #include "sampling/paths/gather_coverage.h"
 #include "sampling/paths/image_weight.h"
 #include "sampling/paths/path.h"
@@ -33,7 +34,7 @@ struct PathSet {
         const auto covered = [&] {
             return is_covered(coverage, path.x[at], direction(path.x[at].point, path.x[at - 1].point));
         };
-        return path.storage = storage_point(d, ask_stored_kind(light_class(d), covered));
+        return path.storage = storage_point(d, ask_stored_kind(light_class(d, first_lit(path)), covered));
     }
 };
 

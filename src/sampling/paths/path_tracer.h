@@ -25,6 +25,14 @@ struct EyeWalk : InlineVector<Vertex, kMaxScatterings + 2> {
         const auto from_light = [&](std::size_t i) { return i > 0 ? static_cast<int>(size() - i) : 0; };
         return {from_light(d1), from_light(d2)};
     }
+    /// Of that path.
+    LightClass light_class(const Vertex& x0) const {
+        const auto at = [&](int i) -> const Vertex& {
+            return i == 0 ? x0 : (*this)[size() - static_cast<std::size_t>(i)];
+        };
+        const int lit = first_lit(static_cast<int>(size()), at, [&](int i) { return at(i).specular(); });
+        return keyhole::light_class(diffuse(), lit);
+    }
 };
 
 /// The complete path of an eye walk and the emitter vertex x0 beyond its end, measured.
@@ -53,7 +61,12 @@ template <class Sink> struct PathTracing : WalkHooks {
     SampleSource& source;
     Sink& sink;
     EyeWalk& walk;
-    double pdf = 0; ///< of the ray
+    std::size_t last_finite = 0; ///< 0: there is none
+    double pdf = 0;              ///< with which that drew the direction in which the walk went on
+    StraightLight view{};        ///< from there on
+
+    /// Whether emitters are sampled through clear glass, too. Sinks that want the vertices of the path must do without.
+    static constexpr bool kLooksThroughGlass = requires { typename Sink::LooksThroughGlass; };
 
     Vertex& place() { return walk.emplace_back(); }
     int scatterings() const { return static_cast<int>(walk.size()) - 2; } // before the last vertex
@@ -65,9 +78,15 @@ template <class Sink> struct PathTracing : WalkHooks {
         if (v.bsdf.traits().finite) add_direct_light(v, ray);
         return true;
     }
-    bool leave(const Vertex& v, const Continuation& next, const WalkRay& /*ray*/) {
-        if (!v.specular()) walk.count_last();
+    bool leave(const Vertex& v, const Continuation& next, const WalkRay& ray) {
+        if (v.specular()) {
+            view.meet(v, ray.w);
+            return true;
+        }
+        walk.count_last();
+        last_finite = walk.size() - 1;
         pdf = next.pdf;
+        view = {};
         return true;
     }
     bool survives(Rgb& throughput, SampleSource& numbers) const {
@@ -75,20 +94,27 @@ template <class Sink> struct PathTracing : WalkHooks {
     }
 
   private:
+    bool is_straight(const Vertex& x0, const Vec3& w) const {
+        return view.straight(w, x0.point.site == Site::infinite);
+    }
     void add_emission(const WalkRay& ray) {
         const Vertex x0 = walk.back();
         walk.pop_back();
-        const bool chosen_by_bsdf_alone = walk.size() == 1 || walk.back().specular();
-        const Rgb emitted = chosen_by_bsdf_alone ? scene.emitter(x0.point.emitter).radiance(x0.point, -ray.w)
-                                                 : emission_with_mis(scene, walk.back(), x0, ray.w, pdf);
-        if (!is_black(emitted)) sink.contribution(walk, x0, ray.throughput * emitted, light_class(walk.diffuse()));
+        const bool sampled =
+            last_finite > 0 && (last_finite + 1 == walk.size() || (kLooksThroughGlass && is_straight(x0, ray.w)));
+        const Rgb emitted = sampled ? emission_with_mis(scene, walk[last_finite], x0, ray.w, pdf)
+                                    : scene.emitter(x0.point.emitter).radiance(x0.point, -ray.w);
+        if (!is_black(emitted)) sink.contribution(walk, x0, ray.throughput * emitted, walk.light_class(x0));
         walk.push_back(x0);
     }
     void add_direct_light(const Vertex& v, const WalkRay& ray) {
         const auto light = sample_direct_light(scene, v, -ray.w, source);
-        if (!light || !scene.visible(v.point, light->x0.point)) return;
+        if (!light) return;
+        const int most_faces = kLooksThroughGlass ? max_scatterings - scatterings() - 1 : 0;
+        const Rgb clear = straight_transmittance(scene, v.point, light->x0.point, most_faces);
+        if (is_black(clear)) return;
         walk.count_last();
-        sink.contribution(walk, light->x0, ray.throughput * light->value, light_class(walk.diffuse()));
+        sink.contribution(walk, light->x0, ray.throughput * clear * light->value, walk.light_class(light->x0));
         walk.discount_last();
     }
 };
@@ -100,7 +126,8 @@ template <class Sink> struct PathTracing : WalkHooks {
 ///     `finite` non-specular ones; `throughput` is the RGB importance that arrives there (window density 1). False ends
 ///     the walk.
 ///   sink.contribution(walk, x0, value, light_class): `value` is an estimate of radiance at the image point, MIS weight
-///     included, by the path that joins the walk to emitter vertex x0.
+///     included, by the path that joins the walk to emitter vertex x0; of a sink with a type LooksThroughGlass
+///     perhaps by way of vertices in clear glass that are left out.
 template <class Sink>
 void trace_path(const Scene& scene, const Vec2& image, int max_scatterings, SampleSource& source, Sink& sink) {
     EyeWalk walk;

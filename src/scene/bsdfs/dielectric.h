@@ -14,7 +14,7 @@ struct GlassBsdf {
     StoredRgb reflect_tint{Rgb(1.0)};
     StoredRgb transmit_tint{Rgb(1.0)};
 
-    static constexpr BsdfTraits traits() { return {.delta = true}; }
+    static constexpr BsdfTraits traits() { return {.delta = true, .clear = ClearGlass::face}; }
 
     static Rgb eval(const Vec3& /*to_light*/, const Vec3& /*to_eye*/) { return Rgb(0.0); }
     static double pdf(const Vec3& /*from*/, const Vec3& /*to*/) { return 0; }
@@ -56,7 +56,7 @@ struct InterfaceBsdf {
 struct ThinDielectricBsdf {
     double eta;
 
-    static constexpr BsdfTraits traits() { return {.delta = true}; }
+    static constexpr BsdfTraits traits() { return {.delta = true, .clear = ClearGlass::pane}; }
 
     double reflectance(const Vec3& from) const {
         const double r = fresnel_dielectric(std::abs(from.z), eta).reflectance;

@@ -1,6 +1,7 @@
 #include "sampling/guidance/learned/look_for_direct_light.h"
 
 #include "core/shared_work.h"
+#include "sampling/paths/clear_glass.h"
 #include "sampling/paths/direct_light.h"
 #include "sampling/paths/image_lattice.h"
 #include "sampling/paths/random_walk.h"
@@ -59,8 +60,10 @@ struct LightQuestions : WalkHooks {
         const Vec3 w = direction(v.point, x0);
         if (is_black(scatter(v.point, v.bsdf, Event::finite, w, back).value)) return;
         const Emitter& emitter = scene.emitter(x0.emitter);
-        const double value = luminance(emitter.radiance(x0, -w)) * geometry_term(v.point, x0, w);
-        if (!(value > 0) || !std::isfinite(value) || !scene.visible(v.point, x0, w)) return;
+        double value = luminance(emitter.radiance(x0, -w)) * geometry_term(v.point, x0, w);
+        if (!(value > 0) || !std::isfinite(value)) return;
+        value *= luminance(straight_transmittance(scene, v.point, x0));
+        if (!(value > 0)) return;
         round.found.push_back({.at = {v.point.p, v.point.ng},
                                .emitter = x0.emitter,
                                .infinite = is_environment(emitter),

@@ -1,0 +1,62 @@
+#include "sampling/paths/clear_glass.h"
+
+#include "sampling/paths/walk.h"
+
+namespace keyhole {
+namespace {
+
+/// A view on its way through clear glass.
+struct View {
+    SurfacePoint from;
+    Vec3 w;
+    Rgb transmittance{1.0};
+    StraightLight light{};
+
+    /// Goes on through `v`, which it has come to. False where that isn't clear glass.
+    bool pass(const Scene& scene, Vertex& v) {
+        if (clear_glass(v) == ClearGlass::none) return false;
+        const auto lobe = v.bsdf.delta(-w, Event::transmit);
+        if (!lobe) return false;
+        transmittance *= scene.transmittance(from, v.point) * lobe->coefficient / (lobe->eta * lobe->eta);
+        v.event = Event::transmit;
+        light.meet(v, w);
+        from = v.point;
+        w = lobe->to;
+        return true;
+    }
+};
+
+} // namespace
+
+Rgb straight_transmittance(const Scene& scene, const SurfacePoint& from, const SurfacePoint& x0, int most_faces) {
+    const bool infinite = x0.site == Site::infinite;
+    View view{from, direction(from, x0)};
+    for (int faces = 0; faces <= most_faces; ++faces) {
+        const SurfacePoint end = infinite ? infinite_point(view.w) : x0;
+        if (scene.visible(view.from, end))
+            return view.light.straight(view.w, infinite) ? view.transmittance * scene.transmittance(view.from, end)
+                                                         : Rgb(0.0);
+        if (!scene.has_clear_glass()) break;
+        auto hit = next_vertex(scene, view.from, view.w);
+        if (!hit || hit->point.site == Site::infinite || !view.pass(scene, *hit)) break;
+        if (!infinite && !view.light.straight(view.w, false)) break;
+    }
+    return Rgb(0.0);
+}
+
+std::optional<StraightView> look_straight(const Scene& scene, const SurfacePoint& from, const Vec3& w) {
+    View view{from, w};
+    for (int faces = 0; faces <= kMostFaces; ++faces) {
+        auto hit = next_vertex(scene, view.from, view.w);
+        if (!hit) return std::nullopt;
+        const bool infinite = hit->point.site == Site::infinite;
+        if (infinite || hit->point.is_emitter() || !scene.has_clear_glass() || clear_glass(*hit) == ClearGlass::none) {
+            if (!view.light.straight(view.w, infinite)) return std::nullopt;
+            return StraightView{*hit, view.transmittance * scene.transmittance(view.from, hit->point)};
+        }
+        if (!view.pass(scene, *hit)) return std::nullopt;
+    }
+    return std::nullopt;
+}
+
+} // namespace keyhole

@@ -1,0 +1,58 @@
+// Rooms with glass in the window: light that comes straight through is direct light for methods with photon maps and
+// for path tracing, and counts once. Bidirectional path tracing knows nothing of it.
+#include "methods/method.h"
+#include "scene/emitters/emitters.h"
+#include "support/same_light.h"
+#include "support/window_room.h"
+
+#include <gtest/gtest.h>
+
+namespace keyhole {
+namespace {
+
+/// A glossy floor, a mirror, a sky and a large sun; outside, a lamp. `thick`: of the glass [m]; 0: a pane.
+std::unique_ptr<Scene> glazed_room(float thick) {
+    test::SceneMaker m = test::room_with_a_window();
+    const auto value = [](double x) { return constant_texture(x); };
+    m.rectangle({0, 0.01f, 0}, {0, 0, 3}, {3, 0, 0},
+                make_coated_diffuse(constant_texture(Rgb(0.5, 0.4, 0.3)), value(0.15), value(0.15), 1.5, value(0)));
+    m.rectangle({2.99f, 0.5f, 0.6f}, {0, 0, 1.2f}, {0, 1, 0}, make_mirror(Rgb(0.9)));
+    if (thick > 0) {
+        const auto glass = make_glass(1.5);
+        m.rectangle({0.9f, 0.9f, -thick}, {0, 1, 0}, {1, 0, 0}, glass);
+        m.rectangle({0.9f, 0.9f, -0.001f}, {1, 0, 0}, {0, 1, 0}, glass);
+    } else {
+        m.rectangle({0.9f, 0.9f, -0.001f}, {1, 0, 0}, {0, 1, 0}, make_thin_dielectric(1.5));
+    }
+    m.emitter(make_constant_environment(Rgb(3.0, 4.0, 5.0)));
+    m.emitter(make_distant_emitter(Vec3(0.2f, -0.6f, 0.75f).normalized(), Rgb(12.0), 20));
+    m.rectangle({1, 2.6f, -1.5f}, {1, 0, 0}, {0, 0, 0.8f}, make_diffuse(Rgb(0.0)), Rgb(20.0));
+    m.camera({2.7f, 1.5f, 2.8f}, {0.8f, 0.7f, 0.4f}, 60).window(48, 32);
+    return m.build();
+}
+
+TEST(GlazedRoom_Light, IsTheSameByEveryMethod) {
+    Settings base;
+    base.max_depth = 10;
+    base.spp = 4;
+    base.brightness_samples = 40'000;
+    base.importons = 30'000;
+    base.mutations = 120'000;
+    base.light_paths = 80'000;
+    base.photons = 40'000;
+    base.chains = 200;
+    base.cache_rays = 200;
+    for (const float thick : {0.0f, 0.02f}) {
+        SCOPED_TRACE(thick);
+        Settings paths = base;
+        paths.method = &methods::bdpt;
+        paths.spp = 100;
+        std::vector<Settings> others = test::by_methods(base, {"path", "mlt", "ipm", "mps", "pss"});
+        others[0].spp = 80;
+        others[1].spp = 16;
+        test::expect_same_light(*glazed_room(thick), paths, others, 4);
+    }
+}
+
+} // namespace
+} // namespace keyhole
