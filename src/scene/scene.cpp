@@ -95,9 +95,12 @@ void Scene::attach_shapes() {
         accelerator_.attach(shape, i);
         if (!shape.material) continue;
         traits_ = traits_ | shape.material->traits();
-        has_clear_glass_ = has_clear_glass_ || may_be_clear(shape);
+        if (!may_be_clear(shape)) continue;
+        if (!clear_glass_) clear_glass_ = std::make_unique<Accelerator>();
+        clear_glass_->attach(shape, i);
     }
     accelerator_.commit();
+    if (clear_glass_) clear_glass_->commit();
     lower_ = accelerator_.lower();
     upper_ = accelerator_.upper();
     if (lower_.x <= upper_.x) return;
@@ -156,6 +159,10 @@ bool Scene::visible(const SurfacePoint& a, const SurfacePoint& b, const Vec3& a_
     const Vec3 edge = to.ray_origin(-w) - o;
     if ((begins_farther_on(from) || begins_farther_on(to)) && edge.dot(w) < 0) return false; // before the view begins
     return !accelerator_.occluded(o, edge, kEdgeEnd);
+}
+
+bool Scene::meets_clear_glass(const SurfacePoint& from, const Vec3& w) const {
+    return clear_glass_ && clear_glass_->occluded(from.ray_origin(w), w, std::numeric_limits<float>::infinity());
 }
 
 bool Scene::visible(const Vec3& a, const Vec3& b) const {

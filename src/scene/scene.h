@@ -74,7 +74,10 @@ class Scene {
     /// Union of what the materials may do.
     const BsdfTraits& traits() const { return traits_; }
     /// Whether there may be glass that light goes straight through: panes, or what is flat in part.
-    bool has_clear_glass() const { return has_clear_glass_; }
+    bool has_clear_glass() const { return clear_glass_ != nullptr; }
+    /// Whether a ray from `from` along unit direction `w` meets any, whatever else stands in its way. Much faster than
+    /// to trace it.
+    bool meets_clear_glass(const SurfacePoint& from, const Vec3& w) const;
 
     /// Bounding box of the geometry, world space; where there is none, a box around the camera.
     const Vec3& lower() const { return lower_; }
@@ -84,7 +87,9 @@ class Scene {
 
     std::size_t triangle_count() const;
     /// Memory of the structures that rays are traced with.
-    std::size_t accelerator_bytes() const { return accelerator_.bytes() + media_.accelerator_bytes(); }
+    std::size_t accelerator_bytes() const {
+        return accelerator_.bytes() + media_.accelerator_bytes() + (clear_glass_ ? clear_glass_->bytes() : 0);
+    }
 
   private:
     void attach_shapes();
@@ -104,9 +109,9 @@ class Scene {
     std::uint32_t environment_ = SurfacePoint::kNone; // index of the emitter that misses meet
     Camera camera_;
     BsdfTraits traits_;
-    bool has_clear_glass_ = false;
     Vec3 lower_{0, 0, 0}, upper_{0, 0, 0};
     Accelerator accelerator_;
+    std::unique_ptr<Accelerator> clear_glass_; // over what may be that; null if there is none
 };
 
 } // namespace keyhole

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <iostream>
+
 namespace keyhole {
 namespace {
 
@@ -20,7 +22,7 @@ class Mps_AgreesWithPathTracing : public testing::TestWithParam<MpsCase> {};
 
 TEST_P(Mps_AgreesWithPathTracing, BlockByBlock) {
     Scene scene(load_scene(std::string(KEYHOLE_SOURCE_DIR "/scenes/") + GetParam().scene + ".yaml").description);
-    scene.set_window({64, 48, 0});
+    scene.set_window({96, 64, 0});
     Settings paths; // from both ends: through a door those from the eye alone would be noise
     paths.method = &methods::bdpt;
     paths.spp = 24;
@@ -35,6 +37,7 @@ TEST_P(Mps_AgreesWithPathTracing, BlockByBlock) {
     mps.cache_rays = 200;
     const test::Blocks reference = test::render_blocks(scene, paths, 4);
     const test::Disagreement d = test::compare(test::render_blocks(scene, mps, 4), reference, 0.03);
+    std::cout << "quiet ratio " << d.quiet_ratio << ", whole " << d.ratio << ", noisy " << d.noisy << "\n";
     EXPECT_EQ(d.rejected, 0) << d.report << "mean brightness ratio " << d.ratio;
     EXPECT_NEAR(d.quiet_ratio, 1, 0.05) << "whole picture " << d.ratio;
     EXPECT_LE(d.noisy, GetParam().noisy) << "the test couldn't see a difference; largest error " << d.largest_error;

@@ -1,5 +1,6 @@
 // Absorption, boundaries without a surface, and holes.
 #include "sampling/paths/bidirectional_tracer.h"
+#include "sampling/paths/clear_glass.h"
 #include "sampling/paths/direct_light.h"
 #include "sampling/paths/light_tracer.h"
 #include "scene/emitters/emitters.h"
@@ -122,7 +123,8 @@ TEST(Media_Interface, LetsDirectLightThroughWithWhatIsLeft) {
     const auto light = sample_direct_light(*scene, v, Vec3(0, 1, 0), rng);
     ASSERT_TRUE(light.has_value());
     EXPECT_TRUE(scene->visible(v.point, light->x0.point));
-    EXPECT_NEAR(light->value.x, std::exp(-0.5) / kPi, 1e-6);
+    const Rgb clear = straight_transmittance(*scene, v.point, light->x0.point);
+    EXPECT_NEAR((light->value * clear).x, std::exp(-0.5) / kPi, 1e-6);
 }
 
 std::unique_ptr<Scene> sheet_with_alpha(double alpha) {

@@ -36,7 +36,7 @@ Rgb straight_transmittance(const Scene& scene, const SurfacePoint& from, const S
         if (scene.visible(view.from, end))
             return view.light.straight(view.w, infinite) ? view.transmittance * scene.transmittance(view.from, end)
                                                          : Rgb(0.0);
-        if (!scene.has_clear_glass()) break;
+        if (!scene.meets_clear_glass(view.from, view.w)) break;
         auto hit = next_vertex(scene, view.from, view.w);
         if (!hit || hit->point.site == Site::infinite || !view.pass(scene, *hit)) break;
         if (!infinite && !view.light.straight(view.w, false)) break;

@@ -39,7 +39,7 @@ struct RoughDielectricBsdf {
 
 /// No surface at all: light goes straight on.
 struct InterfaceBsdf {
-    static constexpr BsdfTraits traits() { return {.delta = true}; }
+    static constexpr BsdfTraits traits() { return {.delta = true, .clear = ClearGlass::pane}; }
 
     static Rgb eval(const Vec3& /*to_light*/, const Vec3& /*to_eye*/) { return Rgb(0.0); }
     static double pdf(const Vec3& /*from*/, const Vec3& /*to*/) { return 0; }
