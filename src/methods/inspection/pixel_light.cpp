@@ -78,10 +78,10 @@ class PixelTracer {
         const auto hit = next_vertex(scene_, *walk.found, ray.w);
         if (!hit || hit->point.site != Site::surface || !hit->bsdf.traits().finite) return;
         const auto drawn = sample_direct_light(scene_, *hit, -ray.w, rng);
-        if (!drawn || !scene_.visible(hit->point, drawn->x0.point)) return;
-        const Rgb clear = scene_.transmittance(hit->point, drawn->x0.point);
+        if (!drawn) return;
+        const Rgb clear = straight_transmittance(scene_, hit->point, drawn->x0.point);
         const double value = luminance(walk.throughput * ray.weight * clear * drawn->value);
-        if (!std::isfinite(value)) return;
+        if (!(value > 0) || !std::isfinite(value)) return;
         end.from_lamp = static_cast<float>(value);
         end.emitter = drawn->x0.point.emitter;
         end.lamp = place_of(drawn->x0.point, hit->point);
@@ -95,9 +95,9 @@ class PixelTracer {
         for (int i = 0; i < options_.direct; ++i) {
             PixelLight::Source source{v.point.p, 0};
             const auto drawn = sample_direct_light(scene_, v, walk.back, rng);
-            if (drawn && scene_.visible(v.point, drawn->x0.point)) {
+            const Rgb clear = drawn ? straight_transmittance(scene_, v.point, drawn->x0.point) : Rgb(0.0);
+            if (!is_black(clear)) {
                 source.p = place_of(drawn->x0.point, v.point);
-                const Rgb clear = scene_.transmittance(v.point, drawn->x0.point);
                 source.value = static_cast<float>(luminance(walk.throughput * clear * drawn->value));
             }
             if (!std::isfinite(source.value)) source.value = 0;

@@ -62,9 +62,11 @@ inline int first_lit(const Path& path) {
 
 inline LightClass light_class(const Path& path) { return light_class(diffuse_vertices(path), first_lit(path)); }
 
-/// Share of light that comes straight from `x0`, a point on an emitter, to `from`: what media leave of it and what
-/// clear glass lets through; black if anything else stands in between, or more than so many faces and panes.
+/// Faces and panes that are looked through at most.
 constexpr int kMostFaces = 64;
+
+/// Share of light that comes straight from `x0`, a point on an emitter, to `from`: what media leave of it and what
+/// clear glass lets through; black if anything else stands in between, or more than `most_faces`.
 Rgb straight_transmittance(const Scene& scene, const SurfacePoint& from, const SurfacePoint& x0,
                            int most_faces = kMostFaces);
 
