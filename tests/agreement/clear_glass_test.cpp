@@ -35,20 +35,20 @@ TEST(GlazedRoom_Light, IsTheSameByEveryMethod) {
     Settings base;
     base.max_depth = 10;
     base.spp = 4;
-    base.brightness_samples = 40'000;
-    base.importons = 30'000;
-    base.mutations = 120'000;
-    base.light_paths = 80'000;
-    base.photons = 40'000;
+    base.brightness_samples = 20'000;
+    base.importons = 15'000;
+    base.mutations = 80'000;
+    base.light_paths = 40'000;
+    base.photons = 20'000;
     base.chains = 200;
-    base.cache_rays = 200;
+    base.cache_rays = 100;
     for (const float thick : {0.0f, 0.02f}) {
         SCOPED_TRACE(thick);
         Settings paths = base;
         paths.method = &methods::bdpt;
-        paths.spp = 100;
+        paths.spp = 64;
         std::vector<Settings> others = test::by_methods(base, {"path", "mlt", "ipm", "mps", "pss"});
-        others[0].spp = 80;
+        others[0].spp = 50;
         others[1].spp = 16;
         test::expect_same_light(*glazed_room(thick), paths, others, 4);
     }

@@ -1,5 +1,6 @@
-// A lamp that shines and can't be hit: only sampling its points finds its light, and all methods find the same.
+// Lamps that shine and can't be hit: only sampling their points finds their light, and all methods find the same.
 #include "methods/method.h"
+#include "scene/emitters/emitters.h"
 #include "support/same_light.h"
 #include "support/test_scenes.h"
 
@@ -8,7 +9,7 @@
 namespace keyhole {
 namespace {
 
-TEST(InvisibleLamp_Light, IsTheSameByEveryMethod) {
+Settings base() {
     Settings s;
     s.max_depth = 8;
     s.spp = 2;
@@ -18,11 +19,28 @@ TEST(InvisibleLamp_Light, IsTheSameByEveryMethod) {
     s.light_paths = 30'000;
     s.photons = 15'000;
     s.chains = 50;
-    Settings path = s;
+    return s;
+}
+
+void expect_same_as_by_path(Scene& scene, const std::vector<const char*>& methods) {
+    Settings path = base();
     path.method = &methods::path;
     path.spp = 16;
-    const auto others = test::by_methods(s, {"bdpt", "mlt", "pssmlt", "mmlt", "rjmlt", "pm", "ipm", "mps"});
-    test::expect_same_light(*test::invisible_lamp_box(), path, others, 8);
+    test::expect_same_light(scene, path, test::by_methods(base(), methods), 8);
+}
+
+TEST(InvisibleLamp_Light, IsTheSameByEveryMethod) {
+    expect_same_as_by_path(*test::invisible_lamp_box(), {"bdpt", "mlt", "pssmlt", "mmlt", "rjmlt", "pm", "ipm", "mps"});
+}
+
+/// Were the lamp seen it would be a dot as bright as the whole picture, but only where sub-paths are joined to the eye.
+TEST(PointInView_Light, IsTheSameByEveryMethod) {
+    test::SceneMaker m;
+    m.room({-1, 0, -1}, {1, 2, 3}, make_diffuse(Rgb(0.6)))
+        .emitter(make_point_emitter({0.3f, 1.2f, 0.5f}, Rgb(4.0)))
+        .camera({0, 1, 2.9f}, {0, 0.95f, -1}, 50)
+        .window(48, 32);
+    expect_same_as_by_path(*m.build(), {"bdpt", "mlt", "mmlt", "ipm"});
 }
 
 } // namespace

@@ -18,9 +18,11 @@ namespace keyhole {
 /// @throws InputError for a shape without area.
 std::unique_ptr<Emitter> make_area_emitter(const Shape& shape, std::uint32_t index);
 
-/// Whether an emitter is an invisible light: one with a surface that no ray can hit. Its light is seen on what scatters
-/// it; the eye looks through the lamp itself, in whatever way its paths are made.
-inline bool is_invisible(const Emitter& emitter) { return emitter.is_delta() && emitter.site() == Site::surface; }
+/// Whether an emitter is one that no ray can hit: an invisible light, a point, a single direction. Its light is seen on
+/// what scatters it; the eye looks through the lamp itself, in whatever way its paths are made. Where sub-paths from
+/// the light are joined to the eye, a point in view would else be a pixel of any brightness, which no walk from the eye
+/// finds.
+inline bool is_invisible(const Emitter& emitter) { return emitter.is_delta(); }
 
 /// Light from one point, the same in all directions.
 /// @param intensity radiant intensity in W/sr; its power is 4 pi times that.
