@@ -7,8 +7,9 @@ usage: bench/random_rooms.py [--keyhole build/keyhole] [--rooms 1-12] [--times 5
 Room N is made from the number N alone: its size, its windows (none, bare, with a pane, with blinds; to a sky, with or without a sun),
 its lamps (on the ceiling, spots, behind a shade, in a glass bulb, shining at the ceiling, in the next room with the door ajar), its
 furniture and what it is made of (paint, wood under varnish, plastic, metal, glass, mirrors). Two long renders by `bdpt` are the
-reference of each. Errors are trimmed squared relative ones free of the references' noise (`keyhole diff`, cross_trim). `agree` is how
-far the mean over blocks of `ipm` is from the references, as the root of the mean square beyond noise.
+reference of each: with the sun behind glass they lack what mirrors show of it. Errors are trimmed squared relative ones free of the
+references' noise (`keyhole diff`, cross_trim). The last columns: the brightness of the picture by `ipm` over that of the references,
+and what the room has.
 """
 import argparse
 import concurrent.futures
