@@ -118,6 +118,18 @@ bool is_invisible_light(const Shape& shape) {
     return shape.emission && shape.alpha && shape.alpha->is_constant() && !(shape.alpha->value({}) > 0);
 }
 
+void drop_needless_normals(Shape& shape) {
+    constexpr double kAlike = 1 - 1e-8; // cosine: normals as files have them, rounded
+    auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
+    if (mesh == nullptr) return;
+    for (std::uint32_t i = 0; i < mesh->triangles.size() && !mesh->normals.empty(); ++i) {
+        const Imath::V3d ng(triangle_point(*mesh, i, 0.25f, 0.25f, false).ng);
+        for (const std::uint32_t corner : mesh->triangles[i])
+            if (!(std::abs(Imath::V3d(mesh->normals[corner]).normalized().dot(ng)) > kAlike)) return;
+    }
+    mesh->normals.clear();
+}
+
 bool may_be_clear(const Shape& shape) {
     const ClearGlass glass = shape.material->traits().clear;
     const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);

@@ -85,8 +85,9 @@ void Scene::attach_shapes() {
     emitter_of_shape_.assign(shapes_.size(), SurfacePoint::kNone);
     merge_environments(emitters_);
     for (std::uint32_t i = 0; i < shapes_.size(); ++i) {
-        const Shape& shape = shapes_[i];
+        Shape& shape = shapes_[i];
         if (is_interface(shape)) continue;
+        if (shape.material && shape.material->traits().clear == ClearGlass::face) drop_needless_normals(shape);
         if (shape.emission && surface_area(shape) > 0) {
             emitter_of_shape_[i] = static_cast<std::uint32_t>(emitters_.size());
             emitters_.push_back(make_area_emitter(shape, i));

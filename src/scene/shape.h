@@ -59,6 +59,9 @@ inline bool reads_parametrisation(const Shape& shape) {
 /// no shadow, but its points are sampled like those of other lights.
 bool is_invisible_light(const Shape& shape);
 
+/// Drops the normals of a mesh if they are those that its triangles have anyway.
+void drop_needless_normals(Shape& shape);
+
 /// Whether light may go straight through `shape`, which has a material: a pane, or glass of which a triangle, at least,
 /// has one shading normal.
 bool may_be_clear(const Shape& shape);

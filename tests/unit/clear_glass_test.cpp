@@ -58,6 +58,34 @@ TEST(ClearGlass, OfASlabLetsThroughWhatItsFacesDontReflect) {
     EXPECT_EQ(straight_transmittance(*scene, from, point_at({0, 0, -3})), Rgb(0.0));
 }
 
+/// Files have normals for flat things as well.
+TEST(ClearGlass, IsFlatWhateverItsFileSaysOfNormalsUnlessTheyBend) {
+    for (const float bend : {0.0f, 1e-5f, 0.1f}) {
+        SceneDescription d;
+        Shape& slab = d.shapes.emplace_back();
+        TriangleMesh mesh;
+        for (const float z : {0.0f, -0.1f}) {
+            const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+            for (const Vec3& p : {Vec3(-5, -5, z), Vec3(5, -5, z), Vec3(5, 5, z), Vec3(-5, 5, z)})
+                mesh.positions.push_back(p);
+            for (const float x : {-bend, bend, bend, -bend})
+                mesh.normals.push_back(Vec3(x, 0, z < 0 ? -1 : 1).normalized());
+            if (z < 0)
+                mesh.triangles.insert(mesh.triangles.end(),
+                                      {{first, first + 2, first + 1}, {first, first + 3, first + 2}});
+            else
+                mesh.triangles.insert(mesh.triangles.end(),
+                                      {{first, first + 1, first + 2}, {first, first + 2, first + 3}});
+        }
+        slab.geometry = mesh;
+        slab.material = make_glass(kIndex);
+        d.emitters.push_back(make_constant_environment(Rgb(1.0)));
+        const Scene scene(std::move(d));
+        const double through = straight_transmittance(scene, point_at({0.3f, 0, 1}), infinite_point(kSlanted)).x;
+        EXPECT_NEAR(through, bend < 0.01f ? std::pow(1 - reflectance(-kSlanted.z), 2) : 0.0, 1e-5) << bend;
+    }
+}
+
 TEST(ClearGlass, OfAPaneLetsThroughWhatItDoesntReflect) {
     SceneMaker m = under_a_sky();
     m.rectangle({-5, -5, 0}, {10, 0, 0}, {0, 10, 0}, make_thin_dielectric(kIndex));
