@@ -12,11 +12,11 @@ over that of the smallest house. With --at-most the status is 1 if that is more 
 """
 import argparse
 import concurrent.futures
-import json
 import os
 import pathlib
-import subprocess
 import sys
+
+from common import diff, render_for
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 WIDTH, DEPTH, HEIGHT, DOOR, LINTEL = 4.0, 3.0, 2.6, 0.8, 2.0
@@ -75,16 +75,6 @@ def house(n, path):
     path.write_text(HEAD.format(x + 0.25, z + 2.8, x + 2.6, z + 0.9) + "\n".join(lines) + "\n")
 
 
-def render(args, scene, picture, method, seconds, seed):
-    subprocess.run([args.keyhole, "render", str(scene), "-q", "-t", "1", "--no-png", "-o", str(picture), "--resolution",
-                    args.resolution, "--method", method, "--seed", str(seed), "--cpu-time", str(seconds)], check=True)
-
-
-def error(args, picture, references):
-    told = subprocess.run([args.keyhole, "diff", str(picture), *map(str, references)], check=True, capture_output=True, text=True)
-    return json.loads(told.stdout)["cross_trim"]
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--keyhole", default=str(ROOT / "build/keyhole"))
@@ -103,16 +93,19 @@ def main():
     references = {n: [out / f"{n}.{x}.exr" for x in "ab"] for n in rooms}
     errors = {}
 
+    def render(n, picture, method, seconds, seed):
+        render_for(args.keyhole, out / f"{n}.yaml", seconds, method, seed, args.resolution, picture)
+
     def measure(n, seconds, method):
         picture = out / f"{n}-{seconds:g}-{method}.exr"
-        render(args, out / f"{n}.yaml", picture, method, seconds, 1)
-        errors[n, seconds, method] = error(args, picture, references[n])
+        render(n, picture, method, seconds, 1)
+        errors[n, seconds, method] = diff(args.keyhole, picture, *references[n])["cross_trim"]
 
     for n in rooms:
         house(n, out / f"{n}.yaml")
     with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
         missing = [(n, path, 101 + i) for n in rooms for i, path in enumerate(references[n]) if not path.exists()]
-        list(pool.map(lambda m: render(args, out / f"{m[0]}.yaml", m[1], "ipm", args.reference_seconds, m[2]), missing))
+        list(pool.map(lambda m: render(m[0], m[1], "ipm", args.reference_seconds, m[2]), missing))
         list(pool.map(lambda m: measure(*m), [(n, s, m) for s in times for n in rooms for m in methods]))
 
     print("| s | method | " + " | ".join(f"{n * n} rooms" for n in rooms) + " | " + " | ".join(f"{n * n} over" for n in rooms[1:]) + " |")

@@ -1,4 +1,5 @@
-"""What the measurements share: renders whose CPU time is taken, and the luminance of their pictures."""
+"""What the measurements share: renders whose CPU time is taken or given, how far pictures are from others, and their luminance."""
+import json
 import resource
 import subprocess
 
@@ -15,6 +16,18 @@ def render(keyhole, scene, settings, picture, *options):
     subprocess.run([keyhole, "render", scene, "-q", "-t", "1", "--no-png", "-o", picture, *options]
                    + [word for s in settings for word in ("-D", s)], check=True)
     return cpu_seconds() - before
+
+
+def render_for(keyhole, scene, seconds, method, seed, resolution, picture, *options):
+    """Renders on one thread for so many CPU seconds."""
+    subprocess.run([keyhole, "render", str(scene), "-q", "-t", "1", "--no-png", "-o", str(picture), "--resolution", resolution,
+                    "--method", method, "--seed", str(seed), "--cpu-time", str(seconds), *options], check=True)
+
+
+def diff(keyhole, *pictures):
+    """How far the first picture is from one or two references: what `keyhole diff` says."""
+    told = subprocess.run([keyhole, "diff", *map(str, pictures)], check=True, capture_output=True, text=True)
+    return json.loads(told.stdout)
 
 
 def luminance(path, layer=""):

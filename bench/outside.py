@@ -26,6 +26,8 @@ import sys
 import threading
 import time
 
+from common import diff
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 METHODS = "auto,path,bdpt,mlt,pssmlt,mmlt,rjmlt,ipm,mps,pm"
 # Size, the method of the long renders, and the reference that was given (if it has the size).
@@ -72,10 +74,6 @@ def render(args, name, picture, seconds, method, seed, denoise="off"):
     return usage[2].ru_utime + usage[2].ru_stime, told
 
 
-def diff(args, *pictures):
-    return json.loads(subprocess.run([args.keyhole, "diff", *pictures], check=True, capture_output=True, text=True).stdout)
-
-
 class Results:
     """A dictionary in a file."""
     def __init__(self, path):
@@ -100,10 +98,10 @@ def make_references(args, folder, pool):
     checked = {}
     for name in args.scenes:
         a, b = references(args, folder, name)
-        checked[name] = {"halves": diff(args, a, b)["block"]}
+        checked[name] = {"halves": diff(args.keyhole, a, b)["block"]}
         given = SCENES[name][2]
         if given:
-            e = diff(args, a, f"{args.shared}/{given}")
+            e = diff(args.keyhole, a, f"{args.shared}/{given}")
             checked[name] |= {"given": e["block"], "ratio": e["ratio"]}
         print(name, checked[name], flush=True)
     (folder.parent / "references.json").write_text(json.dumps(checked, indent=1))
@@ -113,7 +111,7 @@ def measure(args, results, folder, name, seconds, method):
     picture = str(folder / f"{name.replace('/', '-')}-{seconds:g}-{method}.exr")
     start = time.monotonic()
     used, told = render(args, name, picture, seconds, method, args.seed, args.denoise)
-    e = diff(args, picture, *references(args, folder.parent / "references", name))
+    e = diff(args.keyhole, picture, *references(args, folder.parent / "references", name))
     results.add(f"{name} {seconds:g} {method}",
                 {"error": e["cross_trim"], "ratio": e["ratio"], "block": e["block"], "bad": e["bad"], "seconds": used,
                  "wall": time.monotonic() - start, "method": told["method"], "warnings": told.get("warnings", [])})

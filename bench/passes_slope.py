@@ -14,6 +14,8 @@ import math
 import pathlib
 import subprocess
 
+from common import diff
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
 
@@ -33,8 +35,7 @@ def references(args, name, scene):
 
 
 def relative_mse(args, picture, reference):
-    out = subprocess.run([args.keyhole, "diff", picture, *reference], check=True, capture_output=True, text=True).stdout
-    return json.loads(out)["cross"]
+    return diff(args.keyhole, picture, *reference)["cross"]
 
 
 def slope(points):

@@ -18,7 +18,8 @@ import os
 import pathlib
 import random
 import statistics
-import subprocess
+
+from common import diff, render_for
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
@@ -204,18 +205,6 @@ class Room:
         return "\n".join([*head, *emitters, "shapes:", *self.shapes]) + "\n"
 
 
-def render(args, scene, picture, method, seconds, seed):
-    subprocess.run([args.keyhole, "render", str(scene), "-q", "-t", "1", "--no-png", "-o", str(picture), "--resolution",
-                    args.resolution, "--method", method, "--seed", str(seed), "--cpu-time", str(seconds),
-                    "--stats", f"{picture}.json"], check=True)
-    return json.loads(pathlib.Path(f"{picture}.json").read_text())["method"]
-
-
-def diff(args, *pictures):
-    told = subprocess.run([args.keyhole, "diff", *map(str, pictures)], check=True, capture_output=True, text=True)
-    return json.loads(told.stdout)
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--keyhole", default=str(ROOT / "build/keyhole"))
@@ -244,18 +233,23 @@ def main():
 
     def measure(n, seconds, method):
         picture = out / f"{n}-{seconds:g}-{method}.exr"
-        chosen = render(args, out / f"{n}.yaml", picture, method, seconds, args.seed)
-        found[n, seconds, method] = diff(args, picture, *references(n)) | {"method": chosen}
+        stats = pathlib.Path(f"{picture}.json")
+        render_for(args.keyhole, out / f"{n}.yaml", seconds, method, args.seed, args.resolution, picture, "--stats", str(stats))
+        chosen = json.loads(stats.read_text())["method"]
+        found[n, seconds, method] = diff(args.keyhole, picture, *references(n)) | {"method": chosen}
+
+    def reference(n, picture, seed):
+        render_for(args.keyhole, out / f"{n}.yaml", args.reference_seconds, "bdpt", seed, args.resolution, picture)
 
     with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
         missing = [(n, p, 101 + i) for n in rooms for i, p in enumerate(references(n)) if not p.exists()]
-        list(pool.map(lambda m: render(args, out / f"{m[0]}.yaml", m[1], "bdpt", args.reference_seconds, m[2]), missing))
+        list(pool.map(lambda m: reference(*m), missing))
         list(pool.map(lambda m: measure(*m), [(n, t, m) for n in rooms for t in times for m in methods]))
 
     print("| room | s | " + " | ".join(methods) + " | auto over best | ipm's mean | |\n" + "| --- " * (len(methods) + 5) + "|")
     ratios = []
     for n in rooms:
-        halves = diff(args, *references(n))
+        halves = diff(args.keyhole, *references(n))
         for t in times:
             row = {m: found[n, t, m] for m in methods}
             best = min(row[m]["cross_trim"] for m in methods if m != "auto")
