@@ -73,10 +73,8 @@ class Scene {
     const std::vector<Shape>& shapes() const { return shapes_; }
     /// Union of what the materials may do.
     const BsdfTraits& traits() const { return traits_; }
-    /// Whether there may be glass that light goes straight through: panes, or what is flat in part.
-    bool has_clear_glass() const { return clear_glass_ != nullptr; }
-    /// Whether a ray from `from` along unit direction `w` meets any, whatever else stands in its way. Much faster than
-    /// to trace it.
+    /// Whether a ray from `from` along unit direction `w` meets what may be clear glass, panes or what is flat in part,
+    /// whatever else stands in its way. Much faster than to trace it.
     bool meets_clear_glass(const SurfacePoint& from, const Vec3& w) const;
 
     /// Bounding box of the geometry, world space; where there is none, a box around the camera.

@@ -102,7 +102,7 @@ TEST(ClearGlass, OfAPaneLetsThroughWhatItDoesntReflect) {
 }
 
 TEST(ClearGlass, IsNothingThatTurnsLightOrStopsIt) {
-    for (const int kind : {0, 1, 2, 3}) {
+    for (const int kind : {0, 1, 2, 3, 4}) {
         SceneMaker m = under_a_sky();
         if (kind == 0) m.sphere({0, 0, 0}, 0.9f, make_glass(kIndex));
         if (kind == 1) m.rectangle({-5, -5, 0}, {10, 0, 0}, {0, 10, 0}, make_glass(kIndex)); // it is never left
@@ -112,6 +112,8 @@ TEST(ClearGlass, IsNothingThatTurnsLightOrStopsIt) {
         if (kind == 3)
             m.rectangle({-5, -5, 0}, {10, 0, 0}, {0, 10, 0}, make_thin_dielectric(kIndex))
                 .rectangle({-5, -5, -1}, {10, 0, 0}, {0, 10, 0}, make_diffuse(Rgb(0.5)));
+        if (kind == 4) // a view ends where something shines
+            m.rectangle({-5, -5, 0}, {10, 0, 0}, {0, 10, 0}, make_thin_dielectric(kIndex), Rgb(1.0));
         const auto scene = m.build();
         EXPECT_EQ(straight_transmittance(*scene, point_at({0, 0, 1}), infinite_point(kSlanted)), Rgb(0.0)) << kind;
     }

@@ -12,7 +12,7 @@ struct View {
     Rgb transmittance{1.0};
     StraightLight light{};
 
-    /// Goes on through `v`, which it has come to. False where that isn't clear glass.
+    /// Goes on through `v`, which it has come to. False where that isn't clear glass, or lets nothing through.
     bool pass(const Scene& scene, Vertex& v) {
         if (clear_glass(v) == ClearGlass::none) return false;
         const auto lobe = v.bsdf.delta(-w, Event::transmit);
@@ -31,12 +31,12 @@ struct View {
 Rgb straight_transmittance(const Scene& scene, const SurfacePoint& from, const SurfacePoint& x0, int most_faces) {
     const bool infinite = x0.site == Site::infinite;
     View view{from, direction(from, x0)};
-    for (int faces = 0; faces <= most_faces; ++faces) {
+    for (int faces = 0;; ++faces) {
         const SurfacePoint end = infinite ? infinite_point(view.w) : x0;
         if (scene.visible(view.from, end))
             return view.light.straight(view.w, infinite) ? view.transmittance * scene.transmittance(view.from, end)
                                                          : Rgb(0.0);
-        if (!scene.meets_clear_glass(view.from, view.w)) break;
+        if (faces == most_faces || !scene.meets_clear_glass(view.from, view.w)) break;
         auto hit = next_vertex(scene, view.from, view.w);
         if (!hit || hit->point.site == Site::infinite || !view.pass(scene, *hit)) break;
         if (!infinite && !view.light.straight(view.w, false)) break;
@@ -49,12 +49,9 @@ std::optional<StraightView> look_straight(const Scene& scene, const SurfacePoint
     for (int faces = 0; faces <= kMostFaces; ++faces) {
         auto hit = next_vertex(scene, view.from, view.w);
         if (!hit) return std::nullopt;
-        const bool infinite = hit->point.site == Site::infinite;
-        if (infinite || hit->point.is_emitter() || !scene.has_clear_glass() || clear_glass(*hit) == ClearGlass::none) {
-            if (!view.light.straight(view.w, infinite)) return std::nullopt;
-            return StraightView{*hit, view.transmittance * scene.transmittance(view.from, hit->point)};
-        }
-        if (!view.pass(scene, *hit)) return std::nullopt;
+        if (view.pass(scene, *hit)) continue;
+        if (!view.light.straight(view.w, hit->point.site == Site::infinite)) return std::nullopt;
+        return StraightView{*hit, view.transmittance * scene.transmittance(view.from, hit->point)};
     }
     return std::nullopt;
 }

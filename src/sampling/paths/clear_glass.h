@@ -10,8 +10,9 @@
 
 namespace keyhole {
 
-/// What `v` is to light that goes through.
+/// What `v` is to light that goes through. Glass that shines is none: a view ends at the first emitter.
 inline ClearGlass clear_glass(const Vertex& v) {
+    if (v.point.is_emitter()) return ClearGlass::none;
     const ClearGlass glass = v.bsdf.traits().clear;
     // No two faces of a lens are parallel for more than a point.
     const bool flat = v.point.primitive != SurfacePoint::kNone && v.bsdf.shading_normal() == v.point.ng;
