@@ -2,12 +2,12 @@
 """Every method, and what `auto` makes of the time, on scenes that other people made.
 
 usage: bench/outside.py [--keyhole build/keyhole] [--shared ../shared] [--own] [--scenes coffee,...] [--times 5,15,60]
-                        [--methods auto,path,...] [--best N] [--seed 1] [--denoise off] [--reference-seconds 240] [-j 2]
+                        [--methods auto,path,...] [--best N] [--seeds 1,2,3] [--denoise off] [--reference-seconds 240] [-j 2]
                         [--out outside] [--at-most 1.25]
 
 Renders each scene at the size of its given reference, one thread a render, by `--cpu-time`. The error is the trimmed relative
 squared error free of the references' own noise (`keyhole diff`, cross_trim), against two independent long renders of our own,
-which stay in OUT/references; how far their blocks are from the reference that was given stands in OUT/references.json. Results
+which stay in OUT/references; with several seeds it is the median over them; how far their blocks are from the reference that was given stands in OUT/references.json. Results
 stay in OUT/results.json, so that a run that was interrupted goes on, and more scenes, times or methods add to it. --best N
 leaves out, at all times but the shortest, methods that were not among the N best of the scene at the time before.
 --denoise exr measures pictures as the filter at the end leaves them.
@@ -107,23 +107,30 @@ def make_references(args, folder, pool):
     (folder.parent / "references.json").write_text(json.dumps(checked, indent=1))
 
 
-def measure(args, results, folder, name, seconds, method):
-    picture = str(folder / f"{name.replace('/', '-')}-{seconds:g}-{method}.exr")
+def measure(args, results, folder, name, seconds, method, seed):
+    picture = str(folder / f"{name.replace('/', '-')}-{seconds:g}-{method}-{seed}.exr")
     start = time.monotonic()
-    used, told = render(args, name, picture, seconds, method, args.seed, args.denoise)
+    used, told = render(args, name, picture, seconds, method, seed, args.denoise)
     e = diff(args.keyhole, picture, *references(args, folder.parent / "references", name))
-    results.add(f"{name} {seconds:g} {method}",
+    results.add(f"{name} {seconds:g} {method} {seed}",
                 {"error": e["cross_trim"], "ratio": e["ratio"], "block": e["block"], "bad": e["bad"], "seconds": used,
                  "wall": time.monotonic() - start, "method": told["method"], "warnings": told.get("warnings", [])})
     print(f"{name:15}{seconds:>5g} {method:7}{e['cross_trim']:10.5f}  {used:6.2f} s  {told['method']}", flush=True)
+
+
+def median_error(args, results, name, seconds, method):
+    """The median error over the seeds, and the methods that made the pictures; None if there is none."""
+    found = [r for seed in args.seeds if (r := results.found.get(f"{name} {seconds:g} {method} {seed}"))]
+    if not found:
+        return None
+    return statistics.median(r["error"] for r in found), ", ".join(sorted({r["method"] for r in found}))
 
 
 def contenders(args, results, name, before):
     """The methods to try where those of a shorter time are known."""
     if not args.best or before is None:
         return args.methods
-    known = {m: results.found[f"{name} {before:g} {m}"]["error"] for m in args.methods
-             if m != "auto" and f"{name} {before:g} {m}" in results.found}
+    known = {m: cell[0] for m in args.methods if m != "auto" and (cell := median_error(args, results, name, before, m))}
     return ["auto"] * ("auto" in args.methods) + sorted(known, key=known.get)[:args.best]
 
 
@@ -132,14 +139,14 @@ def table(args, results):
     ratios = []
     for name in args.scenes:
         for seconds in args.times:
-            row = {m: results.found.get(f"{name} {seconds:g} {m}") for m in args.methods}
-            errors = {m: r["error"] for m, r in row.items() if r and m != "auto"}
+            row = {m: median_error(args, results, name, seconds, m) for m in args.methods}
+            errors = {m: cell[0] for m, cell in row.items() if cell and m != "auto"}
             if not errors:
                 continue
             best = min(errors, key=errors.get)
-            ratio = row["auto"]["error"] / errors[best] if row.get("auto") else float("nan")
+            ratio = row["auto"][0] / errors[best] if row.get("auto") else float("nan")
             ratios.append(ratio)
-            cells = [("-" if not r else f"{r['error']:.2g}" + (f" ({r['method']})" if m == "auto" else "")) for m, r in row.items()]
+            cells = [("" if not cell else f"{cell[0]:.2g}" + (f" ({cell[1]})" if m == "auto" else "")) for m, cell in row.items()]
             print(f"| {name} | {seconds:g} | " + " | ".join(cells) + f" | {best} | {ratio:.2f} |")
     if ratios:
         print(f"\nauto over best: median {statistics.median(ratios):.2f}, largest {max(ratios):.2f}")
@@ -155,7 +162,7 @@ def main():
     parser.add_argument("--times", default="5,15,60")
     parser.add_argument("--methods", default=METHODS)
     parser.add_argument("--best", type=int, default=0)
-    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--seeds", default="1")
     parser.add_argument("--denoise", default="off", help="off, or exr: of pictures that were filtered")
     parser.add_argument("--reference-seconds", type=float, default=240)
     parser.add_argument("-j", "--jobs", type=int, default=os.cpu_count())
@@ -163,7 +170,7 @@ def main():
     parser.add_argument("--at-most", type=float, default=float("inf"))
     args = parser.parse_args()
     args.scenes = args.scenes.split(",") if args.scenes else [name for name in SCENES if (name in OWN) == args.own]
-    args.methods = args.methods.split(",")
+    args.methods, args.seeds = args.methods.split(","), args.seeds.split(",")
     args.times = [float(t) for t in args.times.split(",")]
     folder = pathlib.Path(args.out) / "pictures"
     folder.mkdir(parents=True, exist_ok=True)
@@ -171,8 +178,8 @@ def main():
     with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
         make_references(args, folder.parent / "references", pool)
         for before, seconds in zip([None, *args.times], args.times):
-            wanted = [(name, seconds, m) for name in args.scenes for m in contenders(args, results, name, before)
-                      if f"{name} {seconds:g} {m}" not in results.found]
+            wanted = [(name, seconds, m, seed) for name in args.scenes for m in contenders(args, results, name, before)
+                      for seed in args.seeds if f"{name} {seconds:g} {m} {seed}" not in results.found]
             list(pool.map(lambda w: measure(args, results, folder, *w), wanted))
     return 1 if table(args, results) > args.at_most else 0
 

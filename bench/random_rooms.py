@@ -4,8 +4,10 @@
 usage: bench/random_rooms.py [--keyhole build/keyhole] [--rooms 1-12] [--times 5,15] [--methods auto,path,bdpt,ipm]
                              [--resolution 128x96] [--reference-seconds 120] [--seed 1] [-j 2] [--out random_rooms]
 
-Room N is made from the number N alone: its size, its windows (none, bare, with a pane, with blinds; to a sky, with or without a sun),
-its lamps (on the ceiling, spots, behind a shade, in a glass bulb, shining at the ceiling, in the next room with the door ajar), its
+Room N is made from the number N alone: its size, its windows (none, bare, with a pane, with blinds; to a sky, with or without a sun;
+from 101 on also with a curtain or frosted glass),
+its lamps (on the ceiling, spots, behind a shade, in a glass bulb, shining at the ceiling, in the next room with the door ajar;
+from 101 on also in a globe, in frosted glass, a screen, a chandelier), its
 furniture and what it is made of (paint, wood under varnish, plastic, metal, glass, mirrors). Two long renders by `bdpt` are the
 reference of each: with the sun behind glass they lack what mirrors show of it. Errors are trimmed squared relative ones free of the
 references' noise (`keyhole diff`, cross_trim). The last columns: the brightness of the picture by `ipm` over that of the references,
@@ -14,6 +16,7 @@ and what the room has.
 import argparse
 import concurrent.futures
 import json
+import math
 import os
 import pathlib
 import random
@@ -28,7 +31,7 @@ class Room:
     """One random interior. x: across, y: up, z: towards the eye's wall. Metres."""
 
     def __init__(self, number):
-        self.rng = random.Random(number)
+        self.rng, self.more = random.Random(number), number > 100
         self.shapes, self.emitters, self.told = [], [], []
         self.size = (self.rng.uniform(3, 7), self.rng.uniform(2.4, 3.4), self.rng.uniform(3.5, 9))
 
@@ -85,7 +88,7 @@ class Room:
         length = d if side == "left" else w
         u0, y0 = length * self.rng.uniform(0.1, 0.4), self.pick(0.1, 0.9)
         opening = (u0, y0, u0 + length * self.rng.uniform(0.25, 0.5), h - self.rng.uniform(0.2, 0.6))
-        cover = self.pick("bare", "pane", "thick pane", "blinds")
+        cover = self.pick("bare", "pane", "thick pane", "blinds", *(["curtain", "frosted"] * self.more))
         self.told.append(f"window ({cover})")
         at = (lambda u, y, n: (n, y, u)) if side == "left" else (lambda u, y, n: (u, y, n))
         a, b, c, e = opening
@@ -94,6 +97,17 @@ class Room:
             self.shape(f"type: rectangle, corner: {list(at(a, b, -0.1))}, u: {u}, v: {v}, material: {{type: thin_dielectric}}")
         if cover == "thick pane":
             self.box(at(a, b, -0.11), at(c, e, -0.1), "{type: glass}")
+        if cover == "frosted":
+            self.box(at(a, b, -0.11), at(c, e, -0.1), f"{{type: dielectric, roughness: {self.pick(0.1, 0.3)}}}")
+        if cover == "curtain":
+            folds = 14
+            for i in range(folds):
+                left, right = at(a + (c - a) * i / folds, b, -0.04), at(a + (c - a) * (i + 1) / folds, b, -0.04)
+                bulge = at(0, 0, 0.03 if i % 2 else -0.03)
+                corner = [x + y / 2 for x, y in zip(left, at(0, 0, 0.03 if i % 2 == 0 else -0.03))]
+                along = [y - x + z for x, y, z in zip(left, right, bulge)]
+                self.shape(f"type: rectangle, corner: {corner}, u: {along}, v: {[0, e - b, 0]}, "
+                           "material: {type: diffuse_transmission, reflectance: 0.5, transmittance: 0.35}")
         if cover == "blinds":
             slats = 12
             for i in range(slats):
@@ -111,7 +125,8 @@ class Room:
     def lamp(self):
         w, h, d = self.size
         x, z = w * self.rng.uniform(0.25, 0.75), d * self.rng.uniform(0.2, 0.7)
-        kind = self.pick("panel", "spots", "shade", "bulb", "uplight", "row", "point")
+        kind = self.pick("panel", "spots", "shade", "bulb", "uplight", "row", "point",
+                         *(["globe", "frosted bulb", "screen", "chandelier"] * self.more))
         self.told.append(kind)
         if kind == "panel":
             self.shape(f"type: rectangle, corner: {[x, h - 0.02, z]}, u: [0.5, 0, 0], v: [0, 0, 0.5], emission: {{power: 60}}")
@@ -130,6 +145,21 @@ class Room:
             self.shape(f"type: sphere, center: {centre}, radius: 0.02, emission: {{power: 60}}")
             self.shape(f"type: sphere, center: {centre}, radius: 0.06, material: {{type: glass}}")
             self.shape(f"type: sphere, center: {centre}, radius: 0.058, material: {{type: glass}}, flip: true")
+        if kind in ("globe", "frosted bulb"):
+            centre = [x, h - 0.6, z]
+            self.shape(f"type: sphere, center: {centre}, radius: 0.03, emission: {{power: 60}}")
+            cover = ("{type: diffuse_transmission, reflectance: 0.35, transmittance: 0.6}" if kind == "globe"
+                     else "{type: dielectric, roughness: 0.3}")
+            self.shape(f"type: sphere, center: {centre}, radius: 0.12, material: {cover}")
+            if kind == "frosted bulb":
+                self.shape(f"type: sphere, center: {centre}, radius: 0.117, material: {cover}, flip: true")
+        if kind == "screen":
+            self.shape(f"type: rectangle, corner: {[x, 0.8, 0.02]}, u: [1, 0, 0], v: [0, 0.6, 0], emission: {{power: 20}}")
+        if kind == "chandelier":
+            for i in range(40):
+                angle, ring = 2 * math.pi * i / 40, 0.2 + 0.1 * (i % 3)
+                at = [x + ring * math.cos(angle), h - 0.5 - 0.1 * (i % 4), z + ring * math.sin(angle)]
+                self.shape(f"type: sphere, center: {at}, radius: 0.01, emission: {{power: 2}}")
         if kind == "shade":
             y = self.rng.uniform(1.2, 1.6)
             self.shape(f"type: sphere, center: {[x, y + 0.15, z]}, radius: 0.05, emission: {{power: 60}}")
