@@ -71,7 +71,8 @@ class Passes {
     Passes(const SamplerContext& c, const RenderPlan& plan, PhotonSampler& sampler, Work& work, const RenderTask& task,
            RenderStats& stats)
         : c_(c), plan_(plan), sampler_(sampler), work_(work), for_gather_(task.share.for_gather),
-          observer_(task.observer), stats_(stats), pixels_(c.scene, c.settings, task.share, StreamPurpose::gather) {}
+          checks_photons_(task.share.checks_photons), observer_(task.observer), stats_(stats),
+          pixels_(c.scene, c.settings, task.share, StreamPurpose::gather) {}
 
     /// All passes that there are units of.
     /// @throws Interrupted if there is nothing to show.
@@ -120,7 +121,7 @@ class Passes {
         const bool whole = sample_rounds(*gather, pass, context.alone());
         {
             const StageClock clock(stats_, kReport);
-            gather->report(stats_);
+            gather->report(stats_, checks_photons_);
         }
         return whole ||
                context.communicator != nullptr; // a process group ends where all can agree on it: in the next pass
@@ -156,6 +157,7 @@ class Passes {
     PhotonSampler& sampler_;
     Work& work_;
     double for_gather_; // as WorkPartition's
+    bool checks_photons_;
     PassObserver* observer_;
     RenderStats& stats_;
     PixelSampling pixels_;

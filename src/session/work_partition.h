@@ -37,6 +37,9 @@ struct WorkPartition {
     /// Of the time until the stop, what photons leave to the gather, in each pass [s].
     double for_gather = 0;
 
+    /// Photon maps are checked for false spots in the end; trials do without.
+    bool checks_photons = true;
+
     /// Tells different processes what to do: the n-th call made by any of them returns n, from 0; none: it is time to
     /// stop. Empty: there is only this process.
     std::function<std::optional<std::int64_t>()> take_number;

@@ -18,7 +18,7 @@ namespace keyhole {
 namespace {
 
 /// Of the whole time, at most; and so many seconds with a smaller share of longer times.
-constexpr double kMost = 0.115, kSeconds = 0.55, kShare = 0.03;
+constexpr double kMost = 0.08, kSeconds = 0.4, kShare = 0.03;
 /// Of the whole time, what the survey that methods with photons start with may take.
 constexpr double kPlan = 0.12;
 /// A trial that takes so many times as long as it should is given up.
@@ -27,7 +27,7 @@ constexpr double kPatience = 3;
 /// them may cost a hundred times the error.
 constexpr double kPatienceForPhotons = 0.08, kMostPatience = 0.8;
 /// What traces importance costs is told by so many walks.
-constexpr std::int64_t kImportons = 4000;
+constexpr std::int64_t kImportons = 2000;
 /// Rays of records in a trial: their noise is told by few, and there are many records even in a small window.
 constexpr std::int64_t kCacheRays = 64;
 /// Number of the first render of a trial, for its seed; those that count have others.
@@ -96,7 +96,9 @@ std::optional<TrialRender> render_trial(const TrialContext& c, Settings settings
     const double start = context.seconds_left();
     const bool in_time = std::isfinite(start);
     const double pixels = c.scene.camera().window().size();
-    const RenderResult r = render_by_method({c.scene, settings, c.user_paths, context, {}, c.findings});
+    WorkPartition share;
+    share.checks_photons = false;
+    const RenderResult r = render_by_method({c.scene, settings, c.user_paths, context, share, c.findings});
     if (!has_picture(r) || empty_pixels(r) > 0) return std::nullopt;
     settings.spp = std::max<std::int64_t>(1, static_cast<std::int64_t>(r.stats.samples));
     const Experience cost = in_time ? Experience(settings, effort, pixels, r.stats, start - context.seconds_left())

@@ -25,9 +25,9 @@ namespace keyhole {
 namespace {
 
 /// Two methods are close if the one promises less than so many times the error of the other.
-constexpr double kClose = 1.8;
+constexpr double kClose = 1.5;
 /// Of the time, each of the two renders of either method that show how large their errors are.
-constexpr double kPart = 1.0 / 16;
+constexpr double kPart = 1.0 / 24;
 /// What counts less than this share of the better method's seconds would only cost it its statistics.
 constexpr double kNoWeight = 0.2;
 constexpr double kNever = std::numeric_limits<double>::infinity();
