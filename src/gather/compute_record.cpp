@@ -21,10 +21,6 @@ HemisphereEstimate RecordMaker::light(const VisiblePoint& c, int count, std::uin
     const HemisphereGrid grid(count);
     const Frame frame(cache_normal(c.vertex, c.back));
     const std::vector<SpotCone> cones = spots_.cones_from(c.vertex.point.p, frame.n, count / 2);
-    const auto has_rays = [&](int spot) {
-        return spot >= 0 &&
-               std::any_of(cones.begin(), cones.end(), [&](const SpotCone& cone) { return cone.spot == spot; });
-    };
     std::vector<HemisphereRay> found(static_cast<std::size_t>(grid.size()));
     for (int i = 0; i < grid.size(); ++i) {
         const double u0 = rng.next(), u1 = rng.next();
@@ -35,16 +31,22 @@ HemisphereEstimate RecordMaker::light(const VisiblePoint& c, int count, std::uin
         const auto arrival = rays_.trace(c.vertex, w, local.z * kInvPi, c.scatterings, rng);
         // What lies nearer than the least reach can't be told apart anyway.
         ray.distance = std::max(arrival.distance, min_radius(c));
-        if (!has_rays(spots_.spot_at(c.vertex.point.p + w * arrival.distance)))
+        if (!spot_of(c.vertex.point.p + w * arrival.distance, cones))
             ray.radiance = arrival.indirect * c.vertex.bsdf.diffuse_weight(w);
     }
     HemisphereEstimate sum = grid.estimate(found, frame);
-    for (const SpotCone& cone : cones) add_spot(c, frame, cone, rng, sum);
+    for (const SpotCone& cone : cones) add_spot(c, frame, cone, cones, rng, sum);
     return sum;
 }
 
-void RecordMaker::add_spot(const VisiblePoint& c, const Frame& frame, const SpotCone& cone, Rng& rng,
-                           HemisphereEstimate& sum) const {
+const SpotCone* RecordMaker::spot_of(const Vec3& place, std::span<const SpotCone> cones) const {
+    const auto at =
+        std::ranges::find_if(cones, [&](const SpotCone& cone) { return spots_.contains(cone.spot, place); });
+    return at != cones.end() ? &*at : nullptr;
+}
+
+void RecordMaker::add_spot(const VisiblePoint& c, const Frame& frame, const SpotCone& cone,
+                           std::span<const SpotCone> cones, Rng& rng, HemisphereEstimate& sum) const {
     const Frame around(cone.axis);
     const double shift0 = rng.next(), shift1 = rng.next(), share = cone.solid_angle() / cone.rays;
     double sum1 = 0, sum2 = 0;
@@ -54,7 +56,7 @@ void RecordMaker::add_spot(const VisiblePoint& c, const Frame& frame, const Spot
         const float z = w.dot(frame.n);
         if (!(z > 0) || !c.leaves(w)) continue;
         const auto arrival = rays_.trace(c.vertex, w, z * kInvPi, c.scatterings, rng);
-        if (spots_.spot_at(c.vertex.point.p + w * arrival.distance) != cone.spot) continue;
+        if (spot_of(c.vertex.point.p + w * arrival.distance, cones) != &cone) continue;
         const Rgb brought = arrival.indirect * (share * c.vertex.bsdf.diffuse_weight(w));
         sum.irradiance += brought * static_cast<double>(z);
         const double y = luminance(brought) * static_cast<double>(z);

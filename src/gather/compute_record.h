@@ -38,8 +38,10 @@ class RecordMaker {
 
   private:
     float min_radius(const VisiblePoint& c) const { return static_cast<float>(options_.min_radius * c.pixel); }
-    void add_spot(const VisiblePoint& c, const Frame& frame, const SpotCone& cone, Rng& rng,
-                  HemisphereEstimate& sum) const;
+    /// The first of a record's cones in whose spot a place lies; null if it lies in none.
+    const SpotCone* spot_of(const Vec3& place, std::span<const SpotCone> cones) const;
+    void add_spot(const VisiblePoint& c, const Frame& frame, const SpotCone& cone, std::span<const SpotCone> cones,
+                  Rng& rng, HemisphereEstimate& sum) const;
 
     const GatherRays& rays_;
     const HotSpots& spots_;

@@ -54,7 +54,7 @@ std::optional<PartContinuation> continue_by_part(const Vertex& v, const Bsdf& pa
     if (!(whole.pdf_to_light > 0)) return std::nullopt;
     const double cosine = v.point.abs_cos(s->to);
     return PartContinuation{s->to, scatter(v.point, part, Event::finite, s->to, back).value * (cosine / s->pdf),
-                            whole.value * (cosine / whole.pdf_to_light), whole.pdf_to_light};
+                            whole.value * (cosine / whole.pdf_to_light), whole.pdf_to_light, s->pdf};
 }
 
 Rgb direct_light(const Scene& scene, const Vertex& v, const Vec3& back, int samples, SampleSource& source) {

@@ -38,10 +38,11 @@ void sample_emission(const Scene& scene, const Vertex& v, const Vec3& back, Samp
 
 /// A direction drawn from one part of a BSDF (Bsdf::glossy_part(), or a diffuse one), weighed two ways.
 struct PartContinuation {
-    Vec3 w;     ///< unit
-    Rgb part;   ///< scattering by the part, times cosine, over the part's density
-    Rgb whole;  ///< that by the finite part as a whole, over its density
-    double pdf; ///< density of the whole per solid angle
+    Vec3 w;          ///< unit
+    Rgb part;        ///< scattering by the part, times cosine, over the part's density
+    Rgb whole;       ///< that by the finite part as a whole, over its density
+    double pdf;      ///< density of the whole per solid angle
+    double part_pdf; ///< that of the part
 };
 /// None where the part absorbs. The mean over directions of the whole BSDF is that over its parts, each with the
 /// probability with which the whole draws from it (Bsdf::glossy_probability()).

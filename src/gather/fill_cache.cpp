@@ -138,11 +138,14 @@ CacheOptions cache_options(const Settings& settings, double shrink, std::uint64_
     return options;
 }
 
-IrradianceCache fill_cache(const GatherRays& rays, const CacheOptions& options, const RunContext& context,
-                           const RaysOfRecords& decide) {
+HotSpots find_hot_spots(const GatherRays& rays, const CacheOptions& options, const RunContext& context) {
+    return {rays, spot_rays(options), options.seed, context};
+}
+
+IrradianceCache fill_cache(const GatherRays& rays, const HotSpots& spots, const CacheOptions& options,
+                           const RunContext& context, const RaysOfRecords& decide) {
     IrradianceCache cache(static_cast<float>(options.error), static_cast<float>(options.overlap));
     context.begin("irradiance cache", kSteps.size() + 1, "levels");
-    const HotSpots spots(rays, spot_rays(options), options.seed, context);
     const RecordMaker maker(rays, spots, options);
     CacheFill fill(maker, options, cache);
     const double start = context.seconds_left();

@@ -13,6 +13,9 @@ namespace keyhole {
 /// interpolation makes wrong shrinks from pass to pass like what lookups do; noise goes with the number of passes.
 CacheOptions cache_options(const Settings& settings, double shrink, std::uint64_t seed);
 
+/// What is small and bright, for records of so many rays.
+HotSpots find_hot_spots(const GatherRays& rays, const CacheOptions& options, const RunContext& context);
+
 /// Records that have their first rays.
 struct PlacedRecords {
     const IrradianceCache& cache;
@@ -26,8 +29,9 @@ using RaysOfRecords = std::function<int(const PlacedRecords&)>;
 /// nothing yet: first at every 16th pixel in each direction, then between them down to each pixel, twice. Points are
 /// taken in a fixed order and records computed so many at a time, whatever the number of threads, so that the cache
 /// does not depend on it. A stop leaves what there is.
+/// @param spots that records look at with rays of their own.
 /// @param decide asked once records are placed; without it, they get as many rays as the options say.
-IrradianceCache fill_cache(const GatherRays& rays, const CacheOptions& options, const RunContext& context,
-                           const RaysOfRecords& decide = {});
+IrradianceCache fill_cache(const GatherRays& rays, const HotSpots& spots, const CacheOptions& options,
+                           const RunContext& context, const RaysOfRecords& decide = {});
 
 } // namespace keyhole

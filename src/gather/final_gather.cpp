@@ -94,7 +94,7 @@ void FinalGather::shade(const Vertex& v, const Vec3& back, const Rgb& throughput
     if (!cached)
         light = gather_all(v, back, scatterings, source);
     else if (v.bsdf.traits().glossy)
-        light += gather_glossy(v, back, scatterings, source);
+        light += gather_glossy(v, back, cached->radiance, scatterings, source);
     else
         light.direct = direct_light(scene_, v, back, samples_.light, source);
     out.direct += throughput * light.direct;
@@ -123,17 +123,19 @@ std::optional<FinalGather::Cached> FinalGather::ask_cache(const Vertex& v, const
 FinalGather::Light FinalGather::gather_all(const Vertex& v, const Vec3& back, int scatterings,
                                            SampleSource& source) const {
     Light sum{next_event(scene_, v, back, samples_.light, source), Rgb(0.0)};
+    const AimedRay aimed(spots_, v, v.bsdf, back, luminance(sum.direct), samples_.rays);
     for (int i = 0; i < samples_.rays; ++i) {
         const auto first = continue_walk(v, back, From::eye, source);
         if (!first || is_specular(first->event)) continue;
         const auto arrival = rays_.trace(v, first->w, first->pdf, scatterings, source);
-        sum.indirect += first->weight * arrival.indirect / samples_.rays;
+        sum.indirect += first->weight * arrival.indirect * (first->pdf / aimed.density(first->w, first->pdf));
         sum.direct += first->weight * arrival.emitted / samples_.rays;
     }
+    sum.indirect += gather_aimed(aimed, v, v.bsdf, back, scatterings, source);
     return sum;
 }
 
-FinalGather::Light FinalGather::gather_glossy(const Vertex& v, const Vec3& back, int scatterings,
+FinalGather::Light FinalGather::gather_glossy(const Vertex& v, const Vec3& back, const Rgb& besides, int scatterings,
                                               SampleSource& source) const {
     Light sum{next_event(scene_, v, back, samples_.light, source), Rgb(0.0)};
     const double glossy = v.bsdf.glossy_probability(back);
@@ -142,14 +144,26 @@ FinalGather::Light FinalGather::gather_glossy(const Vertex& v, const Vec3& back,
     });
     const Bsdf lobe = v.bsdf.glossy_part();
     const int rays = std::max(1, static_cast<int>(std::lround(samples_.rays * glossy)));
+    const AimedRay aimed(spots_, v, lobe, back, luminance(sum.direct + besides), rays);
     for (int i = 0; i < rays; ++i) {
         const auto first = continue_by_part(v, lobe, back, source);
         if (!first) continue;
         const auto arrival = rays_.trace(v, first->w, first->pdf, scatterings, source);
-        sum.indirect += first->part * arrival.indirect / rays;
+        sum.indirect += first->part * arrival.indirect * (first->part_pdf / aimed.density(first->w, first->part_pdf));
         sum.direct += first->whole * arrival.emitted * (glossy / rays);
     }
+    sum.indirect += gather_aimed(aimed, v, lobe, back, scatterings, source);
     return sum;
+}
+
+Rgb FinalGather::gather_aimed(const AimedRay& aimed, const Vertex& v, const Bsdf& lobe, const Vec3& back,
+                              int scatterings, SampleSource& source) const {
+    const auto w = aimed.sample(source);
+    if (!w) return Rgb(0.0);
+    const ScatterValue s = scatter(v.point, lobe, Event::finite, *w, back);
+    const double density = aimed.density(*w, s.pdf_to_light);
+    if (!(density > 0) || !(luminance(s.value) > 0)) return Rgb(0.0);
+    return s.value * rays_.trace(v, *w, density, scatterings, source).indirect * (v.point.abs_cos(*w) / density);
 }
 
 } // namespace keyhole

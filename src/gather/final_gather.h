@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/pixel_sample.h"
+#include "gather/aimed_ray.h"
 #include "gather/gather_rays.h"
 #include "gather/irradiance_cache.h"
 
@@ -18,9 +19,10 @@ struct GatherSamples {
 /// Thread-safe; immutable but for what it counts. All arguments by reference or pointer must outlive it.
 class FinalGather {
   public:
-    /// `cache` may be null: gather rays from every sample.
-    FinalGather(const GatherRays& rays, const IrradianceCache* cache, const GatherSamples& samples)
-        : scene_(rays.scene()), rays_(rays), cache_(cache), samples_(samples) {}
+    /// `cache` may be null: gather rays from every sample. So may `spots`, which gather rays are aimed at, too.
+    FinalGather(const GatherRays& rays, const IrradianceCache* cache, const HotSpots* spots,
+                const GatherSamples& samples)
+        : scene_(rays.scene()), rays_(rays), cache_(cache), spots_(spots), samples_(samples) {}
 
     /// Estimates what arrives at the eye through window point `image`. Unbiased but for the maps and the cache.
     PixelSample sample(const Vec2& image, SampleSource& source) const;
@@ -72,11 +74,18 @@ class FinalGather {
     Light gather_all(const Vertex& v, const Vec3& back, int scatterings, SampleSource& source) const;
     /// All direct light, and indirect light that the glossy part reflects, by gather rays drawn from that part. For
     /// direct light these stand for the samples of the BSDF that would come from it.
-    Light gather_glossy(const Vertex& v, const Vec3& back, int scatterings, SampleSource& source) const;
+    /// @param besides what the diffuse part reflects of indirect light
+    Light gather_glossy(const Vertex& v, const Vec3& back, const Rgb& besides, int scatterings,
+                        SampleSource& source) const;
+
+    /// What a lobe reflects of indirect light along a ray that is aimed at hot spots.
+    Rgb gather_aimed(const AimedRay& aimed, const Vertex& v, const Bsdf& lobe, const Vec3& back, int scatterings,
+                     SampleSource& source) const;
 
     const Scene& scene_;
     const GatherRays& rays_;
     const IrradianceCache* cache_;
+    const HotSpots* spots_;
     GatherSamples samples_;
     // Apart from what every thread reads all the time.
     alignas(64) mutable std::atomic<std::uint64_t> asked_ = 0;

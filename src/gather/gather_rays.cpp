@@ -12,16 +12,27 @@
 namespace keyhole {
 namespace {
 
-/// The weight of photons in radiance that the finite part at `v` reflects towards `back`.
+/// The weight of photons in radiance that the finite part at `v` scatters towards `back`. In a pane of ground glass
+/// what arrived at one face from outside lies so near to what arrives at the other one from inside, on the same side of
+/// both, that only the sides of their surfaces tell them apart.
 auto reflection(const Vertex& v, const Vec3& back) {
-    return [&v, back](const Photon& photon) {
+    return [&v, back, through = v.bsdf.traits().through](const Photon& photon) {
+        if (through && photon.behind() != (photon.normal().decode().dot(v.point.ng) < 0)) return Rgb(0.0);
         return scatter(v.point, v.bsdf, Event::finite, photon.direction(), back).value;
     };
 }
 
-/// The lookup of light that `v` reflects towards `back`.
-PhotonQuery query_at(const Vertex& v, const Vec3& back, float radius, const LookupOptions& options) {
-    return {{v.point.p, facing(v.point.ng, back)}, radius, options.nearest, options.shrink};
+/// The lookup of light that comes to `v` on the side of `normal`.
+PhotonQuery query_at(const Vertex& v, const Vec3& normal, float radius, const LookupOptions& options) {
+    return {{v.point.p, normal}, radius, options.nearest, options.shrink};
+}
+
+/// look(normal) for each side from which light that comes to `v` is scattered towards `back`.
+template <class Look> Rgb on_each_side(const Vertex& v, const Vec3& back, const Look& look) {
+    const Vec3 near = facing(v.point.ng, back);
+    Rgb sum = look(near);
+    if (v.bsdf.traits().through) sum += look(-near);
+    return sum;
 }
 
 /// Least probability with which the glossy part is looked at where a ray ends.
@@ -121,7 +132,7 @@ Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSou
     const auto known = maps_.irradiance->irradiance(v.point, facing(v.point.ng, back));
     // Photons may be near, but none that this place sees: those of the other side of a wall.
     const auto place = known.known ? std::optional(known.place) : std::nullopt;
-    if (!v.bsdf.traits().diffuse) return lobe(v, v.bsdf, back, place, source);
+    if (!v.bsdf.traits().diffuse) return lobe(v, v.bsdf, back, place, source) + light_through(v, back, source);
     const bool on = place && goes_on(leg, *place, v.point.p);
     const Rgb f = v.bsdf.diffuse_reflectance(back);
     Rgb sum = f * direct(place, v, back, source);
@@ -150,8 +161,15 @@ Rgb GatherRays::lobe(const Vertex& v, const Bsdf& part, const Vec3& back, const 
     Vertex wide = v;
     wide.bsdf = part.widened(options_.least_alpha);
     Rgb sum = direct_light(scene_, wide, back, 1, source);
-    if (place) sum += photons(Asked::all, *place, wide, back, source);
+    if (place) sum += photons(Asked::all, *place, wide, facing(v.point.ng, back), back, source);
     return sum;
+}
+
+Rgb GatherRays::light_through(const Vertex& v, const Vec3& back, SampleSource& source) const {
+    if (!v.bsdf.traits().through) return Rgb(0.0);
+    const Vec3 behind = -facing(v.point.ng, back);
+    const auto known = maps_.irradiance->irradiance(v.point, behind);
+    return known.known ? photons(Asked::all, known.place, v, behind, back, source) : Rgb(0.0);
 }
 
 Rgb GatherRays::traced_on(const Vertex& v, const Vec3& back, std::uint32_t place, const Leg& leg,
@@ -162,13 +180,18 @@ Rgb GatherRays::traced_on(const Vertex& v, const Vec3& back, std::uint32_t place
     // Light that specular vertices alone brought here is found by no ray.
     const bool known = maps_.irradiance->is_near(place, v.point.p);
     if (known ? maps_.irradiance->has_caustics(place) : scene_.traits().delta)
-        sum += photons(Asked::caustics, place, v, back, source);
+        sum += photons(Asked::caustics, place, v, facing(v.point.ng, back), back, source);
     return sum;
 }
 
 Rgb GatherRays::caustic(const Vertex& v, const Vec3& back, double besides, SampleSource& source) const {
     if (maps_.caustic == nullptr) return Rgb(0.0);
-    const PhotonQuery query = query_at(v, back, options_.caustic_radius, options_);
+    return on_each_side(v, back, [&](const Vec3& normal) { return caustic(v, normal, back, besides, source); });
+}
+
+Rgb GatherRays::caustic(const Vertex& v, const Vec3& normal, const Vec3& back, double besides,
+                        SampleSource& source) const {
+    const PhotonQuery query = query_at(v, normal, options_.caustic_radius, options_);
     const PilotedRegion piloted = piloted_region(maps_.caustic->pilots(), query);
     const float r = piloted.radius;
     double p = chance_of_caustic(v, back, query.region, r, besides);
@@ -204,7 +227,7 @@ double GatherRays::chance_of_caustic(const Vertex& v, const Vec3& back, const Su
 
 double GatherRays::unconfirmed_caustic(const Vertex& v, const Vec3& back) const {
     if (maps_.caustic == nullptr) return 0;
-    const PhotonQuery query = query_at(v, back, options_.caustic_radius, options_);
+    const PhotonQuery query = query_at(v, facing(v.point.ng, back), options_.caustic_radius, options_);
     const float r = piloted_radius(maps_.caustic->pilots(), query);
     return unconfirmed_share(*maps_.caustic, query.region, r, [reflection = reflection(v, back)](const Photon& p) {
         return luminance(reflection(p) * p.power());
@@ -213,9 +236,11 @@ double GatherRays::unconfirmed_caustic(const Vertex& v, const Vec3& back) const 
 
 Rgb GatherRays::global(const Vertex& v, const Vec3& back) const {
     if (maps_.global == nullptr) return Rgb(0.0);
-    const PhotonQuery query = query_at(v, back, options_.max_radius, options_);
-    const DensityEstimate e = estimate_density(*maps_.global, query, maps_.patches, reflection(v, back));
-    return e.value / share_in_reach(maps_.coverage, query.region, e.radius);
+    return on_each_side(v, back, [&](const Vec3& normal) {
+        const PhotonQuery query = query_at(v, normal, options_.max_radius, options_);
+        const DensityEstimate e = estimate_density(*maps_.global, query, maps_.patches, reflection(v, back));
+        return e.value / share_in_reach(maps_.coverage, query.region, e.radius);
+    });
 }
 
 bool GatherRays::may_be_parted(std::uint32_t place, const SurfaceRegion& region) const {
@@ -224,10 +249,10 @@ bool GatherRays::may_be_parted(std::uint32_t place, const SurfaceRegion& region)
            (!map.is_near(place, region.position, kKnown) && maps_.patches->obstructed(region, map.radius(place)));
 }
 
-Rgb GatherRays::photons(Asked asked, std::uint32_t place, const Vertex& v, const Vec3& back,
+Rgb GatherRays::photons(Asked asked, std::uint32_t place, const Vertex& v, const Vec3& normal, const Vec3& back,
                         SampleSource& source) const {
     if (maps_.global == nullptr) return Rgb(0.0);
-    const PhotonQuery query = query_at(v, back, options_.max_radius, options_);
+    const PhotonQuery query = query_at(v, normal, options_.max_radius, options_);
     const float r = maps_.irradiance->radius(place);
     const double share = maps_.irradiance->area_share(place);
     if (!(share > 0)) return Rgb(0.0);

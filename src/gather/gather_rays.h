@@ -58,6 +58,8 @@ class GatherRays {
     int max_scatterings() const { return max_scatterings_; }
 
   private:
+    /// Of light that comes on the side of `normal`.
+    Rgb caustic(const Vertex& v, const Vec3& normal, const Vec3& back, double besides, SampleSource& source) const;
     /// With which probability a caustic is worth a look; 0 where there is none.
     double chance_of_caustic(const Vertex& v, const Vec3& back, const SurfaceRegion& region, float r,
                              double besides) const;
@@ -80,14 +82,18 @@ class GatherRays {
     /// place is given, photons near it.
     Rgb lobe(const Vertex& v, const Bsdf& part, const Vec3& back, const std::optional<std::uint32_t>& place,
              SampleSource& source) const;
+    /// What photons on the other side of `v` send through it.
+    Rgb light_through(const Vertex& v, const Vec3& back, SampleSource& source) const;
     /// Whether something may stand on a region near a place, which has the radius of that, and hide photons there.
     bool may_be_parted(std::uint32_t place, const SurfaceRegion& region) const;
     /// What the global map says of light that `v` reflects towards `back`.
     Rgb global(const Vertex& v, const Vec3& back) const;
     /// Which of the photons near a place count.
     enum class Asked { caustics, all };
-    /// The same as global() of these, near a place of the irradiance map, whose radius and surface do for `v`, too.
-    Rgb photons(Asked asked, std::uint32_t place, const Vertex& v, const Vec3& back, SampleSource& source) const;
+    /// The same as global() of these that come on the side of `normal`, near a place of the irradiance map, whose
+    /// radius and surface do for `v`, too.
+    Rgb photons(Asked asked, std::uint32_t place, const Vertex& v, const Vec3& normal, const Vec3& back,
+                SampleSource& source) const;
 
     const Scene& scene_;
     GatherMaps maps_;

@@ -9,10 +9,11 @@ namespace keyhole {
 /// side, and `power` the RGB importance that arrived from there.
 class Photon {
   public:
-    /// `ng` is the geometric normal, of either orientation; `direction` is unit and points away from the surface to
-    /// where the light came from. `power` [W, or importance] is finite and not negative. `caustic`: see caustic().
+    /// `ng` is the geometric normal; `direction` is unit and points away from the surface to where the light came from.
+    /// `power` [W, or importance] is finite and not negative. `caustic`: see caustic().
     Photon(const Vec3& position, const Vec3& ng, const Vec3& direction, const Rgb& power, bool caustic = false)
-        : position_(position), power_(power, caustic), direction_(direction), normal_(facing(ng, direction)) {}
+        : position_(position), power_(power, (caustic ? kCaustic : 0) | (ng.dot(direction) < 0 ? kBehind : 0)),
+          direction_(direction), normal_(facing(ng, direction)) {}
 
     const Vec3& position() const { return position_; }
     /// Geometric normal on the side that the light arrived at, so that the two sides of a sheet are told apart.
@@ -20,12 +21,16 @@ class Photon {
     Vec3 direction() const { return direction_.decode(); }
     Rgb power() const { return power_.decode(); }
     /// Whether specular vertices alone scattered the light before (L S+ D). A photon of the global map may be one, too.
-    bool caustic() const { return power_.marked(); }
-    void set_power(const Rgb& power) { power_ = SharedExponentRgb(power, caustic()); }
+    bool caustic() const { return (power_.marks() & kCaustic) != 0; }
+    /// Whether it arrived on the side that the surface's geometric normal turns away from.
+    bool behind() const { return (power_.marks() & kBehind) != 0; }
+    void set_power(const Rgb& power) { power_ = SharedExponentRgb(power, power_.marks()); }
 
     bool operator==(const Photon&) const = default;
 
   private:
+    static constexpr unsigned kCaustic = 1, kBehind = 2;
+
     Vec3 position_;
     SharedExponentRgb power_;
     OctahedralVector<std::int16_t> direction_;

@@ -56,25 +56,26 @@ template <class Int> class OctahedralVector {
     Int x_ = 0, y_ = 0;
 };
 
-/// A non-negative RGB triple in 6 bytes: 13 bits a channel under one exponent of 8 bits (as RGB9E5, but wider), and one
-/// bit for whoever has a use for it. Rounded to nearest, so that errors average out: at most 2^-13 of the largest
-/// channel, in every channel. From 2^-127 (less becomes black) to 2^127 (more is held there).
+/// A non-negative RGB triple in 6 bytes: 13 bits a channel under one exponent of 7 bits (as RGB9E5, but wider), and two
+/// bits for whoever has a use for them. Rounded to nearest, so that errors average out: at most 2^-13 of the largest
+/// channel, in every channel. From 2^-79 (less becomes black) to 2^47 (more is held there).
 class SharedExponentRgb {
   public:
     SharedExponentRgb() = default;
 
     /// `c` is finite and has no negative channel.
-    explicit SharedExponentRgb(const Rgb& c, bool marked = false) {
-        if (marked) words_[2] = kMark;
+    /// @param marks 0 to 3
+    explicit SharedExponentRgb(const Rgb& c, unsigned marks = 0) {
+        words_[2] = static_cast<std::uint16_t>(marks << kMarks);
         assert(is_finite(c) && c.x >= 0 && c.y >= 0 && c.z >= 0);
         const double largest = std::max({c.x, c.y, c.z});
         int exponent = 0;
         std::frexp(largest, &exponent);
         // Rounding up may need one more bit than there is.
         if (std::lrint(std::ldexp(largest, kBits - exponent)) > kMask) ++exponent;
-        if (largest == 0 || exponent < -kBias + 1) return;
-        const bool overflow = exponent > kBias - 1;
-        if (overflow) exponent = kBias - 1;
+        if (largest == 0 || exponent < kLeast) return;
+        const bool overflow = exponent > kMost;
+        if (overflow) exponent = kMost;
         const double scale = std::ldexp(1.0, kBits - exponent);
         const auto biased = static_cast<unsigned>(exponent + kBias);
         for (unsigned i = 0; i < 3; ++i) {
@@ -85,22 +86,24 @@ class SharedExponentRgb {
     }
 
     Rgb decode() const {
-        const int biased = words_[0] >> kBits | words_[1] >> kBits << 3 | (words_[2] & ~kMark) >> kBits << 6;
+        const int biased = words_[0] >> kBits | words_[1] >> kBits << 3 | (words_[2] >> kBits & 1) << 6;
         const int exponent = biased - kBias - kBits;
         // 2^exponent put together from its bits: ldexp is slow, and this is the innermost loop of a lookup.
         const auto scale = std::bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52);
         return {(words_[0] & kMask) * scale, (words_[1] & kMask) * scale, (words_[2] & kMask) * scale};
     }
 
-    bool marked() const { return (words_[2] & kMark) != 0; }
+    unsigned marks() const { return words_[2] >> kMarks; }
 
     bool operator==(const SharedExponentRgb&) const = default;
 
   private:
-    static constexpr int kBits = 13, kMask = (1 << kBits) - 1, kBias = 128;
-    static constexpr std::uint16_t kMark = 0x8000; // of the last word
+    static constexpr int kBits = 13, kMask = (1 << kBits) - 1, kBias = 80;
+    static constexpr int kLeast = 1 - kBias, kMost = 127 - kBias; // exponents
+    static constexpr int kMarks = 14;                             // bit of the last word
 
-    std::array<std::uint16_t, 3> words_{}; // mantissa below, bits of the exponent above, three a word; the mark on top
+    // Mantissa below, bits of the exponent above: three in the first two words, and one in the last, with the marks.
+    std::array<std::uint16_t, 3> words_{};
 };
 
 } // namespace keyhole

@@ -61,12 +61,13 @@ struct BsdfTraits {
     bool delta = false;   ///< has S parts
     bool diffuse = false; ///< of its finite part something follows from irradiance alone: Bsdf::diffuse_reflectance()
     bool glossy = false;  ///< and something doesn't
+    bool through = false; ///< its finite part sends light through the surface
     ClearGlass clear = ClearGlass::none; ///< the clearest glass that it may be, where it is flat
 
     /// What either has.
     friend constexpr BsdfTraits operator|(const BsdfTraits& a, const BsdfTraits& b) {
-        return {a.finite || b.finite, a.delta || b.delta, a.diffuse || b.diffuse, a.glossy || b.glossy,
-                std::max(a.clear, b.clear)};
+        return {a.finite || b.finite, a.delta || b.delta,     a.diffuse || b.diffuse,
+                a.glossy || b.glossy, a.through || b.through, std::max(a.clear, b.clear)};
     }
 };
 

@@ -73,7 +73,7 @@ std::vector<std::string> warnings(int spots, std::int64_t passes) {
     const PilotSurroundings surroundings(map.pilots(), patches, LookupOptions{}.nearest, 0.1f, 1);
     const GatherRays rays(*scene, {.caustic = &map, .caustic_surroundings = &surroundings, .patches = &patches},
                           {.max_radius = 0.1f, .caustic_radius = 0.1f}, 24);
-    const FinalGather gather(rays, nullptr, {.light = 4, .rays = 1});
+    const FinalGather gather(rays, nullptr, nullptr, {.light = 4, .rays = 1});
     RenderStats stats;
     stats.photons_caustic = map.main_photons().photons().size();
     report_false_spots(gather, 1, stats);

@@ -54,11 +54,17 @@ class SpotRecords : public testing::Test {
     HotSpots spots_{rays_, 1 << 16, 1, {}};
 };
 
+bool lies_in_one(const Vec3& place, const HotSpots& spots) {
+    for (int i = 0; i < static_cast<int>(spots.size()); ++i)
+        if (spots.contains(i, place)) return true;
+    return false;
+}
+
 TEST_F(SpotRecords, FindWhatIsBrightAndSmall) {
     EXPECT_GE(spots_.size(), 1u);
-    EXPECT_GE(spots_.spot_at({3.55f, 3.55f, 0.2f}), 0);
-    EXPECT_EQ(spots_.spot_at({0.5f, 0.5f, 0}), -1);
-    EXPECT_EQ(spots_.spot_at(Vec3(std::numeric_limits<float>::infinity())), -1);
+    EXPECT_TRUE(lies_in_one({3.55f, 3.55f, 0.2f}, spots_));
+    EXPECT_FALSE(lies_in_one({0.5f, 0.5f, 0}, spots_));
+    EXPECT_FALSE(lies_in_one(Vec3(std::numeric_limits<float>::infinity()), spots_));
 }
 
 TEST_F(SpotRecords, HaveTheSameMeanAndLessVariance) {
@@ -76,6 +82,24 @@ TEST_F(SpotRecords, HaveTheSlopeThatTheirNeighboursShow) {
     const Records a = make(spots_, left), b = make(spots_, right), middle = make(spots_, from_);
     const double difference = (b.irradiance.mean() - a.irradiance.mean()) / 0.8;
     EXPECT_NEAR(middle.slope, difference, 0.25 * std::abs(difference));
+}
+
+// A small globe around a lamp, in a long room: few rays meet it, and find it ten times as bright here as there.
+TEST(HotSpots, AreFoundByAFewRaysOfUnlikeBrightness) {
+    const Vec3 lamp(1.5f, 2.4f, 6), globe = lamp - Vec3(0, 0.05f, 0);
+    const auto half = constant_texture(Rgb(0.5));
+    test::SceneMaker m;
+    const auto scene = m.room({0, 0, 0}, {3, 3, 9}, make_diffuse(Rgb(0.6)))
+                           .rectangle(lamp, {0.02f, 0, 0}, {0, 0, 0.02f}, make_diffuse(Rgb(0.0)), Rgb(2000.0))
+                           .sphere(globe, 0.1f, make_diffuse_transmission(half, half))
+                           .camera({1.5f, 1.5f, 0.3f}, {1.5f, 1.2f, 9}, 70)
+                           .window(64, 64)
+                           .build();
+    const GatherRays rays(*scene, {}, {.max_radius = 0.1f, .caustic_radius = 0.1f}, 24);
+    int found = 0;
+    for (std::uint64_t seed = 1; seed <= 10; ++seed)
+        if (lies_in_one(globe - Vec3(0.1f, 0, 0), HotSpots(rays, 1 << 14, seed, {}))) ++found;
+    EXPECT_GE(found, 8);
 }
 
 TEST(HotSpots, AreNoneWhereLightIsEven) {

@@ -2,6 +2,7 @@
 
 #include "core/shared_work.h"
 #include "core/statistics.h"
+#include "gather/bright_balls.h"
 #include "methods/method.h"
 #include "sampling/paths/image_lattice.h"
 #include "sampling/paths/path_tracer.h"
@@ -16,8 +17,9 @@ namespace {
 /// Light outside gather coverage is of no account below these shares: of what arrives from the emitters, and of the
 /// indirect light that is seen.
 constexpr double kLeastLight = 0.01, kLeastSeen = 0.1;
-/// Variance of what a single gather ray finds outside gather coverage, relative to the square of all indirect light.
-/// Above this, thousands of rays still leave more noise than a density estimate from photons would.
+/// Variance of what a single gather ray finds outside gather coverage, relative to the square of all indirect light and
+/// where rays are aimed at what is small and bright. Above this, thousands of rays still leave more noise than a
+/// density estimate from photons would.
 constexpr double kBearable = 40;
 
 constexpr std::uint64_t kSeed = 1; // as GatherCoverage: the choice doesn't change with the seed
@@ -37,21 +39,29 @@ struct GatheredLight {
     using LooksThroughGlass = std::true_type;
     const PathSet* set = nullptr;
     double near = 0, beyond = 0;
+    Vec3 place{0, 0, 0}; ///< that it met
+    float distance = 0;  ///< to there [m]; 0: it brought nothing
 
     static bool arrival(const EyeWalk& /*walk*/, const Rgb& /*throughput*/, int /*finite*/) { return true; }
     void contribution(EyeWalk& walk, const Vertex& x0, const Rgb& value, LightClass light) {
-        if (light == LightClass::second || light == LightClass::indirect)
-            (is_d2_covered(*set, walk, x0) ? near : beyond) += luminance(value);
+        if (light != LightClass::second && light != LightClass::indirect) return;
+        (is_d2_covered(*set, walk, x0) ? near : beyond) += luminance(value);
+        place = walk[walk.d1 + 1].point.p;
+        distance = (place - walk[walk.d1].point.p).length();
     }
 };
 
+/// A lampshade is met by few rays as well, but records look at it with rays of their own (HotSpots).
 bool too_noisy(std::span<const GatheredLight> rays) {
     RunningStats all, beyond;
+    std::vector<Finding> findings;
     for (const GatheredLight& ray : rays) {
         all.add(ray.near + ray.beyond);
         beyond.add(ray.beyond);
+        findings.push_back({ray.place, ray.distance, ray.beyond});
     }
-    return beyond.mean() > kLeastSeen * all.mean() && beyond.variance() > kBearable * all.mean() * all.mean();
+    return beyond.mean() > kLeastSeen * all.mean() &&
+           beyond.variance() * find_bright_balls(findings).left > kBearable * all.mean() * all.mean();
 }
 
 /// How many rays that all found as much would be as good a sample of the light outside gather coverage.

@@ -83,16 +83,17 @@ PassGather::PassGather(const SamplerContext& c, const RenderPlan& plan, std::int
         RaysOfRecords decide;
         if (context.by_time && context.communicator == nullptr)
             decide = [&](const PlacedRecords& placed) { return rays_worth_their_time(placed, samples, context); };
-        cache_ = fill_cache(*rays_, options, context.with_reserve(kForSamples), decide);
+        spots_ = find_hot_spots(*rays_, options, context);
+        cache_ = fill_cache(*rays_, spots_, options, context.with_reserve(kForSamples), decide);
     }
-    gather_.emplace(*rays_, cache_ ? &*cache_ : nullptr, samples);
+    gather_.emplace(*rays_, cache_ ? &*cache_ : nullptr, &spots_, samples);
 }
 
 /// The squared error of the picture is C / R + A / S with R rays of records and S samples of pixels, which share the
 /// time as c R + s S. It is least where the derivatives by time are the same for both.
 int PassGather::rays_worth_their_time(const PlacedRecords& placed, const GatherSamples& samples,
                                       const RunContext& context) const {
-    const FinalGather gather(*rays_, &placed.cache, samples);
+    const FinalGather gather(*rays_, &placed.cache, &spots_, samples);
     const double start = context.stop->seconds_left();
     const auto noise = noise_of(gather, window_, seed_);
     const double left = context.stop->seconds_left();
@@ -104,9 +105,9 @@ int PassGather::rays_worth_their_time(const PlacedRecords& placed, const GatherS
     return static_cast<int>(std::clamp(rays, static_cast<double>(placed.rays), kMostMoreRays * placed.rays));
 }
 
-void PassGather::report(RenderStats& stats) const {
+void PassGather::report(RenderStats& stats, bool check_for_false_spots) const {
     if (cache_) report_cache(*cache_, gather_->starving(), stats);
-    if (!caustic_.main_photons().photons().empty()) report_false_spots(*gather_, seed_, stats);
+    if (check_for_false_spots && !caustic_.main_photons().photons().empty()) report_false_spots(*gather_, seed_, stats);
     stats.photon_quality.noise = noise_of(*gather_, window_, seed_);
 }
 

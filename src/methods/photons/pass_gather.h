@@ -38,7 +38,7 @@ class PassGather {
     const IrradianceMap* irradiance() const { return irradiance_ ? &*irradiance_ : nullptr; }
 
     /// Says what the samples have shown of the cache, how noisy they are, and looks for spots that are not there.
-    void report(RenderStats& stats) const;
+    void report(RenderStats& stats, bool check_for_false_spots) const;
 
   private:
     int rays_worth_their_time(const PlacedRecords& placed, const GatherSamples& samples,
@@ -52,6 +52,7 @@ class PassGather {
     std::optional<DirectIrradianceCache> direct_irradiance_;
     std::optional<PilotSurroundings> caustic_surroundings_;
     std::optional<GatherRays> rays_;
+    HotSpots spots_;
     std::optional<IrradianceCache> cache_;
     std::optional<FinalGather> gather_;
 };

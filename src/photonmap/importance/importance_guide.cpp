@@ -18,7 +18,14 @@ std::vector<Photon> ImportanceGuide::some(const PhotonMap& importons) {
 }
 
 std::optional<double> ImportanceGuide::visible_power(const Vertex& v, const Vec3& to_light, const Rgb& power) const {
-    const auto answer = map_.irradiance(v.point.p, facing(v.point.ng, to_light));
+    const Vec3 side = facing(v.point.ng, to_light);
+    // What goes through is wanted on the other side, too: the better of the two tells.
+    auto answer = map_.irradiance(v.point.p, side);
+    if (v.bsdf.traits().through) {
+        const auto behind = map_.irradiance(v.point.p, -side);
+        if (!answer.known || (behind.known && luminance(behind.irradiance) > luminance(answer.irradiance)))
+            answer = behind;
+    }
     if (!answer.known) return std::nullopt;
     // Where light leaves is not known here: a diffuse part doesn't mind, and what a glossy one reflects in all is taken
     // to leave evenly.

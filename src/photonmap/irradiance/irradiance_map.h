@@ -80,12 +80,12 @@ class IrradianceMap {
         Estimate() = default;
         /// `obstructed`, bit i: something may stand on the region of radius / 2^i.
         Estimate(const Rgb& e, bool caustics, float radius, double area_share, std::uint8_t obstructed)
-            : irradiance_(e, caustics), obstructed_(obstructed),
+            : irradiance_(e, caustics ? 1 : 0), obstructed_(obstructed),
               area_share_(static_cast<std::uint8_t>(std::lround(255 * std::clamp(area_share, 0.0, 1.0)))),
               radius_(static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(radius) >> 16)) {}
 
         Rgb irradiance() const { return irradiance_.decode(); }
-        bool has_caustics() const { return irradiance_.marked(); }
+        bool has_caustics() const { return irradiance_.marks() != 0; }
         unsigned obstructed() const { return obstructed_; }
         double area_share() const { return area_share_ / 255.0; }
         /// At most the one given, and at least 127/128 of it [m].

@@ -49,14 +49,16 @@ class GatherCoverage {
     std::vector<Vec3> probees_; // above() the ends of rays in a cell and those around it
 };
 
-/// Whether gather rays come to `v` on the side of the unit direction `w`, which vertices are asked about once: the
-/// answer is kept there. `coverage` null: they come everywhere.
+/// Whether gather rays come to `v` on the side of the unit direction `w`, or on any where light goes through. Vertices
+/// are asked once: the answer is kept there. `coverage` null: they come everywhere.
 inline bool is_covered(const GatherCoverage* coverage, Vertex& v, const Vec3& w) {
     if (coverage == nullptr) return true;
     const std::uint8_t side = KnownCoverage::side(v.point.ng, w);
     if ((v.coverage.asked & side) == 0) {
         v.coverage.asked |= side;
-        if (coverage->comes_to(v.point.p, facing(v.point.ng, w))) v.coverage.covered |= side;
+        const Vec3 n = facing(v.point.ng, w);
+        if (coverage->comes_to(v.point.p, n) || (v.bsdf.traits().through && coverage->comes_to(v.point.p, -n)))
+            v.coverage.covered |= side;
     }
     return (v.coverage.covered & side) != 0;
 }

@@ -12,6 +12,7 @@ namespace keyhole {
 struct LightPast {
     struct Place {
         Vec3 p, n;                   ///< world space; geometric normal on the side where light arrived
+        bool through;                ///< whether the surface sends light through
         int index;                   ///< of the vertex from the light's end, as in DiffuseVertices
         std::optional<bool> covered; ///< whether gather rays come to it, if that was asked
     };
@@ -39,7 +40,7 @@ struct LightPast {
             if (!last) straight_.meet(v, -to_light);
             return;
         }
-        last = {v.point.p, facing(v.point.ng, to_light), scatterings, {}};
+        last = {v.point.p, facing(v.point.ng, to_light), v.bsdf.traits().through, scatterings, {}};
         const std::uint8_t side = KnownCoverage::side(v.point.ng, to_light);
         if ((v.coverage.asked & side) != 0) last->covered = (v.coverage.covered & side) != 0;
     }

@@ -29,7 +29,7 @@ struct RoughDielectricBsdf {
     StoredRgb reflect_tint{Rgb(1.0)};
     StoredRgb transmit_tint{Rgb(1.0)};
 
-    static constexpr BsdfTraits traits() { return {.finite = true, .glossy = true}; }
+    static constexpr BsdfTraits traits() { return {.finite = true, .glossy = true, .through = true}; }
 
     Rgb eval(const Vec3& to_light, const Vec3& to_eye) const;
     double pdf(const Vec3& from, const Vec3& to) const;

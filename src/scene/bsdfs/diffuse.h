@@ -33,7 +33,7 @@ struct DiffuseBsdf {
 struct DiffuseTransmissionBsdf {
     StoredRgb reflectance, transmittance;
 
-    static constexpr BsdfTraits traits() { return {.finite = true, .glossy = true}; }
+    static constexpr BsdfTraits traits() { return {.finite = true, .glossy = true, .through = true}; }
 
     Rgb eval(const Vec3& to_light, const Vec3& to_eye) const {
         const double sides = static_cast<double>(to_light.z) * to_eye.z;

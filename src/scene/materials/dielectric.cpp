@@ -54,7 +54,7 @@ MaterialPtr make_dielectric(double eta, FloatTexture alpha_x, FloatTexture alpha
                             ColorTexture transmit_tint) {
     checked_index(eta);
     return make_material(
-        "dielectric", {.finite = true, .delta = true, .glossy = true, .clear = ClearGlass::face},
+        "dielectric", {.finite = true, .delta = true, .glossy = true, .through = true, .clear = ClearGlass::face},
         [=](const SurfacePoint& point) -> Bsdf::Model {
             const auto rough = rough_at(alpha_x, alpha_y, point);
             const Rgb reflect = clamp01(reflect_tint->value(point)), transmit = clamp01(transmit_tint->value(point));

@@ -60,7 +60,7 @@ Bsdf::Model opaque_model(const PrincipledTextures& t, const SurfacePoint& point)
 }
 
 MaterialPtr make_opaque(const PrincipledTextures& t) {
-    constexpr BsdfTraits kAny{.finite = true, .delta = true, .diffuse = true, .glossy = true};
+    constexpr BsdfTraits kAny{.finite = true, .delta = true, .diffuse = true, .glossy = true, .through = true};
     return make_material(
         "principled", kAny, [t](const SurfacePoint& point) { return opaque_model(t, point); }, t.base_color, t.metallic,
         t.alpha_x, t.alpha_y, t.specular, t.specular_tint, t.clearcoat, t.clearcoat_alpha, t.sheen, t.sheen_tint);

@@ -1,0 +1,63 @@
+// Lampshades and ground glass: light that surfaces scatter on to their other side is found by methods with photon maps.
+#include "methods/method.h"
+#include "scene/emitters/emitters.h"
+#include "support/same_light.h"
+#include "support/window_room.h"
+
+#include <gtest/gtest.h>
+
+namespace keyhole {
+namespace {
+
+ColorTexture color(double value) { return constant_texture(Rgb(value)); }
+FloatTexture value(double x) { return constant_texture(x); }
+
+/// A lamp in a globe, which scatters light on both sides.
+std::unique_ptr<Scene> room_with_a_globe() {
+    test::SceneMaker m = test::room_with_a_window();
+    const Vec3 lamp(1.5f, 1.9f, 1.2f);
+    m.rectangle({1, 1, 0}, {0, 0.8f, 0}, {0.8f, 0, 0}, make_diffuse(Rgb(0.6)));
+    m.rectangle(lamp - Vec3(0.03f, 0, 0.03f), {0, 0, 0.06f}, {0.06f, 0, 0}, make_diffuse(Rgb(0.2)), Rgb(300.0), true);
+    m.sphere(lamp, 0.15f, make_diffuse_transmission(color(0.4), color(0.5)));
+    m.rectangle({0, 0.01f, 0}, {0, 0, 3}, {3, 0, 0},
+                make_coated_diffuse(color(0.4), value(0.2), value(0.2), 1.5, value(0)));
+    m.camera({2.7f, 1.5f, 2.8f}, {0.8f, 0.7f, 0.4f}, 60).window(48, 32);
+    return m.build();
+}
+
+/// A pane of ground glass, 2 cm thick, in the window, and a lamp in the room.
+std::unique_ptr<Scene> room_with_ground_glass() {
+    test::SceneMaker m = test::room_with_a_window();
+    const auto glass = make_dielectric(1.5, value(0.3), value(0.3));
+    m.rectangle({0.9f, 0.9f, -0.07f}, {0, 1, 0}, {1, 0, 0}, glass);
+    m.rectangle({0.9f, 0.9f, -0.05f}, {1, 0, 0}, {0, 1, 0}, glass);
+    m.emitter(make_constant_environment(Rgb(3.0, 4.0, 5.0)));
+    m.rectangle({2.2f, 2.3f, 2}, {0.2f, 0, 0}, {0, 0, 0.2f}, make_diffuse(Rgb(0.0)), Rgb(8.0));
+    m.camera({2.7f, 1.5f, 2.8f}, {0.8f, 1.0f, 0.2f}, 60).window(48, 32);
+    return m.build();
+}
+
+void expect_the_same_by_all(Scene& scene) {
+    Settings base;
+    base.max_depth = 10;
+    base.spp = 8;
+    base.brightness_samples = 20'000;
+    base.importons = 15'000;
+    base.mutations = 120'000;
+    base.light_paths = 80'000;
+    base.photons = 40'000;
+    base.chains = 200;
+    base.cache_rays = 150;
+    Settings paths = base;
+    paths.method = &methods::bdpt;
+    paths.spp = 128;
+    test::expect_same_light(scene, paths, test::by_methods(base, {"pm", "ipm", "mps"}), 4);
+    base.gather_coverage = false;
+    test::expect_same_light(scene, paths, test::by_methods(base, {"ipm"}), 4);
+}
+
+TEST(LightThrough_AGlobe, IsTheSameByAllMethods) { expect_the_same_by_all(*room_with_a_globe()); }
+TEST(LightThrough_GroundGlass, IsTheSameByAllMethods) { expect_the_same_by_all(*room_with_ground_glass()); }
+
+} // namespace
+} // namespace keyhole
