@@ -6,10 +6,10 @@ import bpy
 import numpy as np
 
 HEADER = struct.Struct("<8sIIQqq4QQ")
-VERSION = 5
+VERSION = 6
 PHOTON = np.dtype([("position", "<f4", 3), ("power", "<u2", 3), ("direction", "<i2", 2), ("normal", "i1", 2)])
-BITS, BIAS = 13, 128  # of the shared exponent: see src/photonmap/quantised.h
-MARK = 1 << 8  # the bit above that exponent: whether it is a caustic photon
+BITS, BIAS = 13, 80  # of the shared exponent: see src/photonmap/quantised.h
+MARKS = 1 << 7  # the bits above that exponent: of a caustic photon, and of one that came from behind
 NAME = "Keyhole Photons"
 
 
@@ -24,7 +24,7 @@ def read(path):
         raise ValueError(f"found a photon map of version {version}, expected version {VERSION}")
     photons = np.frombuffer(data, PHOTON, sum(counts), HEADER.size)
     words = photons["power"].astype(np.int64)
-    exponent = ((words >> BITS) << (3 * np.arange(3))).sum(1) % MARK - BIAS - BITS
+    exponent = ((words >> BITS) << (3 * np.arange(3))).sum(1) % MARKS - BIAS - BITS
     powers = (words & ((1 << BITS) - 1)) * np.exp2(exponent)[:, None]
     return photons["position"], powers / max(powers.mean(), 1e-300) if len(powers) else powers
 

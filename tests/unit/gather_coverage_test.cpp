@@ -90,6 +90,32 @@ TEST(GatherCoverage, IsSoughtWhereAFinalGatherWouldBeNoise) {
     EXPECT_FALSE(find_coverage(*test::two_rooms(0.01f), standard).coverage.has_value());
 }
 
+// Few rays meet the globe of a lamp, and none its inside, where the light comes to it; but records aim at it.
+TEST(GatherCoverage, IsNotSoughtForALampInAGlobe) {
+    const Vec3 lamp(1.5f, 2.4f, 6);
+    const auto half = constant_texture(Rgb(0.5));
+    test::SceneMaker m;
+    const auto scene = m.room({0, 0, 0}, {3, 3, 9}, make_diffuse(Rgb(0.6)))
+                           .rectangle(lamp, {0.03f, 0, 0}, {0, 0, 0.03f}, make_diffuse(Rgb(0.0)), Rgb(2000.0), true)
+                           .sphere(lamp, 0.12f, make_diffuse_transmission(half, half))
+                           .camera({1.5f, 1.5f, 0.3f}, {1.5f, 1.2f, 9}, 70)
+                           .window(64, 64)
+                           .build();
+    EXPECT_FALSE(find_coverage(*scene, {}).coverage.has_value());
+}
+
+TEST(GatherCoverage, ComesToBothSidesOfACurtain) {
+    test::SceneMaker m;
+    const auto half = constant_texture(Rgb(0.5));
+    const auto scene = m.room({0, 0, 0}, {3, 3, 6}, make_diffuse(Rgb(0.6)))
+                           .rectangle({0, 0, 2}, {3, 0, 0}, {0, 3, 0}, make_diffuse_transmission(half, half))
+                           .camera({1.5f, 1.5f, 5.7f}, {1.5f, 1.2f, 2}, 70)
+                           .window(64, 64)
+                           .build();
+    const GatherCoverage coverage(*scene, kDepth);
+    for (const float z : {1.0f, -1.0f}) EXPECT_TRUE(coverage.comes_to({1.5f, 1, 2}, {0, 0, z}));
+}
+
 TEST(GatherCoverage, SplitsPathsAndLosesNone) {
     const auto scene = test::two_rooms(0.3f);
     const GatherCoverage coverage(*scene, kDepth);
