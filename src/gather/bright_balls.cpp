@@ -14,6 +14,7 @@ constexpr std::size_t kFew = 4;       // fewer bright rays may have come from an
 constexpr double kLeastShare = 0.002; // of the second moment of what rays bring
 constexpr double kContrast = 10;      // that share over the one of all directions that a ball fills
 constexpr double kGain = 0.8;         // deviation that balls for either part leave over that of one for all, at most
+constexpr double kSmallest = 0.002;   // radius over the distance of what rays meet
 constexpr int kDepth = 12;            // divisions on top of each other
 
 /// Of a ball about so many findings, over the distance of the farthest: others would be met farther out.
@@ -165,7 +166,8 @@ class Division {
             const Finding& farthest = findings[n - 1];
             inside += square(farthest);
             if (n < kFew) continue;
-            const Ball ball{centre, margin(n) * (farthest.place - centre).length(), n};
+            const float reach = margin(n) * (farthest.place - centre).length();
+            const Ball ball{centre, std::max(reach, static_cast<float>(kSmallest * distance_)), n};
             const double left = left_by(ball, inside, all).deviation();
             if (left < least) {
                 least = left;

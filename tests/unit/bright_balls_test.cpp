@@ -78,5 +78,11 @@ TEST(BrightBalls, AreWiderAroundFewerFindings) {
     EXPECT_TRUE(Findings().add(3, {1, 1, 1}, 0.2f, 300).balls().balls.empty()) << "three may be anywhere";
 }
 
+TEST(BrightBalls, FillSomeDirectionsWhereAllWasFoundAtOnePlace) {
+    const BrightBalls found = Findings().add(30, {1, 1, 1}, 0, 300).balls();
+    ASSERT_EQ(found.balls.size(), 1u);
+    EXPECT_GT(found.balls[0].radius, 0);
+}
+
 } // namespace
 } // namespace keyhole
