@@ -51,6 +51,19 @@ TEST(TrialErrors, MissLightThatTwoRendersAgreeNotToFind) {
     EXPECT_GT(e[1].missing, 0.1) << "half of the picture lacks two thirds of its light";
 }
 
+TEST(TrialErrors, AreNoSmallerForALampInView) {
+    std::vector<TrialPictures> methods{halves(0.3, 0, 1, 1), halves(0.05, 0.2, 1, 2), halves(0.02, 0, 0.3, 4)};
+    const std::vector<TrialError> without = trial_errors(methods);
+    for (TrialPictures& m : methods) *m.first.at(5, 5) = *m.second.at(5, 5) = 1e5f;
+    const std::vector<TrialError> with = trial_errors(methods);
+    for (std::size_t i = 0; i < methods.size(); ++i) {
+        // A few pixels around it are compared with the lamp.
+        EXPECT_NEAR(with[i].grain, without[i].grain, 0.1 * without[i].grain + 1e-3);
+        EXPECT_NEAR(with[i].blotches, without[i].blotches, 0.1 * without[i].blotches + 1e-3);
+        EXPECT_NEAR(with[i].missing, without[i].missing, 0.2 * without[i].missing + 1e-3);
+    }
+}
+
 TEST(TrialErrors, OfBlackPicturesAreThatEverythingIsMissing) {
     const std::vector<TrialPictures> methods{{Image(kWidth, kHeight, 1), Image(kWidth, kHeight, 1)},
                                              halves(0.1, 0, 1, 5)};

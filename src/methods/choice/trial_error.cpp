@@ -12,9 +12,11 @@ namespace {
 constexpr int kBlock = 4;      // pixels
 constexpr int kParts = 4;      // of the picture, each way, in which light may be missing
 constexpr int kSmooth = 3;     // pixels, each way: a pixel's noise must not be what it is compared with
-constexpr double kDark = 0.01; // squared mean of the picture that is added to a pixel's square
+constexpr double kDark = 0.01; // squared mean of the picture, lamps in view left out, that is added to a pixel's square
 // Share of the pixels, those with the largest errors, that are left out: more than of a picture, for pixels are larger.
 constexpr double kTrimmed = 0.01;
+// Share of the pixels, the brightest, that may show lamps, or be blurred with one.
+constexpr double kLamps = 0.1;
 constexpr double kStandardErrors = 2; // that two means differ by before light is missing
 
 using Values = std::vector<double>;
@@ -28,6 +30,9 @@ double trimmed_mean(Values v, double trimmed) {
     v.resize(v.size() - static_cast<std::size_t>(std::ceil(trimmed * static_cast<double>(v.size()))));
     return mean(v);
 }
+
+/// Brightness of a picture without its brightest pixels: beside a lamp in view everything else would be dark.
+double typical(const Values& picture) { return trimmed_mean(picture, kLamps); }
 
 /// A grid of numbers, row by row.
 struct Grid {
@@ -80,7 +85,7 @@ Grid difference_of(const TrialPictures& m) {
 
 /// Half the squared difference is the variance of one of two. Relative to `picture`.
 double relative_variance(const Grid& difference, const Grid& picture, double trimmed = kTrimmed) {
-    const double dark = kDark * mean(picture.values) * mean(picture.values);
+    const double dark = kDark * typical(picture.values) * typical(picture.values);
     Values v;
     for (std::size_t i = 0; i < difference.values.size(); ++i) {
         const double d = difference.values[i], p = picture.values[i];
@@ -156,7 +161,7 @@ std::vector<TrialError> trial_errors(std::span<const TrialPictures> methods) {
     for (const Parts& p : parts)
         for (std::size_t i = 0; i < least.size(); ++i)
             least[i] = std::max(least[i], p.means.values[i] - kStandardErrors * p.errors.values[i]);
-    const double whole = mean(picture.values);
+    const double whole = typical(picture.values);
     for (std::size_t k = 0; k < methods.size(); ++k) {
         const Grid d = difference_of(methods[k]);
         const double pixel = relative_variance(d, smooth);
