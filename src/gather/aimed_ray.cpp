@@ -4,7 +4,6 @@
 #include "scene/warp.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace keyhole {
 namespace {

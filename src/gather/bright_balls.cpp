@@ -38,12 +38,16 @@ double moment2(std::span<const Finding> findings) {
     return sum;
 }
 
+void sort_along(int axis, std::span<Finding> findings) {
+    std::ranges::stable_sort(findings, {}, [axis](const Finding& f) { return f.place[axis]; });
+}
+
 /// Where half of the second moment lies on either side, along each axis.
 Vec3 median(std::span<Finding> findings) {
     const double half = moment2(findings) / 2;
     Vec3 middle(0);
     for (int axis = 0; axis < 3; ++axis) {
-        std::ranges::stable_sort(findings, {}, [axis](const Finding& f) { return f.place[axis]; });
+        sort_along(axis, findings);
         double before = 0;
         for (const Finding& f : findings) {
             middle[axis] = f.place[axis];
@@ -81,9 +85,6 @@ double typical_distance(std::span<const Finding> findings) {
 
 /// Sorts findings so that the two parts are as compact as can be, and returns the size of the first.
 std::size_t split(std::span<Finding> findings) {
-    const auto sort = [&](int axis) {
-        std::ranges::stable_sort(findings, {}, [axis](const Finding& f) { return f.place[axis]; });
-    };
     /// The second moment times the variance of places.
     struct Sums {
         double all = 0, of_squares = 0;
@@ -100,7 +101,7 @@ std::size_t split(std::span<Finding> findings) {
     std::size_t best = kFew;
     int best_axis = 0;
     for (int axis = 0; axis < 3; ++axis) {
-        sort(axis);
+        sort_along(axis, findings);
         std::vector<double> before;
         Sums sums;
         for (const Finding& f : findings) {
@@ -117,7 +118,7 @@ std::size_t split(std::span<Finding> findings) {
             }
         }
     }
-    sort(best_axis);
+    sort_along(best_axis, findings);
     return best;
 }
 
@@ -137,8 +138,9 @@ class Division {
         if (depth < kDepth && findings.size() >= 2 * kFew) {
             std::vector<BrightBall> parts;
             const std::size_t first = split(findings);
-            const Left by_two =
-                divide(findings.first(first), depth + 1, parts) + divide(findings.subspan(first), depth + 1, parts);
+            // One after the other: both add to the parts.
+            const Left by_first = divide(findings.first(first), depth + 1, parts);
+            const Left by_two = by_first + divide(findings.subspan(first), depth + 1, parts);
             if (by_two.deviation() < kGain * by_one.deviation()) {
                 balls.insert(balls.end(), parts.begin(), parts.end());
                 return by_two;

@@ -36,8 +36,7 @@ struct StorageRule {
         const auto covered = [&] { return is_covered(coverage, v, to_light); };
         const auto last_covered = [&] {
             if (coverage == nullptr || past.last->covered) return coverage == nullptr || *past.last->covered;
-            return coverage->comes_to(past.last->p, past.last->n) ||
-                   (past.last->through && coverage->comes_to(past.last->p, -past.last->n));
+            return coverage->asks_for(past.last->p, past.last->n, past.last->through);
         };
         return {here < max_scatterings && stores_in(PhotonKind::global, as_d2, covered),
                 caustics && stores_in(PhotonKind::caustic, as_d1, last_covered)};

@@ -54,14 +54,15 @@ struct GatheredLight {
 /// A lampshade is met by few rays as well, but records look at it with rays of their own (HotSpots).
 bool too_noisy(std::span<const GatheredLight> rays) {
     RunningStats all, beyond;
-    std::vector<Finding> findings;
     for (const GatheredLight& ray : rays) {
         all.add(ray.near + ray.beyond);
         beyond.add(ray.beyond);
-        findings.push_back({ray.place, ray.distance, ray.beyond});
     }
-    return beyond.mean() > kLeastSeen * all.mean() &&
-           beyond.variance() * find_bright_balls(findings).left > kBearable * all.mean() * all.mean();
+    const double bearable = kBearable * all.mean() * all.mean();
+    if (!(beyond.mean() > kLeastSeen * all.mean() && beyond.variance() > bearable)) return false;
+    std::vector<Finding> findings;
+    for (const GatheredLight& ray : rays) findings.push_back({ray.place, ray.distance, ray.beyond});
+    return beyond.variance() * find_bright_balls(findings).left > bearable;
 }
 
 /// How many rays that all found as much would be as good a sample of the light outside gather coverage.

@@ -28,6 +28,10 @@ class GatherCoverage {
 
     /// Whether rays come near `p` on the side of the unit geometric normal `n`.
     bool comes_to(const Vec3& p, const Vec3& n) const;
+    /// Whether rays that can ask for light on that side do: where the surface lets light through, those on either.
+    bool asks_for(const Vec3& p, const Vec3& n, bool through) const {
+        return comes_to(p, n) || (through && comes_to(p, -n));
+    }
 
   private:
     /// Around which rays end often enough.
@@ -56,9 +60,7 @@ inline bool is_covered(const GatherCoverage* coverage, Vertex& v, const Vec3& w)
     const std::uint8_t side = KnownCoverage::side(v.point.ng, w);
     if ((v.coverage.asked & side) == 0) {
         v.coverage.asked |= side;
-        const Vec3 n = facing(v.point.ng, w);
-        if (coverage->comes_to(v.point.p, n) || (v.bsdf.traits().through && coverage->comes_to(v.point.p, -n)))
-            v.coverage.covered |= side;
+        if (coverage->asks_for(v.point.p, facing(v.point.ng, w), v.bsdf.traits().through)) v.coverage.covered |= side;
     }
     return (v.coverage.covered & side) != 0;
 }
