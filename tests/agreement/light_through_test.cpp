@@ -37,6 +37,20 @@ std::unique_ptr<Scene> room_with_ground_glass() {
     return m.build();
 }
 
+/// A room divided by two sheets of cloth, 3 mm apart, a lamp behind them. What arrives at the one from the lamp's side
+/// and at the other from between them lies side by side on surfaces that look the same way, and is several times as
+/// bright on the one as on the other.
+std::unique_ptr<Scene> room_divided_by_double_cloth() {
+    test::SceneMaker m;
+    const auto cloth = make_diffuse_transmission(color(0.3), color(0.3));
+    m.room({0, 0, 0}, {3, 2.5f, 3}, make_diffuse(Rgb(0.6)));
+    m.rectangle({0, 0, 1}, {0, 2.5f, 0}, {3, 0, 0}, cloth);
+    m.rectangle({0, 0, 1.003f}, {3, 0, 0}, {0, 2.5f, 0}, cloth);
+    m.rectangle({1, 1, 0.4f}, {0, 0.5f, 0}, {0.5f, 0, 0}, make_diffuse(Rgb(0.0)), Rgb(100.0)); // faces the far wall
+    m.camera({2.7f, 1.5f, 2.8f}, {1.3f, 1.2f, 1}, 60).window(48, 32);
+    return m.build();
+}
+
 void expect_the_same_by_all(Scene& scene) {
     Settings base;
     base.max_depth = 10;
@@ -58,6 +72,7 @@ void expect_the_same_by_all(Scene& scene) {
 
 TEST(LightThrough_AGlobe, IsTheSameByAllMethods) { expect_the_same_by_all(*room_with_a_globe()); }
 TEST(LightThrough_GroundGlass, IsTheSameByAllMethods) { expect_the_same_by_all(*room_with_ground_glass()); }
+TEST(LightThrough_DoubleCloth, IsToldApartByFaces) { expect_the_same_by_all(*room_divided_by_double_cloth()); }
 
 } // namespace
 } // namespace keyhole

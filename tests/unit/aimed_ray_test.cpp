@@ -1,7 +1,11 @@
 // Gather rays of visible points that are aimed at hot spots: the same light with less noise.
+#include "gather/aimed_ray.h"
+
 #include "core/statistics.h"
 #include "gather/fill_cache.h"
 #include "gather/final_gather.h"
+#include "gather/visible_point.h"
+#include "scene/warp.h"
 #include "support/chance.h"
 #include "support/test_scenes.h"
 
@@ -41,6 +45,38 @@ class AimedGather : public testing::Test {
     GatherRays rays_{*scene_, {}, {.max_radius = 0.1f, .caustic_radius = 0.1f}, 24};
     HotSpots spots_{rays_, 1 << 16, 1, {}};
 };
+
+/// The irradiance of a cone of radiance 1, about twice as large as the one that is aimed at, by both techniques.
+TEST_F(AimedGather, DensityIsThatOfBothTechniques) {
+    Rng rng(7, StreamPurpose::test, 0);
+    const auto from = visible_point(rays_, {0.5f, 0.5f}, rng);
+    ASSERT_TRUE(from);
+    const Vec3 n = cache_normal(from->vertex, from->back);
+    const auto cones = spots_.cones_from(from->vertex.point.p, n);
+    ASSERT_EQ(cones.size(), 1u);
+    const SpotCone& aim = cones.front();
+    const double sine2 = 2 * (1 - aim.cos_half_angle * aim.cos_half_angle);
+    const auto irradiance_from = [&](const Vec3& w) {
+        return static_cast<double>(w.dot(aim.axis)) > std::sqrt(1 - sine2) ? static_cast<double>(w.dot(n)) : 0.0;
+    };
+
+    constexpr int kRays = 4;
+    const AimedRay aimed(&spots_, from->vertex, from->vertex.bsdf, from->back, 0, kRays);
+    const auto share = [&](const Vec3& w) {
+        return irradiance_from(w) / aimed.density(w, static_cast<double>(w.dot(n)) * kInvPi);
+    };
+    RunningStats sum;
+    for (int i = 0; i < 100'000; ++i) {
+        double found = 0;
+        for (int j = 0; j < kRays; ++j) {
+            const double u0 = rng.next(), u1 = rng.next();
+            found += share(Frame(n).to_world(cosine_hemisphere(u0, u1)));
+        }
+        if (const auto w = aimed.sample(rng)) found += share(*w);
+        sum.add(found);
+    }
+    EXPECT_TRUE(test::has_mean(sum, kPi * sine2 * static_cast<double>(aim.axis.dot(n))));
+}
 
 TEST_F(AimedGather, BringsTheSameWithoutRecords) {
     ASSERT_GE(spots_.size(), 1u);
