@@ -8,6 +8,17 @@ namespace {
 
 constexpr unsigned kSteps = 255, kParted = 256;
 
+/// The four bits above: nothing stands within max_radius / 2^(level - 1); 0: within no such distance that is known.
+constexpr unsigned kLevelShift = 9, kMostLevel = 15;
+
+/// Of a pilot photon's radius, how far it looks for what may stand around: lookups of about its radius reach so far.
+constexpr float kClear = 1.5f;
+
+float clear_distance(unsigned packed, float max_radius) {
+    const unsigned level = packed >> kLevelShift;
+    return level == 0 ? 0 : std::ldexp(max_radius, 1 - static_cast<int>(level));
+}
+
 } // namespace
 
 PilotSurroundings::PilotSurroundings(const PhotonMap& pilots, const SurfacePatches& patches, int k, float max_radius,
@@ -16,16 +27,27 @@ PilotSurroundings::PilotSurroundings(const PhotonMap& pilots, const SurfacePatch
       known_(pilots.photons().size()) {}
 
 bool PilotSurroundings::parted(const SurfaceRegion& region, const PilotedRegion& piloted) const {
-    return piloted.nearest ? (at(*piloted.nearest) & kParted) != 0 : own(region, piloted.radius).parted;
+    const auto packed = known_around(region, piloted);
+    return packed ? (*packed & kParted) != 0 : own(region, piloted.radius).parted;
 }
 
 Surroundings PilotSurroundings::around(const SurfaceRegion& region, const PilotedRegion& piloted) const {
     const float r = piloted.radius;
-    if (!piloted.nearest) return own(region, r);
-    const unsigned packed = at(*piloted.nearest), steps = packed & kSteps;
-    const bool parted = (packed & kParted) != 0;
+    const auto packed = known_around(region, piloted);
+    if (!packed) return own(region, r);
+    const unsigned steps = *packed & kSteps;
+    const bool parted = (*packed & kParted) != 0;
     if (!parted && steps < kSteps) return {patches_.area(region, r), false};
     return {kPi * static_cast<double>(r) * r * steps / kSteps, parted};
+}
+
+std::optional<PilotSurroundings::Packed> PilotSurroundings::known_around(const SurfaceRegion& region,
+                                                                         const PilotedRegion& piloted) const {
+    if (!piloted.nearest) return std::nullopt;
+    const Packed packed = at(*piloted.nearest);
+    const float distance = (pilots_[*piloted.nearest].position() - region.position).length();
+    const bool clear = distance + piloted.radius <= clear_distance(packed, max_radius_);
+    return clear || (packed & kParted) != 0 ? std::optional(packed) : std::nullopt;
 }
 
 PilotSurroundings::Packed PilotSurroundings::at(std::uint32_t pilot) const {
@@ -43,7 +65,11 @@ PilotSurroundings::Packed PilotSurroundings::measure(const Photon& pilot) const 
     const double share = around.area / (kPi * static_cast<double>(r) * r);
     // At least one step: a pilot photon lies on some surface, and 0 says that nobody asked.
     const auto steps = static_cast<unsigned>(std::lround(kSteps * std::clamp(share, 1.0 / kSteps, 1.0)));
-    return static_cast<Packed>(steps | (around.parted ? kParted : 0));
+    if (around.parted) return static_cast<Packed>(steps | kParted);
+    // The largest of the distances that is not too far.
+    const auto level = static_cast<unsigned>(std::clamp(std::log2(max_radius_ / (kClear * r)) + 1, 1.0f, static_cast<float>(kMostLevel)));
+    const bool clear = !patches_.obstructed(region, std::ldexp(max_radius_, 1 - static_cast<int>(level)));
+    return static_cast<Packed>(steps | (clear ? level << kLevelShift : 0));
 }
 
 Surroundings PilotSurroundings::own(const SurfaceRegion& region, float r) const {

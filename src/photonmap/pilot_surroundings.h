@@ -11,8 +11,9 @@ namespace keyhole {
 
 /// Remembers what surroundings_of() says around each pilot photon of a map, relative to the radius of the region there.
 /// A lookup takes the answer of the pilot photon nearest to it in place of its own, which takes eight to hundreds of
-/// rays on fine meshes, and there are hundreds of lookups for each pilot photon. Thread-safe: what is remembered
-/// depends on the pilot photon alone, whoever asks first.
+/// rays on fine meshes, and there are hundreds of lookups for each pilot photon; but not where a wall may part the two,
+/// or stand nearer to the lookup. Thread-safe: what is remembered depends on the pilot photon alone, whoever asks
+/// first.
 class PilotSurroundings {
   public:
     /// Refers to `pilots` and `patches`. The regions are those of queries for `k` photons within `max_radius` [m] that
@@ -28,8 +29,10 @@ class PilotSurroundings {
     std::size_t bytes() const { return known_.size() * sizeof(known_[0]); }
 
   private:
-    /// Share of the disc in steps of 1/255, and a flag; 0: nobody asked yet.
+    /// Share of the disc in steps of 1/255, a flag, and how far nothing stands around; 0: nobody asked yet.
     using Packed = std::uint16_t;
+    /// What is known around the lookup's region from the pilot photon nearest to it; none: that it has to measure.
+    std::optional<Packed> known_around(const SurfaceRegion& region, const PilotedRegion& piloted) const;
     Packed at(std::uint32_t pilot) const;
     Packed measure(const Photon& pilot) const;
     Surroundings own(const SurfaceRegion& region, float r) const;

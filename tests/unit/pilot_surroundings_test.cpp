@@ -70,6 +70,26 @@ TEST(PilotSurroundings, TellTheDensityAtEdgesAndWalls) {
     }
 }
 
+/// All pilot photons that are near lie behind the wall, and too far from it to be parted themselves.
+TEST(PilotSurroundings, BeforeAWallAreNotThoseOfPhotonsBehindIt) {
+    const auto scene = floor_with_wall();
+    const SurfacePatches patches(*scene);
+    Rng rng = make_rng(1);
+    PhotonSet photons;
+    const Rectangle bright{{0.6f, 0, 0}, {0, 0, 1}, {0.4f, 0, 0}};
+    throw_photons(bright, 4000, rng, photons.main_photons);
+    throw_photons(bright, 4000 / (kPilotEvery - 1), rng, photons.pilots);
+    const PilotedMap map(std::move(photons));
+    const PilotSurroundings surroundings(map.pilots(), patches, kNearest, kReach, 1);
+    for (float z = 0.05f; z < 1; z += 0.1f) {
+        const SurfaceRegion region{{0.45f, 0, z}, kUp};
+        const PilotedRegion piloted = piloted_region(map.pilots(), {region, kReach, kNearest});
+        ASSERT_TRUE(piloted.nearest);
+        EXPECT_TRUE(surroundings.parted(region, piloted));
+        EXPECT_TRUE(surroundings.around(region, piloted).parted);
+    }
+}
+
 TEST(PilotSurroundings, DoNotDependOnWhoAsksFirst) {
     const auto scene = floor_with_wall();
     const SurfacePatches patches(*scene);
