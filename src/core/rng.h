@@ -64,6 +64,7 @@ enum class StreamPurpose : std::uint64_t {
     inspection,
     masks,
     sampling_density,
+    lobe_techniques,
 };
 
 /// PCG32 (O'Neill 2014). One for each chain and each pixel, never for each thread, so that a picture does not

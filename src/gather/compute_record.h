@@ -1,7 +1,7 @@
 // Records of the irradiance cache.
 #pragma once
 
-#include "gather/hot_spots.h"
+#include "gather/spots/hot_spots.h"
 #include "gather/irradiance_cache.h"
 #include "gather/visible_point.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/pixel_sample.h"
-#include "gather/aimed_ray.h"
+#include "gather/spots/aimed_ray.h"
 #include "gather/gather_rays.h"
 #include "gather/irradiance_cache.h"
 

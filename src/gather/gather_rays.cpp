@@ -132,7 +132,7 @@ Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSou
     const auto known = maps_.irradiance->irradiance(v.point, facing(v.point.ng, back));
     // Photons may be near, but none that this place sees: those of the other side of a wall.
     const auto place = known.known ? std::optional(known.place) : std::nullopt;
-    if (!v.bsdf.traits().diffuse) return lobe(v, v.bsdf, back, place, source) + light_through(v, back, source);
+    if (!v.bsdf.traits().diffuse) return lobe(v, back, place, leg, source);
     const bool on = place && goes_on(leg, *place, v.point.p);
     const Rgb f = v.bsdf.diffuse_reflectance(back);
     Rgb sum = f * direct(place, v, back, source);
@@ -143,7 +143,11 @@ Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSou
     if (!v.bsdf.traits().glossy) return sum;
     // Seldom, and all the more then.
     const double p = std::max(kLeastGlossy, v.bsdf.glossy_probability(back));
-    if (source.next() < p) sum += lobe(v, v.bsdf.glossy_part(), back, on ? std::nullopt : place, source) / p;
+    if (!(source.next() < p)) return sum;
+    const Vertex glossy = widened(v, v.bsdf.glossy_part());
+    sum += direct_light(scene_, glossy, back, 1, source) / p;
+    // What is traced on brings the indirect light of all parts.
+    if (place && !on) sum += photons(Asked::all, *place, glossy, facing(v.point.ng, back), back, source) / p;
     return sum;
 }
 
@@ -156,20 +160,51 @@ Rgb GatherRays::direct(const std::optional<std::uint32_t>& place, const Vertex& 
     return direct_irradiance(scene_, v.point, v.bsdf, facing(v.point.ng, back), 1, source).irradiance;
 }
 
-Rgb GatherRays::lobe(const Vertex& v, const Bsdf& part, const Vec3& back, const std::optional<std::uint32_t>& place,
-                     SampleSource& source) const {
+Vertex GatherRays::widened(const Vertex& v, const Bsdf& part) const {
     Vertex wide = v;
     wide.bsdf = part.widened(options_.least_alpha);
-    Rgb sum = direct_light(scene_, wide, back, 1, source);
-    if (place) sum += photons(Asked::all, *place, wide, facing(v.point.ng, back), back, source);
-    return sum;
+    return wide;
 }
 
-Rgb GatherRays::light_through(const Vertex& v, const Vec3& back, SampleSource& source) const {
-    if (!v.bsdf.traits().through) return Rgb(0.0);
-    const Vec3 behind = -facing(v.point.ng, back);
-    const auto known = maps_.irradiance->irradiance(v.point, behind);
-    return known.known ? photons(Asked::all, known.place, v, behind, back, source) : Rgb(0.0);
+Rgb GatherRays::lobe(const Vertex& v, const Vec3& back, const std::optional<std::uint32_t>& place, const Leg& leg,
+                     SampleSource& source) const {
+    // Where the gather coverage ends, light from beyond it would be lost.
+    const bool may_trace = maps_.lobes != nullptr && !leg.secondary && maps_.coverage == nullptr;
+    if (may_trace && !(place && maps_.lobes->by_photons(v.point.shape))) return lobe_traced_on(v, back, leg, source);
+    const Vertex wide = widened(v, v.bsdf);
+    return direct_light(scene_, wide, back, 1, source) + photons_on_each_side(Asked::all, wide, back, source);
+}
+
+Rgb GatherRays::lobe_traced_on(const Vertex& v, const Vec3& back, const Leg& leg, SampleSource& source) const {
+    Rgb sum = next_event(scene_, v, back, 1, source);
+    if (const auto next = continue_walk(v, back, From::eye, source); next && !is_specular(next->event)) {
+        const Arrival arrival = trace(v, next->w, next->pdf, {0, leg.scatterings + 1, true}, source);
+        sum += next->weight * (arrival.emitted + arrival.indirect);
+    }
+    // Light that specular vertices alone brought here is found by no ray.
+    return sum + photons_on_each_side(Asked::caustics, widened(v, v.bsdf), back, source);
+}
+
+Rgb GatherRays::photons_on_each_side(Asked asked, const Vertex& v, const Vec3& back, SampleSource& source) const {
+    return on_each_side(v, back, [&](const Vec3& normal) {
+        const auto known = maps_.irradiance->irradiance(v.point, normal);
+        const bool any = known.known && (asked == Asked::all || maps_.irradiance->has_caustics(known.place));
+        return any ? photons(asked, known.place, v, normal, back, source) : Rgb(0.0);
+    });
+}
+
+std::optional<LobeNoise> GatherRays::lobe_noise(const Vertex& v, const Vec3& back, int scatterings,
+                                                SampleSource& source) const {
+    if (!maps_.irradiance->irradiance(v.point, facing(v.point.ng, back)).known) return std::nullopt;
+    const auto variance = [](const Rgb& a, const Rgb& b) {
+        const double difference = luminance(a) - luminance(b);
+        return difference * difference / 2;
+    };
+    const Leg leg{0, scatterings, false};
+    const Rgb first = lobe_traced_on(v, back, leg, source), second = lobe_traced_on(v, back, leg, source);
+    const Vertex wide = widened(v, v.bsdf);
+    const Rgb once = direct_light(scene_, wide, back, 1, source), again = direct_light(scene_, wide, back, 1, source);
+    return LobeNoise{variance(once, again) + variance_of_photons(wide, back), variance(first, second)};
 }
 
 Rgb GatherRays::traced_on(const Vertex& v, const Vec3& back, std::uint32_t place, const Leg& leg,
@@ -249,15 +284,39 @@ bool GatherRays::may_be_parted(std::uint32_t place, const SurfaceRegion& region)
            (!map.is_near(place, region.position, kKnown) && maps_.patches->obstructed(region, map.radius(place)));
 }
 
+double GatherRays::area_near(std::uint32_t place, const SurfaceRegion& region) const {
+    const float r = maps_.irradiance->radius(place);
+    const double share = maps_.irradiance->area_share(place);
+    return share > 0 ? kPi * static_cast<double>(r) * r * share * share_in_reach(maps_.coverage, region, r) : 0;
+}
+
+double GatherRays::variance_of_photons(const Vertex& v, const Vec3& back) const {
+    if (maps_.global == nullptr) return 0;
+    const auto reflected = reflection(v, back);
+    double sum2 = 0;
+    on_each_side(v, back, [&](const Vec3& normal) {
+        const auto known = maps_.irradiance->irradiance(v.point, normal);
+        const SurfaceRegion region{v.point.p, normal};
+        const double area = known.known ? area_near(known.place, region) : 0;
+        if (!(area > 0)) return Rgb(0.0);
+        const float r = maps_.irradiance->radius(known.place);
+        maps_.global->main_photons().for_each_within(region, r, [&](const Photon& p) {
+            const double brought = luminance(reflected(p) * p.power()) / area;
+            sum2 += brought * brought;
+        });
+        return Rgb(0.0);
+    });
+    return sum2;
+}
+
 Rgb GatherRays::photons(Asked asked, std::uint32_t place, const Vertex& v, const Vec3& normal, const Vec3& back,
                         SampleSource& source) const {
     if (maps_.global == nullptr) return Rgb(0.0);
     const PhotonQuery query = query_at(v, normal, options_.max_radius, options_);
     const float r = maps_.irradiance->radius(place);
-    const double share = maps_.irradiance->area_share(place);
-    if (!(share > 0)) return Rgb(0.0);
+    const double area = area_near(place, query.region);
+    if (!(area > 0)) return Rgb(0.0);
     const PhotonMap& map = maps_.global->main_photons();
-    const double area = kPi * static_cast<double>(r) * r * share * share_in_reach(maps_.coverage, query.region, r);
     const auto few = [&](const auto& weight) {
         const auto power = [&](const Photon& p) {
             return asked == Asked::all || p.caustic() ? luminance(p.power()) : 0.0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "gather/direct_irradiance_cache.h"
+#include "gather/lobe_techniques.h"
 #include "photonmap/irradiance/irradiance_map.h"
 #include "photonmap/pilot_surroundings.h"
 #include "sampling/paths/walk.h"
@@ -19,6 +20,7 @@ struct GatherMaps {
     const PilotSurroundings* caustic_surroundings = nullptr; ///< of its pilots; null only if that is
     const SurfacePatches* patches = nullptr;
     const GatherCoverage* coverage = nullptr; ///< where light is gathered: of the rest the caustic map knows; null: all
+    const LobeTechniques* lobes = nullptr;    ///< how lobes are asked where rays end; null: by photons
 };
 
 struct LookupOptions {
@@ -29,6 +31,12 @@ struct LookupOptions {
     /// Roughness that glossy lobes have at least where gather rays end: what a narrow one sends to a few of a thousand
     /// rays is noise, and a wider one sends as much to more of them.
     double least_alpha = 0;
+};
+
+/// Variance of the luminance that a surface without a diffuse part sends along a gather ray [(W/(m^2 sr))^2], by either
+/// of LobeTechniques.
+struct LobeNoise {
+    double photons, traced;
 };
 
 /// Immutable and thread-safe. All arguments by reference or pointer must outlive it.
@@ -54,6 +62,9 @@ class GatherRays {
     /// Share of its luminance that pilot photons don't confirm (unconfirmed_share()).
     double unconfirmed_caustic(const Vertex& v, const Vec3& back) const;
 
+    /// At `v`, without a diffuse part, where a ray met it; by samples of both. None where no photons are near.
+    std::optional<LobeNoise> lobe_noise(const Vertex& v, const Vec3& back, int scatterings, SampleSource& source) const;
+
     const Scene& scene() const { return scene_; }
     int max_scatterings() const { return max_scatterings_; }
 
@@ -78,22 +89,29 @@ class GatherRays {
     /// Irradiance that emitters bring, weighed as the diffuse part weighs it: that of the place, if it does for `v`.
     Rgb direct(const std::optional<std::uint32_t>& place, const Vertex& v, const Vec3& back,
                SampleSource& source) const;
-    /// What `part` of the BSDF at `v`, no narrower than LookupOptions::least_alpha, reflects: direct light and, where a
-    /// place is given, photons near it.
-    Rgb lobe(const Vertex& v, const Bsdf& part, const Vec3& back, const std::optional<std::uint32_t>& place,
+    /// `v` with a part of its BSDF, no narrower than LookupOptions::least_alpha.
+    Vertex widened(const Vertex& v, const Bsdf& part) const;
+    /// What `v`, without a diffuse part, reflects, by the technique that is the better one there.
+    Rgb lobe(const Vertex& v, const Vec3& back, const std::optional<std::uint32_t>& place, const Leg& leg,
              SampleSource& source) const;
-    /// What photons on the other side of `v` send through it.
-    Rgb light_through(const Vertex& v, const Vec3& back, SampleSource& source) const;
+    /// By one more ray; caustics are told by photons.
+    Rgb lobe_traced_on(const Vertex& v, const Vec3& back, const Leg& leg, SampleSource& source) const;
     /// Whether something may stand on a region near a place, which has the radius of that, and hide photons there.
     bool may_be_parted(std::uint32_t place, const SurfaceRegion& region) const;
     /// What the global map says of light that `v` reflects towards `back`.
     Rgb global(const Vertex& v, const Vec3& back) const;
     /// Which of the photons near a place count.
     enum class Asked { caustics, all };
+    /// Area [m^2] over which photons near a place are counted; 0 where that isn't known.
+    double area_near(std::uint32_t place, const SurfaceRegion& region) const;
     /// The same as global() of these that come on the side of `normal`, near a place of the irradiance map, whose
     /// radius and surface do for `v`, too.
     Rgb photons(Asked asked, std::uint32_t place, const Vertex& v, const Vec3& normal, const Vec3& back,
                 SampleSource& source) const;
+    /// photons() on the sides of `v` that its BSDF takes light from.
+    Rgb photons_on_each_side(Asked asked, const Vertex& v, const Vec3& back, SampleSource& source) const;
+    /// Their variance, as far as it is that of the photons [(W/(m^2 sr))^2].
+    double variance_of_photons(const Vertex& v, const Vec3& back) const;
 
     const Scene& scene_;
     GatherMaps maps_;

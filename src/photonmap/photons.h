@@ -32,6 +32,9 @@ struct PhotonSet {
 
 struct Photons {
     PhotonSet global, caustic;
+    /// Whether they lie wherever light comes; otherwise only where paths of the sampler store them, which is where gather
+    /// rays of visible points end.
+    bool everywhere = false;
 };
 
 /// A vertex of a light path, as far as it is drawn.

@@ -1,5 +1,5 @@
 // Gather rays of visible points that are aimed at hot spots: the same light with less noise.
-#include "gather/aimed_ray.h"
+#include "gather/spots/aimed_ray.h"
 
 #include "core/statistics.h"
 #include "gather/fill_cache.h"

@@ -1,6 +1,6 @@
 // Where few of many rays bring most: balls around it, and nowhere else.
 #include "core/rng.h"
-#include "gather/bright_balls.h"
+#include "gather/spots/bright_balls.h"
 #include "support/chance.h"
 
 #include <gtest/gtest.h>

@@ -37,6 +37,7 @@ class EmissionSampler final : public PhotonSampler {
                           .cut_outliers = by_importance_ && c_.settings.passes == 1,
                           .observer = c_.observer},
                          context);
+        photons.everywhere = true;
         stats.values["light paths"] += static_cast<double>(photons.paths);
         if (photons.cut > 0) stats.values["photon power, share cut off outliers"] = photons.cut;
         stats.values["photons before storing"] += static_cast<double>(photons.arrivals);

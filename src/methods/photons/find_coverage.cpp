@@ -2,7 +2,7 @@
 
 #include "core/shared_work.h"
 #include "core/statistics.h"
-#include "gather/bright_balls.h"
+#include "gather/spots/bright_balls.h"
 #include "methods/method.h"
 #include "sampling/paths/image_lattice.h"
 #include "sampling/paths/path_tracer.h"

@@ -67,15 +67,19 @@ PassGather::PassGather(const SamplerContext& c, const RenderPlan& plan, std::int
             stats.photon_bytes, global_.bytes() + caustic_.bytes() + caustic_surroundings_->bytes() +
                                     (irradiance_ ? irradiance_->bytes() + direct_irradiance_->bytes() : 0));
     }
-    rays_.emplace(c.scene,
-                  GatherMaps{.global = null_if_empty(global_),
-                             .irradiance = irradiance_ ? &*irradiance_ : nullptr,
-                             .direct = direct_irradiance_ ? &*direct_irradiance_ : nullptr,
-                             .caustic = null_if_empty(caustic_),
-                             .caustic_surroundings = caustic_surroundings_ ? &*caustic_surroundings_ : nullptr,
-                             .patches = &c.patches,
-                             .coverage = c.coverage},
-                  lookups(s, radii), static_cast<int>(s.max_depth));
+    GatherMaps maps{.global = null_if_empty(global_),
+                    .irradiance = irradiance_ ? &*irradiance_ : nullptr,
+                    .direct = direct_irradiance_ ? &*direct_irradiance_ : nullptr,
+                    .caustic = null_if_empty(caustic_),
+                    .caustic_surroundings = caustic_surroundings_ ? &*caustic_surroundings_ : nullptr,
+                    .patches = &c.patches,
+                    .coverage = c.coverage};
+    rays_.emplace(c.scene, maps, lookups(s, radii), static_cast<int>(s.max_depth));
+    // A ray that is traced on ends where no gather ray of a visible point may come.
+    if (irradiance_ && photons.everywhere && c.coverage == nullptr && c.scene.traits().glossy) {
+        maps.lobes = &lobes_.emplace(*rays_, seed, context);
+        rays_.emplace(c.scene, maps, lookups(s, radii), static_cast<int>(s.max_depth));
+    }
     const GatherSamples samples{.light = static_cast<int>(s.light_samples),
                                 .rays = plan.gather ? static_cast<int>(s.gather_rays) : 1};
     if (plan.cache) {

@@ -51,6 +51,7 @@ class PassGather {
     std::optional<IrradianceMap> irradiance_;
     std::optional<DirectIrradianceCache> direct_irradiance_;
     std::optional<PilotSurroundings> caustic_surroundings_;
+    std::optional<LobeTechniques> lobes_;
     std::optional<GatherRays> rays_;
     HotSpots spots_;
     std::optional<IrradianceCache> cache_;

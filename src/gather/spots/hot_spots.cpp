@@ -1,7 +1,7 @@
-#include "gather/hot_spots.h"
+#include "gather/spots/hot_spots.h"
 
 #include "core/shared_work.h"
-#include "gather/bright_balls.h"
+#include "gather/spots/bright_balls.h"
 #include "gather/visible_point.h"
 #include "sampling/paths/image_lattice.h"
 #include "scene/warp.h"

@@ -1,4 +1,4 @@
-#include "gather/bright_balls.h"
+#include "gather/spots/bright_balls.h"
 
 #include <Imath/ImathVec.h>
 

@@ -1,4 +1,4 @@
-#include "gather/aimed_ray.h"
+#include "gather/spots/aimed_ray.h"
 
 #include "gather/visible_point.h"
 #include "scene/warp.h"

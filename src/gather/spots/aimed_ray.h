@@ -1,7 +1,7 @@
 // A gather ray of a glossy lobe, aimed at hot spots.
 #pragma once
 
-#include "gather/hot_spots.h"
+#include "gather/spots/hot_spots.h"
 
 #include <optional>
 #include <vector>

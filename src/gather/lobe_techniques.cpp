@@ -1,0 +1,99 @@
+#include "gather/lobe_techniques.h"
+
+#include "core/shared_work.h"
+#include "gather/visible_point.h"
+#include "sampling/paths/image_lattice.h"
+#include "scene/warp.h"
+
+#include <optional>
+
+namespace keyhole {
+namespace {
+
+/// Rays that look for lobes, and the lobes of a shape that are measured, at least and at most: what is small is met
+/// seldom, but rays may be aimed at it later.
+constexpr std::int64_t kRays = 16'384;
+constexpr int kLeastLobes = 8, kMostLobes = 32;
+constexpr std::int64_t kBlock = 64;
+
+/// Where a gather ray ends on a lobe.
+struct End {
+    Vertex v;
+    Vec3 back; // unit
+    int scatterings;
+};
+
+class Search {
+  public:
+    Search(const GatherRays& rays, std::uint64_t seed) : rays_(rays), seed_(seed) {}
+
+    Rng stream(std::int64_t ray) const {
+        return {seed_, StreamPurpose::lobe_techniques, static_cast<std::uint64_t>(ray)};
+    }
+
+    std::optional<End> end(std::int64_t ray, Rng& rng) const {
+        const Vec2 image = lattice_image_point(seed_, StreamPurpose::lobe_techniques, ray);
+        const auto from = visible_point(rays_, image, rng);
+        if (!from) return std::nullopt;
+        const double u0 = rng.next(), u1 = rng.next();
+        const Vec3 w = Frame(cache_normal(from->vertex, from->back)).to_world(cosine_hemisphere(u0, u1));
+        if (!from->leaves(w)) return std::nullopt;
+        const auto point = rays_.scene().trace(from->vertex.point, w);
+        if (!point || point->site != Site::surface) return std::nullopt;
+        End end{make_vertex(*point), -w, from->scatterings};
+        const BsdfTraits traits = end.v.bsdf.traits();
+        return traits.glossy && !traits.diffuse ? std::optional(end) : std::nullopt;
+    }
+
+  private:
+    const GatherRays& rays_;
+    std::uint64_t seed_;
+};
+
+/// Of the rays that met each shape, the first ones.
+std::vector<std::int64_t> choose(const std::vector<std::uint32_t>& met, std::size_t shapes) {
+    std::vector<int> lobes(shapes);
+    std::vector<std::int64_t> chosen;
+    for (std::size_t i = 0; i < met.size(); ++i)
+        if (met[i] != SurfacePoint::kNone && lobes[met[i]]++ < kMostLobes)
+            chosen.push_back(static_cast<std::int64_t>(i));
+    return chosen;
+}
+
+} // namespace
+
+LobeTechniques::LobeTechniques(const GatherRays& rays, std::uint64_t seed, const RunContext& context) {
+    const Search search(rays, seed);
+    std::vector<std::uint32_t> met(static_cast<std::size_t>(kRays), SurfacePoint::kNone);
+    parallel_blocks(kRays, kBlock, context, [&](std::int64_t i) {
+        Rng rng = search.stream(i);
+        if (const auto end = search.end(i, rng)) met[static_cast<std::size_t>(i)] = end->v.point.shape;
+    });
+
+    const std::size_t shapes = rays.scene().shapes().size();
+    const auto chosen = choose(met, shapes);
+    std::vector<std::optional<LobeNoise>> noise(chosen.size());
+    parallel_blocks(static_cast<std::int64_t>(chosen.size()), kBlock, context, [&](std::int64_t i) {
+        const std::int64_t ray = chosen[static_cast<std::size_t>(i)];
+        Rng rng = search.stream(ray);
+        const auto end = search.end(ray, rng);
+        noise[static_cast<std::size_t>(i)] = rays.lobe_noise(end->v, end->back, end->scatterings, rng);
+    });
+
+    struct Sum {
+        int lobes = 0;
+        LobeNoise noise{};
+    };
+    std::vector<Sum> sums(shapes);
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+        if (!noise[i]) continue;
+        Sum& sum = sums[met[static_cast<std::size_t>(chosen[i])]];
+        ++sum.lobes;
+        sum.noise.photons += noise[i]->photons;
+        sum.noise.traced += noise[i]->traced;
+    }
+    for (const Sum& sum : sums)
+        by_photons_.push_back(sum.lobes >= kLeastLobes && sum.noise.photons < sum.noise.traced);
+}
+
+} // namespace keyhole
