@@ -1,8 +1,8 @@
 // Records of the irradiance cache.
 #pragma once
 
-#include "gather/spots/hot_spots.h"
 #include "gather/irradiance_cache.h"
+#include "gather/spots/hot_spots.h"
 #include "gather/visible_point.h"
 
 #include <cstdint>

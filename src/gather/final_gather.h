@@ -2,9 +2,9 @@
 #pragma once
 
 #include "core/pixel_sample.h"
-#include "gather/spots/aimed_ray.h"
 #include "gather/gather_rays.h"
 #include "gather/irradiance_cache.h"
+#include "gather/spots/aimed_ray.h"
 
 #include <atomic>
 

@@ -92,8 +92,7 @@ LobeTechniques::LobeTechniques(const GatherRays& rays, std::uint64_t seed, const
         sum.noise.photons += noise[i]->photons;
         sum.noise.traced += noise[i]->traced;
     }
-    for (const Sum& sum : sums)
-        by_photons_.push_back(sum.lobes >= kLeastLobes && sum.noise.photons < sum.noise.traced);
+    for (const Sum& sum : sums) by_photons_.push_back(sum.lobes >= kLeastLobes && sum.noise.photons < sum.noise.traced);
 }
 
 } // namespace keyhole

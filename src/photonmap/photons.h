@@ -32,8 +32,8 @@ struct PhotonSet {
 
 struct Photons {
     PhotonSet global, caustic;
-    /// Whether they lie wherever light comes; otherwise only where paths of the sampler store them, which is where gather
-    /// rays of visible points end.
+    /// Whether they lie wherever light comes; otherwise only where paths of the sampler store them, which is where
+    /// gather rays of visible points end.
     bool everywhere = false;
 };
 

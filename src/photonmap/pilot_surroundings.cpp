@@ -67,7 +67,8 @@ PilotSurroundings::Packed PilotSurroundings::measure(const Photon& pilot) const 
     const auto steps = static_cast<unsigned>(std::lround(kSteps * std::clamp(share, 1.0 / kSteps, 1.0)));
     if (around.parted) return static_cast<Packed>(steps | kParted);
     // The largest of the distances that is not too far.
-    const auto level = static_cast<unsigned>(std::clamp(std::log2(max_radius_ / (kClear * r)) + 1, 1.0f, static_cast<float>(kMostLevel)));
+    const auto level = static_cast<unsigned>(
+        std::clamp(std::log2(max_radius_ / (kClear * r)) + 1, 1.0f, static_cast<float>(kMostLevel)));
     const bool clear = !patches_.obstructed(region, std::ldexp(max_radius_, 1 - static_cast<int>(level)));
     return static_cast<Packed>(steps | (clear ? level << kLevelShift : 0));
 }
