@@ -51,6 +51,21 @@ TEST(TrialErrors, MissLightThatTwoRendersAgreeNotToFind) {
     EXPECT_GT(e[1].missing, 0.1) << "half of the picture lacks two thirds of its light";
 }
 
+/// One pixel in 200 has met light that is rare: in a picture of ten times the samples one in 20 will.
+TEST(TrialErrors, CountBrightSamplesThatAreRare) {
+    std::vector<TrialPictures> methods{halves(0.05, 0, 1, 1), halves(0.05, 0, 1, 2)};
+    Rng rng(3, StreamPurpose::test, 0);
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x)
+            if (rng.next() < 0.005) *methods[0].first.at(x, y) *= 10;
+    EXPECT_LT(trial_errors(methods)[0].grain, 0.03) << "of photons, these are few places";
+    methods[0].rare_samples = true;
+    const std::vector<TrialError> e = trial_errors(methods);
+    // Relative to the mean with both methods: (9 / 1)^2 / 2 of half a percent, less what is left out.
+    EXPECT_GT(e[0].grain, 0.03);
+    EXPECT_LT(e[1].grain, 0.01);
+}
+
 TEST(TrialErrors, AreNoSmallerForALampInView) {
     std::vector<TrialPictures> methods{halves(0.3, 0, 1, 1), halves(0.05, 0.2, 1, 2), halves(0.02, 0, 0.3, 4)};
     const std::vector<TrialError> without = trial_errors(methods);

@@ -251,7 +251,10 @@ double variance_within_pixels(std::span<const TriedMethod> tried) {
 /// Errors of all, for so much time or work, and the best first.
 void rank(std::vector<TriedMethod>& tried, const TrialContext& c, double left) {
     std::vector<TrialPictures> pictures;
-    for (const TriedMethod& t : tried) pictures.push_back(t.pictures);
+    for (const TriedMethod& t : tried) {
+        pictures.push_back(t.pictures);
+        pictures.back().rare_samples = t.method->samples_pixels;
+    }
     const std::vector<TrialError> errors = trial_errors(pictures);
     const double within = variance_within_pixels(tried);
     for (std::size_t i = 0; i < tried.size(); ++i) {

@@ -165,7 +165,7 @@ class RenderInTime {
         } catch (const Interrupted&) { // too slow
         }
         if (pictures.size() < 2) return parts;
-        const TrialPictures halves{std::move(pictures[0]), std::move(pictures[1])};
+        const TrialPictures halves{std::move(pictures[0]), std::move(pictures[1]), method_->samples_pixels};
         const TrialError e = trial_errors(std::span(&halves, 1)).front();
         parts.error = (grain_that_counts(settings_, *method_) * e.grain + e.blotches) * seconds / at_choice_;
         return parts;

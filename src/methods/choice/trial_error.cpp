@@ -13,8 +13,10 @@ constexpr int kBlock = 4;      // pixels
 constexpr int kParts = 4;      // of the picture, each way, in which light may be missing
 constexpr int kSmooth = 3;     // pixels, each way: a pixel's noise must not be what it is compared with
 constexpr double kDark = 0.01; // squared mean of the picture, lamps in view left out, that is added to a pixel's square
-// Share of the pixels, those with the largest errors, that are left out: more than of a picture, for pixels are larger.
-constexpr double kTrimmed = 0.01;
+// Share of the pixels, those with the largest errors, that are left out, as error measures of pictures do. These have
+// several times the samples in a pixel: of bright ones that are rare, and in few pixels of a trial, they leave out
+// less.
+constexpr double kTrimmed = 0.01, kTrimmedOfRare = 0.0025;
 // Share of the pixels, the brightest, that may show lamps, or be blurred with one.
 constexpr double kLamps = 0.1;
 constexpr double kStandardErrors = 2; // that two means differ by before light is missing
@@ -164,8 +166,9 @@ std::vector<TrialError> trial_errors(std::span<const TrialPictures> methods) {
     const double whole = typical(picture.values);
     for (std::size_t k = 0; k < methods.size(); ++k) {
         const Grid d = difference_of(methods[k]);
-        const double pixel = relative_variance(d, smooth);
-        const double block = relative_variance(d.blocks(kBlock, kBlock), in_blocks);
+        const double trimmed = methods[k].rare_samples ? kTrimmedOfRare : kTrimmed;
+        const double pixel = relative_variance(d, smooth, trimmed);
+        const double block = relative_variance(d.blocks(kBlock, kBlock), in_blocks, trimmed);
         constexpr double kPixels = kBlock * kBlock;
         errors[k].grain = std::max(0.0, pixel - block) * kPixels / (kPixels - 1);
         errors[k].blotches = std::max(0.0, pixel - errors[k].grain);

@@ -15,6 +15,8 @@ constexpr int kTrialParts = 16;
 /// Two independent renders of a window by one method at equal cost: luminance, one channel, W/(m^2 sr).
 struct TrialPictures {
     Image first, second;
+    /// Whether what errs most is samples of pixels that are rare and bright, rather than places that photons blur.
+    bool rare_samples = false;
 };
 
 /// Squared error of one of the two, relative to the picture (the measure of ImageError::relmse_trim), in parts that
