@@ -27,14 +27,11 @@ class Gather {
           direct_(scene, irradiance_.places(), {}, {}) {}
 
     GatherRays rays(const LobeTechniques* lobes = nullptr) const {
-        return {scene_,
-                {.global = &global_,
-                 .irradiance = &irradiance_,
-                 .direct = &direct_,
-                 .patches = &patches_,
-                 .lobes = lobes},
-                {.max_radius = kReach, .caustic_radius = kReach},
-                8};
+        return {
+            scene_,
+            {.global = &global_, .irradiance = &irradiance_, .direct = &direct_, .patches = &patches_, .lobes = lobes},
+            {.max_radius = kReach, .caustic_radius = kReach},
+            8};
     }
     LobeTechniques lobes() const { return {rays(), 1, {}}; }
 
