@@ -27,10 +27,10 @@ PhotonQuery query_at(const Vertex& v, const Vec3& normal, float radius, const Lo
     return {{v.point.p, normal}, radius, options.nearest, options.shrink};
 }
 
-/// look(normal) for each side from which light that comes to `v` is scattered towards `back`.
-template <class Look> Rgb on_each_side(const Vertex& v, const Vec3& back, const Look& look) {
+/// The sum of look(normal) for each side from which light that comes to `v` is scattered towards `back`.
+template <class Look> auto on_each_side(const Vertex& v, const Vec3& back, const Look& look) {
     const Vec3 near = facing(v.point.ng, back);
-    Rgb sum = look(near);
+    auto sum = look(near);
     if (v.bsdf.traits().through) sum += look(-near);
     return sum;
 }
@@ -168,40 +168,49 @@ Vertex GatherRays::widened(const Vertex& v, const Bsdf& part) const {
 
 Rgb GatherRays::lobe(const Vertex& v, const Vec3& back, const std::optional<std::uint32_t>& place, const Leg& leg,
                      SampleSource& source) const {
-    // Where the gather coverage ends, light from beyond it would be lost.
-    const bool may_trace = maps_.lobes != nullptr && !leg.secondary && maps_.coverage == nullptr;
-    if (may_trace && !(place && maps_.lobes->by_photons(v.point.shape))) return lobe_traced_on(v, back, leg, source);
+    const bool may_trace = maps_.lobes != nullptr && !leg.secondary;
+    if (may_trace && !(place && maps_.lobes->by_photons(v.point.shape)))
+        return lobe_traced_on(v, back, place, leg, source);
     const Vertex wide = widened(v, v.bsdf);
-    return direct_light(scene_, wide, back, 1, source) + photons_on_each_side(Asked::all, wide, back, source);
+    return direct_light(scene_, wide, back, 1, source) + photons_on_each_side(Asked::all, place, wide, back, source);
 }
 
-Rgb GatherRays::lobe_traced_on(const Vertex& v, const Vec3& back, const Leg& leg, SampleSource& source) const {
+Rgb GatherRays::lobe_traced_on(const Vertex& v, const Vec3& back, const std::optional<std::uint32_t>& place,
+                               const Leg& leg, SampleSource& source) const {
     Rgb sum = next_event(scene_, v, back, 1, source);
     if (const auto next = continue_walk(v, back, From::eye, source); next && !is_specular(next->event)) {
         const Arrival arrival = trace(v, next->w, next->pdf, {0, leg.scatterings + 1, true}, source);
         sum += next->weight * (arrival.emitted + arrival.indirect);
     }
     // Light that specular vertices alone brought here is found by no ray.
-    return sum + photons_on_each_side(Asked::caustics, widened(v, v.bsdf), back, source);
+    return sum + photons_on_each_side(Asked::caustics, place, widened(v, v.bsdf), back, source);
 }
 
-Rgb GatherRays::photons_on_each_side(Asked asked, const Vertex& v, const Vec3& back, SampleSource& source) const {
+std::optional<std::uint32_t> GatherRays::place_at(const Vertex& v, const Vec3& normal) const {
+    const auto known = maps_.irradiance->irradiance(v.point, normal);
+    return known.known ? std::optional(known.place) : std::nullopt;
+}
+
+Rgb GatherRays::photons_on_each_side(Asked asked, const std::optional<std::uint32_t>& near, const Vertex& v,
+                                     const Vec3& back, SampleSource& source) const {
     return on_each_side(v, back, [&](const Vec3& normal) {
-        const auto known = maps_.irradiance->irradiance(v.point, normal);
-        const bool any = known.known && (asked == Asked::all || maps_.irradiance->has_caustics(known.place));
-        return any ? photons(asked, known.place, v, normal, back, source) : Rgb(0.0);
+        const auto place = normal.dot(back) > 0 ? near : place_at(v, normal);
+        const bool any = place && (asked == Asked::all || maps_.irradiance->has_caustics(*place));
+        return any ? photons(asked, *place, v, normal, back, source) : Rgb(0.0);
     });
 }
 
 std::optional<LobeNoise> GatherRays::lobe_noise(const Vertex& v, const Vec3& back, int scatterings,
                                                 SampleSource& source) const {
-    if (!maps_.irradiance->irradiance(v.point, facing(v.point.ng, back)).known) return std::nullopt;
+    const auto place = place_at(v, facing(v.point.ng, back));
+    if (!place) return std::nullopt;
     const auto variance = [](const Rgb& a, const Rgb& b) {
         const double difference = luminance(a) - luminance(b);
         return difference * difference / 2;
     };
     const Leg leg{0, scatterings, false};
-    const Rgb first = lobe_traced_on(v, back, leg, source), second = lobe_traced_on(v, back, leg, source);
+    const Rgb first = lobe_traced_on(v, back, place, leg, source);
+    const Rgb second = lobe_traced_on(v, back, place, leg, source);
     const Vertex wide = widened(v, v.bsdf);
     const Rgb once = direct_light(scene_, wide, back, 1, source), again = direct_light(scene_, wide, back, 1, source);
     return LobeNoise{variance(once, again) + variance_of_photons(wide, back), variance(first, second)};
@@ -293,20 +302,19 @@ double GatherRays::area_near(std::uint32_t place, const SurfaceRegion& region) c
 double GatherRays::variance_of_photons(const Vertex& v, const Vec3& back) const {
     if (maps_.global == nullptr) return 0;
     const auto reflected = reflection(v, back);
-    double sum2 = 0;
-    on_each_side(v, back, [&](const Vec3& normal) {
-        const auto known = maps_.irradiance->irradiance(v.point, normal);
+    return on_each_side(v, back, [&](const Vec3& normal) {
+        double sum2 = 0;
+        const auto place = place_at(v, normal);
         const SurfaceRegion region{v.point.p, normal};
-        const double area = known.known ? area_near(known.place, region) : 0;
-        if (!(area > 0)) return Rgb(0.0);
-        const float r = maps_.irradiance->radius(known.place);
+        const double area = place ? area_near(*place, region) : 0;
+        if (!(area > 0)) return sum2;
+        const float r = maps_.irradiance->radius(*place);
         maps_.global->main_photons().for_each_within(region, r, [&](const Photon& p) {
             const double brought = luminance(reflected(p) * p.power()) / area;
             sum2 += brought * brought;
         });
-        return Rgb(0.0);
+        return sum2;
     });
-    return sum2;
 }
 
 Rgb GatherRays::photons(Asked asked, std::uint32_t place, const Vertex& v, const Vec3& normal, const Vec3& back,

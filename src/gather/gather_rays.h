@@ -20,7 +20,9 @@ struct GatherMaps {
     const PilotSurroundings* caustic_surroundings = nullptr; ///< of its pilots; null only if that is
     const SurfacePatches* patches = nullptr;
     const GatherCoverage* coverage = nullptr; ///< where light is gathered: of the rest the caustic map knows; null: all
-    const LobeTechniques* lobes = nullptr;    ///< how lobes are asked where rays end; null: by photons
+    /// How lobes are asked where rays end; null: by photons, as must be where there is coverage. A ray that is traced
+    /// on may end beyond it, or where the photons of chains don't lie (Photons::everywhere).
+    const LobeTechniques* lobes = nullptr;
 };
 
 struct LookupOptions {
@@ -62,7 +64,8 @@ class GatherRays {
     /// Share of its luminance that pilot photons don't confirm (unconfirmed_share()).
     double unconfirmed_caustic(const Vertex& v, const Vec3& back) const;
 
-    /// At `v`, without a diffuse part, where a ray met it; by samples of both. None where no photons are near.
+    /// At `v`, without a diffuse part, where a ray met it; by samples of both. None where no photons are near. Only
+    /// where there is an irradiance map.
     std::optional<LobeNoise> lobe_noise(const Vertex& v, const Vec3& back, int scatterings, SampleSource& source) const;
 
     const Scene& scene() const { return scene_; }
@@ -95,7 +98,8 @@ class GatherRays {
     Rgb lobe(const Vertex& v, const Vec3& back, const std::optional<std::uint32_t>& place, const Leg& leg,
              SampleSource& source) const;
     /// By one more ray; caustics are told by photons.
-    Rgb lobe_traced_on(const Vertex& v, const Vec3& back, const Leg& leg, SampleSource& source) const;
+    Rgb lobe_traced_on(const Vertex& v, const Vec3& back, const std::optional<std::uint32_t>& place, const Leg& leg,
+                       SampleSource& source) const;
     /// Whether something may stand on a region near a place, which has the radius of that, and hide photons there.
     bool may_be_parted(std::uint32_t place, const SurfaceRegion& region) const;
     /// What the global map says of light that `v` reflects towards `back`.
@@ -108,8 +112,11 @@ class GatherRays {
     /// radius and surface do for `v`, too.
     Rgb photons(Asked asked, std::uint32_t place, const Vertex& v, const Vec3& normal, const Vec3& back,
                 SampleSource& source) const;
-    /// photons() on the sides of `v` that its BSDF takes light from.
-    Rgb photons_on_each_side(Asked asked, const Vertex& v, const Vec3& back, SampleSource& source) const;
+    /// The place near `v` for light on the side of `normal`.
+    std::optional<std::uint32_t> place_at(const Vertex& v, const Vec3& normal) const;
+    /// photons() on the sides of `v` that its BSDF takes light from. `near`: the place on the side of `back`.
+    Rgb photons_on_each_side(Asked asked, const std::optional<std::uint32_t>& near, const Vertex& v, const Vec3& back,
+                             SampleSource& source) const;
     /// Their variance, as far as it is that of the photons [(W/(m^2 sr))^2].
     double variance_of_photons(const Vertex& v, const Vec3& back) const;
 

@@ -3,7 +3,6 @@
 #include "core/shared_work.h"
 #include "gather/visible_point.h"
 #include "sampling/paths/image_lattice.h"
-#include "scene/warp.h"
 
 #include <optional>
 
@@ -16,13 +15,14 @@ constexpr std::int64_t kRays = 16'384;
 constexpr int kLeastLobes = 8, kMostLobes = 32;
 constexpr std::int64_t kBlock = 64;
 
-/// Where a gather ray ends on a lobe.
+/// Where a gather ray ends on a surface without a diffuse part.
 struct End {
     Vertex v;
     Vec3 back; // unit
     int scatterings;
 };
 
+/// Looked for by rays that are told apart by their numbers: one that ends on what is to be measured is sent again.
 class Search {
   public:
     Search(const GatherRays& rays, std::uint64_t seed) : rays_(rays), seed_(seed) {}
@@ -33,14 +33,11 @@ class Search {
 
     std::optional<End> end(std::int64_t ray, Rng& rng) const {
         const Vec2 image = lattice_image_point(seed_, StreamPurpose::lobe_techniques, ray);
-        const auto from = visible_point(rays_, image, rng);
-        if (!from) return std::nullopt;
-        const double u0 = rng.next(), u1 = rng.next();
-        const Vec3 w = Frame(cache_normal(from->vertex, from->back)).to_world(cosine_hemisphere(u0, u1));
-        if (!from->leaves(w)) return std::nullopt;
-        const auto point = rays_.scene().trace(from->vertex.point, w);
+        const auto first = first_gather_ray(rays_, image, rng);
+        if (!first) return std::nullopt;
+        const auto point = rays_.scene().trace(first->from.vertex.point, first->w);
         if (!point || point->site != Site::surface) return std::nullopt;
-        End end{make_vertex(*point), -w, from->scatterings};
+        End end{make_vertex(*point), -first->w, first->from.scatterings};
         const BsdfTraits traits = end.v.bsdf.traits();
         return traits.glossy && !traits.diffuse ? std::optional(end) : std::nullopt;
     }

@@ -1,6 +1,7 @@
 #include "gather/visible_point.h"
 
 #include "sampling/paths/random_walk.h"
+#include "scene/warp.h"
 
 namespace keyhole {
 namespace {
@@ -37,6 +38,16 @@ std::optional<VisiblePoint> visible_point(const GatherRays& rays, const Vec2& im
     random_walk(scene, From::eye, ray, rays.max_scatterings(), source, walk);
     if (walk.found) walk.found->pixel *= 1 / std::sqrt(camera.direction_pdf(ray.w) * camera.window().pixels());
     return walk.found;
+}
+
+std::optional<FirstGatherRay> first_gather_ray(const GatherRays& rays, const Vec2& image, SampleSource& source) {
+    const auto from = visible_point(rays, image, source);
+    if (!from) return std::nullopt;
+    const auto [u0, u1] = source.take<2>();
+    const Vec3 local = cosine_hemisphere(u0, u1);
+    const Vec3 w = Frame(cache_normal(from->vertex, from->back)).to_world(local);
+    if (!from->leaves(w)) return std::nullopt;
+    return FirstGatherRay{*from, w, local.z * kInvPi};
 }
 
 Vec3 cache_normal(const Vertex& v, const Vec3& back) {

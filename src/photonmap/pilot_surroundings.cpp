@@ -66,7 +66,7 @@ PilotSurroundings::Packed PilotSurroundings::measure(const Photon& pilot) const 
     // At least one step: a pilot photon lies on some surface, and 0 says that nobody asked.
     const auto steps = static_cast<unsigned>(std::lround(kSteps * std::clamp(share, 1.0 / kSteps, 1.0)));
     if (around.parted) return static_cast<Packed>(steps | kParted);
-    // The largest of the distances that is not too far.
+    // The smallest of the distances that is far enough.
     const auto level = static_cast<unsigned>(
         std::clamp(std::log2(max_radius_ / (kClear * r)) + 1, 1.0f, static_cast<float>(kMostLevel)));
     const bool clear = !patches_.obstructed(region, std::ldexp(max_radius_, 1 - static_cast<int>(level)));

@@ -25,12 +25,10 @@ std::unique_ptr<Scene> room_with_a_globe() {
     return m.build();
 }
 
-/// A pane of ground glass, 2 cm thick, in the window, and a lamp in the room.
+/// A pane of ground glass in the window, and a lamp in the room.
 std::unique_ptr<Scene> room_with_ground_glass() {
     test::SceneMaker m = test::room_with_a_window();
-    const auto glass = make_dielectric(1.5, value(0.3), value(0.3));
-    m.rectangle({0.9f, 0.9f, -0.07f}, {0, 1, 0}, {1, 0, 0}, glass);
-    m.rectangle({0.9f, 0.9f, -0.05f}, {1, 0, 0}, {0, 1, 0}, glass);
+    test::add_pane(m, test::ground_glass());
     m.emitter(make_constant_environment(Rgb(3.0, 4.0, 5.0)));
     m.rectangle({2.2f, 2.3f, 2}, {0.2f, 0, 0}, {0, 0, 0.2f}, make_diffuse(Rgb(0.0)), Rgb(8.0));
     m.camera({2.7f, 1.5f, 2.8f}, {0.8f, 1.0f, 0.2f}, 60).window(48, 32);

@@ -22,4 +22,12 @@ inline SceneMaker room_with_a_window(const MaterialPtr& wall = make_diffuse(Rgb(
     return m;
 }
 
+inline MaterialPtr ground_glass() { return make_dielectric(1.5, constant_texture(0.3), constant_texture(0.3)); }
+
+/// Two faces, 2 cm apart, close before its window on the outside.
+inline void add_pane(SceneMaker& m, const MaterialPtr& glass) {
+    m.rectangle({0.9f, 0.9f, -0.07f}, {0, 1, 0}, {1, 0, 0}, glass);
+    m.rectangle({0.9f, 0.9f, -0.05f}, {1, 0, 0}, {0, 1, 0}, glass);
+}
+
 } // namespace keyhole::test

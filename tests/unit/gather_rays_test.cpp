@@ -1,7 +1,7 @@
 // What gather rays make of the photons around the point that they meet.
 #include "gather/gather_rays.h"
 
-#include "gather/direct_irradiance_cache.h"
+#include "mapped_gather.h"
 #include "photon_support.h"
 #include "scene/material.h"
 #include "scene/warp.h"
@@ -18,28 +18,14 @@ using namespace photon_test;
 
 constexpr float kReach = 0.1f; // of lookups [m]
 
-/// Gather rays, and what they ask.
-struct MappedGather {
-    PilotedMap global;
-    IrradianceMap irradiance;
-    DirectIrradianceCache direct;
-    GatherRays rays;
+LookupOptions lookups(double least_alpha = 0) {
+    return {.max_radius = kReach, .caustic_radius = kReach, .least_alpha = least_alpha};
+}
 
-    MappedGather(const Scene& scene, const SurfacePatches& patches, const PhotonSet& photons, double least_alpha = 0)
-        : global(photons), irradiance(global.pilots(), global.main_photons(),
-                                      {.k = 60, .max_radius = kReach, .patches = &patches, .scene = &scene}, {}),
-          direct(scene, irradiance.places(), {}, {}),
-          rays(scene, {.global = &global, .irradiance = &irradiance, .direct = &direct, .patches = &patches},
-               {.max_radius = kReach, .caustic_radius = kReach, .least_alpha = least_alpha}, 8) {}
-
-    /// What a ray straight down from a point finds.
-    GatherRays::Arrival below(const Vec3& point, Rng& rng) const {
-        Vertex from;
-        from.point.site = Site::point;
-        from.point.p = point;
-        return rays.trace(from, {0, -1, 0}, 1, 1, rng);
-    }
-};
+/// What a ray straight down from a point finds.
+GatherRays::Arrival below(const MappedGather& gather, const Vec3& point, Rng& rng) {
+    return gather.along(point, {0, -1, 0}, rng);
+}
 
 /// A floor of 1 x 1 m with a wall across it at x = 0.5 m, and photons on it; nothing emits.
 class Floor {
@@ -62,9 +48,9 @@ class Floor {
     }
     /// Mean of what rays from straight above find at `x` [W/(m^2 sr)].
     double seen_at(float x, float height = 0.25f) {
-        const MappedGather gather(*scene_, patches_, photons_);
+        const MappedGather gather(*scene_, patches_, photons_, lookups());
         RunningStats found;
-        for (float z = 0.2f; z < 0.8f; z += 0.02f) found.add(luminance(gather.below({x, height, z}, rng_).indirect));
+        for (float z = 0.2f; z < 0.8f; z += 0.02f) found.add(luminance(below(gather, {x, height, z}, rng_).indirect));
         return found.mean();
     }
 
@@ -120,10 +106,10 @@ TEST(GatherRays, DontTakeDirectLightToTheShadowBesideIt) {
     const Rectangle lit{{0, 0, 0}, {0, 0, 1}, {0.5f, 0, 0}};
     throw_photons(lit, 2000, rng, photons.main_photons);
     throw_photons(lit, 200, rng, photons.pilots);
-    const MappedGather gather(scene, patches, photons);
+    const MappedGather gather(scene, patches, photons, lookups());
     const auto seen_at = [&](float x) {
         RunningStats found;
-        for (float z = 0.3f; z < 0.7f; z += 0.02f) found.add(luminance(gather.below({x, 0.25f, z}, rng).indirect));
+        for (float z = 0.3f; z < 0.7f; z += 0.02f) found.add(luminance(below(gather, {x, 0.25f, z}, rng).indirect));
         return found.mean();
     };
     ASSERT_GT(seen_at(0.48f), 0);
@@ -166,8 +152,8 @@ TEST(GatherRays, AreTracedOnFromSlatsThatAreFinerThanTheEstimate) {
         throw_photons(slat, 100, rng, photons.main_photons);
         throw_photons(slat, 10, rng, photons.pilots);
     }
-    const MappedGather gather(scene, patches, photons);
-    const GatherRays::Arrival found = gather.below({0.5005f, 0.25f, 0.5f}, rng);
+    const MappedGather gather(scene, patches, photons, lookups());
+    const GatherRays::Arrival found = below(gather, {0.5005f, 0.25f, 0.5f}, rng);
     EXPECT_NEAR(found.distance, 0.25, 1e-4);
     EXPECT_EQ(luminance(found.indirect), 0) << "a mean over slats";
 }
@@ -186,16 +172,13 @@ RunningStats irradiance_above_metal(double least_alpha) {
     PhotonSet photons;
     throw_photons(floor, 100'000, rng, photons.main_photons);
     throw_photons(floor, 10'000, rng, photons.pilots);
-    const MappedGather gather(scene, patches, photons, least_alpha);
-    Vertex from;
-    from.point.site = Site::point;
-    from.point.p = {0.5f, 0.05f, 0.5f};
+    const MappedGather gather(scene, patches, photons, lookups(least_alpha));
     const Frame down({0, -1, 0});
     RunningStats found;
     for (int i = 0; i < 100'000; ++i) {
         const double u0 = rng.next(), u1 = rng.next();
         const Vec3 w = down.to_world(cosine_hemisphere(u0, u1));
-        found.add(kPi * luminance(gather.rays.trace(from, w, 1, 1, rng).indirect));
+        found.add(kPi * luminance(gather.along({0.5f, 0.05f, 0.5f}, w, rng).indirect));
     }
     return found;
 }

@@ -2,7 +2,7 @@
 #include "gather/lobe_techniques.h"
 
 #include "core/statistics.h"
-#include "gather/gather_rays.h"
+#include "mapped_gather.h"
 #include "photonmap/emission.h"
 #include "scene/emitters/emitters.h"
 #include "support/chance.h"
@@ -16,40 +16,22 @@ namespace {
 constexpr float kReach = 0.2f; // of lookups [m]
 constexpr std::int64_t kPaths = 20'000;
 
-/// Photons of light paths, and gather rays that ask them.
-class Gather {
-  public:
-    Gather(const Scene& scene, std::uint64_t seed)
-        : scene_(scene), patches_(scene),
-          global_(emit_photons(scene, {}, {.paths = kPaths, .photons = kPaths, .seed = seed}, {}).global),
-          irradiance_(global_.pilots(), global_.main_photons(),
-                      {.k = 60, .max_radius = kReach, .patches = &patches_, .scene = &scene}, {}),
-          direct_(scene, irradiance_.places(), {}, {}) {}
+/// Gather rays that ask the photons of light paths.
+MappedGather gather(const Scene& scene, const SurfacePatches& patches, std::uint64_t seed) {
+    const EmissionOptions options{.paths = kPaths, .photons = kPaths, .seed = seed};
+    return {
+        scene, patches, emit_photons(scene, {}, options, {}).global, {.max_radius = kReach, .caustic_radius = kReach}};
+}
 
-    GatherRays rays(const LobeTechniques* lobes = nullptr) const {
-        return {
-            scene_,
-            {.global = &global_, .irradiance = &irradiance_, .direct = &direct_, .patches = &patches_, .lobes = lobes},
-            {.max_radius = kReach, .caustic_radius = kReach},
-            8};
-    }
-    LobeTechniques lobes() const { return {rays(), 1, {}}; }
+LobeTechniques techniques(const Scene& scene) {
+    const SurfacePatches patches(scene);
+    return {gather(scene, patches, 1).rays(), 1, {}};
+}
 
-  private:
-    const Scene& scene_;
-    SurfacePatches patches_;
-    PilotedMap global_;
-    IrradianceMap irradiance_;
-    DirectIrradianceCache direct_;
-};
-
-MaterialPtr frosted() { return make_dielectric(1.5, constant_texture(0.3), constant_texture(0.3)); }
-
-/// A window of ground glass, 2 cm thick, before an even sky. The faces of the glass are the last two shapes.
+/// A window of ground glass before an even sky. The faces of the glass are the last two shapes.
 std::unique_ptr<Scene> frosted_window() {
     test::SceneMaker m = test::room_with_a_window();
-    m.rectangle({0.9f, 0.9f, -0.07f}, {0, 1, 0}, {1, 0, 0}, frosted());
-    m.rectangle({0.9f, 0.9f, -0.05f}, {1, 0, 0}, {0, 1, 0}, frosted());
+    test::add_pane(m, test::ground_glass());
     m.emitter(make_constant_environment(Rgb(1.0)));
     return m.camera({2.7f, 1.5f, 2.8f}, {0.8f, 1.0f, 0.2f}, 60).window(16, 16).build();
 }
@@ -59,7 +41,7 @@ std::unique_ptr<Scene> frosted_bulb(float width) {
     test::SceneMaker m;
     const Vec3 bulb(1.2f, 1.2f, 1.2f);
     m.room({0, 0, 0}, {2.5f, 2.5f, 2.5f}, make_diffuse(Rgb(0.6)));
-    m.sphere(bulb, 0.25f, frosted());
+    m.sphere(bulb, 0.25f, test::ground_glass());
     m.rectangle(bulb - Vec3(width / 2, 0, width / 2), {0, 0, width}, {width, 0, 0}, make_diffuse(Rgb(0.0)), Rgb(100.0),
                 true);
     return m.camera({2.4f, 2.4f, 2.4f}, {0.8f, 0.7f, 0.4f}, 60).window(16, 16).build();
@@ -71,12 +53,12 @@ std::uint32_t last_shape(const Scene& scene, std::uint32_t but = 0) {
 
 TEST(LobeTechniques, TraceOnThroughWindowsBeforeAnEvenSky) {
     const auto scene = frosted_window();
-    EXPECT_FALSE(Gather(*scene, 1).lobes().by_photons(last_shape(*scene)));
+    EXPECT_FALSE(techniques(*scene).by_photons(last_shape(*scene)));
 }
 
 TEST(LobeTechniques, AskPhotonsOfASmallLampInGroundGlass) {
     const auto scene = frosted_bulb(0.02f);
-    EXPECT_TRUE(Gather(*scene, 1).lobes().by_photons(last_shape(*scene, 1)));
+    EXPECT_TRUE(techniques(*scene).by_photons(last_shape(*scene, 1)));
 }
 
 /// What rays from a place in the room to the glass find in many maps.
@@ -84,24 +66,25 @@ struct Found {
     RunningStats by_photons, traced, noise; ///< the noise: what is said of that by photons
 };
 Found look(const Scene& scene, const Vec3& place, const Vec3& glass, std::uint64_t maps) {
-    Vertex from;
-    from.point.site = Site::point;
-    from.point.p = place;
+    const SurfacePatches patches(scene);
     const Vec3 w = (glass - place).normalized();
-    const Vertex met = make_vertex(*scene.trace(from.point, w));
+    SurfacePoint eye;
+    eye.site = Site::point;
+    eye.p = place;
+    const Vertex met = make_vertex(*scene.trace(eye, w));
     const LobeTechniques always_traced;
     Found found;
     for (std::uint64_t seed = 1; seed <= maps; ++seed) {
-        const Gather gather(scene, seed);
+        const MappedGather of_map = gather(scene, patches, seed);
         Rng rng(seed, StreamPurpose::test, 0);
         RunningStats one, other; // of one map
         for (int i = 0; i < 50; ++i) {
-            one.add(luminance(gather.rays().trace(from, w, 1, 1, rng).indirect));
-            other.add(luminance(gather.rays(&always_traced).trace(from, w, 1, 1, rng).indirect));
+            one.add(luminance(of_map.along(place, w, rng).indirect));
+            other.add(luminance(of_map.along(place, w, rng, &always_traced).indirect));
         }
         found.by_photons.add(one.mean());
         found.traced.add(other.mean());
-        if (const auto n = gather.rays().lobe_noise(met, -w, 1, rng)) found.noise.add(n->photons);
+        if (const auto n = of_map.rays().lobe_noise(met, -w, 1, rng)) found.noise.add(n->photons);
     }
     return found;
 }

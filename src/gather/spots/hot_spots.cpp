@@ -4,7 +4,6 @@
 #include "gather/spots/bright_balls.h"
 #include "gather/visible_point.h"
 #include "sampling/paths/image_lattice.h"
-#include "scene/warp.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,15 +17,12 @@ constexpr std::size_t kMostSpots = 64;
 /// What a gather ray brings of indirect light, and from where; none if it meets nothing.
 std::optional<Finding> find(const GatherRays& rays, std::uint64_t seed, std::int64_t i) {
     Rng rng(seed, StreamPurpose::hot_spots, static_cast<std::uint64_t>(i));
-    const auto from = visible_point(rays, lattice_image_point(seed, StreamPurpose::hot_spots, i), rng);
-    if (!from) return {};
-    const Frame frame(cache_normal(from->vertex, from->back));
-    const double u0 = rng.next(), u1 = rng.next();
-    const Vec3 local = cosine_hemisphere(u0, u1), w = frame.to_world(local);
-    if (!from->leaves(w)) return {};
-    const auto arrival = rays.trace(from->vertex, w, local.z * kInvPi, from->scatterings, rng);
+    const auto ray = first_gather_ray(rays, lattice_image_point(seed, StreamPurpose::hot_spots, i), rng);
+    if (!ray) return {};
+    const VisiblePoint& from = ray->from;
+    const auto arrival = rays.trace(from.vertex, ray->w, ray->pdf, from.scatterings, rng);
     if (!std::isfinite(arrival.distance)) return {};
-    return Finding{from->vertex.point.p + w * arrival.distance, arrival.distance, luminance(arrival.indirect)};
+    return Finding{from.vertex.point.p + ray->w * arrival.distance, arrival.distance, luminance(arrival.indirect)};
 }
 
 } // namespace

@@ -74,12 +74,11 @@ PassGather::PassGather(const SamplerContext& c, const RenderPlan& plan, std::int
                     .caustic_surroundings = caustic_surroundings_ ? &*caustic_surroundings_ : nullptr,
                     .patches = &c.patches,
                     .coverage = c.coverage};
-    rays_.emplace(c.scene, maps, lookups(s, radii), static_cast<int>(s.max_depth));
+    const auto rays = [&] { return GatherRays(c.scene, maps, lookups(s, radii), static_cast<int>(s.max_depth)); };
     // A ray that is traced on ends where no gather ray of a visible point may come.
-    if (irradiance_ && photons.everywhere && c.coverage == nullptr && c.scene.traits().glossy) {
-        maps.lobes = &lobes_.emplace(*rays_, seed, context);
-        rays_.emplace(c.scene, maps, lookups(s, radii), static_cast<int>(s.max_depth));
-    }
+    if (irradiance_ && photons.everywhere && c.coverage == nullptr && c.scene.traits().glossy)
+        maps.lobes = &lobes_.emplace(rays(), seed, context);
+    rays_.emplace(rays());
     const GatherSamples samples{.light = static_cast<int>(s.light_samples),
                                 .rays = plan.gather ? static_cast<int>(s.gather_rays) : 1};
     if (plan.cache) {
