@@ -37,7 +37,7 @@ TEST(GlazedRoom_Light, IsTheSameByEveryMethod) {
     base.spp = 4;
     base.brightness_samples = 20'000;
     base.importons = 15'000;
-    base.mutations = 80'000;
+    base.mutations = 50'000;
     base.light_paths = 40'000;
     base.photons = 20'000;
     base.chains = 200;
@@ -48,7 +48,7 @@ TEST(GlazedRoom_Light, IsTheSameByEveryMethod) {
         paths.method = &methods::bdpt;
         paths.spp = 64;
         std::vector<Settings> others = test::by_methods(base, {"path", "mlt", "ipm", "mps", "pss"});
-        others[0].spp = 50;
+        others[0].spp = 32;
         others[1].spp = 16;
         test::expect_same_light(*glazed_room(thick), paths, others, 4);
     }

@@ -126,10 +126,10 @@ TEST_P(Coats_AgreeWithPaths, BlockByBlock) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Rooms, Coats_AgreeWithPaths,
-                         testing::Values(CoatCase{"smooth", varnished_box<0>, 60},
-                                         CoatCase{"rough", varnished_box<20>, 60}, CoatCase{"plastic", plastic_box, 60},
-                                         CoatCase{"daylight", varnished_daylight, 120, 1},
-                                         CoatCase{"kitchen", kitchen, 60, 1}),
+                         testing::Values(CoatCase{"smooth", varnished_box<0>, 32},
+                                         CoatCase{"rough", varnished_box<20>, 32}, CoatCase{"plastic", plastic_box, 40},
+                                         CoatCase{"daylight", varnished_daylight, 80, 1},
+                                         CoatCase{"kitchen", kitchen, 40, 1}),
                          [](const auto& info) { return std::string(info.param.name); });
 
 } // namespace

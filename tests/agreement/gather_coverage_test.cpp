@@ -16,7 +16,7 @@ TEST(Reach_AgreesWithBidirectionalTracing, BlockByBlock) {
     const auto scene = test::two_rooms(0.3f);
     Settings paths;
     paths.method = &methods::bdpt;
-    paths.spp = 32;
+    paths.spp = 20;
     paths.seed = 1000;
     const test::Blocks reference = test::render_blocks(*scene, paths, kRuns);
     Settings photons;

@@ -25,14 +25,14 @@ TEST_P(Mps_AgreesWithPathTracing, BlockByBlock) {
     scene.set_window({96, 64, 0});
     Settings paths; // from both ends: through a door those from the eye alone would be noise
     paths.method = &methods::bdpt;
-    paths.spp = 24;
+    paths.spp = 16;
     paths.seed = 1000;
     Settings mps;
     mps.method = &methods::mps;
     mps.spp = 4;
-    mps.brightness_samples = 100'000;
-    mps.importons = 100'000;
-    mps.mutations = 200'000;
+    mps.brightness_samples = 60'000;
+    mps.importons = 60'000;
+    mps.mutations = 120'000;
     mps.photons = 40'000;
     mps.cache_rays = 200;
     const test::Blocks reference = test::render_blocks(scene, paths, 4);
