@@ -110,11 +110,15 @@ class CacheFill {
     std::vector<std::uint64_t> indices_;
 };
 
-constexpr double kFewestRays = 64; // that tell how far a record is good for
+constexpr double kFewestRays = 64;       // that tell how far a record is good for
+constexpr std::int64_t kMostToLook = 16; // rays of records that one ray that looks for hot spots has to help
 
-/// Rays to look for hot spots by: not many where those that spots would help are few.
-std::int64_t spot_rays(const CacheOptions& options) {
-    return std::clamp<std::int64_t>(std::int64_t{256} * options.rays, 1 << 13, 1 << 16);
+/// Rays to look for hot spots by: not many where those that spots would help are few, as in the small pictures that
+/// methods are chosen by, which have about a record a pixel.
+std::int64_t spot_rays(const CacheOptions& options, const ImageWindow& window) {
+    const auto worth = std::clamp<std::int64_t>(std::int64_t{256} * options.rays, 1 << 13, 1 << 16);
+    const auto helped = static_cast<std::int64_t>(window.size() * options.rays);
+    return std::min(worth, std::max(std::int64_t{1} << 11, helped / kMostToLook));
 }
 
 /// A sum over o^2 times as many records has o^-2 times the variance, which falls with the number of rays as well, and a
@@ -139,7 +143,7 @@ CacheOptions cache_options(const Settings& settings, double shrink, std::uint64_
 }
 
 HotSpots find_hot_spots(const GatherRays& rays, const CacheOptions& options, const RunContext& context) {
-    return {rays, spot_rays(options), options.seed, context};
+    return {rays, spot_rays(options, rays.scene().camera().window()), options.seed, context};
 }
 
 IrradianceCache fill_cache(const GatherRays& rays, const HotSpots& spots, const CacheOptions& options,

@@ -12,6 +12,8 @@ namespace {
 /// Rays that look for lobes, and the lobes of a shape that are measured, at least and at most: what is small is met
 /// seldom, but rays may be aimed at it later.
 constexpr std::int64_t kRays = 16'384;
+/// No more than so many for a pixel: small pictures, which methods are chosen by, would spend most of their time on it.
+constexpr double kRaysOfPixel = 8;
 constexpr int kLeastLobes = 8, kMostLobes = 32;
 constexpr std::int64_t kBlock = 64;
 
@@ -61,8 +63,9 @@ std::vector<std::int64_t> choose(const std::vector<std::uint32_t>& met, std::siz
 
 LobeTechniques::LobeTechniques(const GatherRays& rays, std::uint64_t seed, const RunContext& context) {
     const Search search(rays, seed);
-    std::vector<std::uint32_t> met(static_cast<std::size_t>(kRays), SurfacePoint::kNone);
-    parallel_blocks(kRays, kBlock, context, [&](std::int64_t i) {
+    const auto of_pixels = static_cast<std::int64_t>(kRaysOfPixel * rays.scene().camera().window().size());
+    std::vector<std::uint32_t> met(static_cast<std::size_t>(std::min(kRays, of_pixels)), SurfacePoint::kNone);
+    parallel_blocks(std::ssize(met), kBlock, context, [&](std::int64_t i) {
         Rng rng = search.stream(i);
         if (const auto end = search.end(i, rng)) met[static_cast<std::size_t>(i)] = end->v.point.shape;
     });

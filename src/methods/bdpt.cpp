@@ -78,7 +78,7 @@ RenderResult render_bdpt(const RenderTask& task) {
 constinit const Method methods::bdpt{.name = "bdpt",
                                      .help = "bidirectional path tracing",
                                      .samples_pixels = true,
-                                     .trial = {.share = 0.08, .by_work = true},
+                                     .trial = {.share = 0.10, .by_work = true},
                                      .render = render_bdpt};
 
 } // namespace keyhole

@@ -46,7 +46,9 @@ struct Method {
     struct Trial {
         double share = 0;     ///< of the time for all trials; 0: it isn't tried
         bool by_work = false; ///< tried where there is no time to go by, too
-        double doubt = 1;     ///< by how much a trial flatters its error: chains are too short to show what they miss
+        /// By how much a trial flatters its error: photons of two renders blur light alike, and chains are too short to
+        /// show what they miss.
+        double doubt = 1;
     } trial{};
 
     /// What a unit of effort is spent on, where the method runs chains.

@@ -41,9 +41,9 @@ Settings with_effort(const Settings& settings, double effort, std::int64_t pixel
         0x1p50);
     set("brightness_samples", &Settings::brightness_samples,
         s.method->brightness_samples_of_effort * effort * balance.brightness / passes, 5000, 0x1p40);
-    // More of them where the render is short, though not where they would take all of its time: without them photons
-    // would be weighed, or looked for, by chance, which costs more.
-    set("importons", &Settings::importons, 100e3 * effort / passes, std::clamp(1e6 * effort, 10e3, 50e3), 1 << 30);
+    // More of them where the render is short: without them photons would be weighed, or looked for, by chance. But on
+    // finely meshed scenes a path of theirs takes ten times as long as one of light.
+    set("importons", &Settings::importons, 100e3 * effort / passes, std::clamp(200e3 * effort, 8e3, 25e3), 1 << 30);
     // Where there is time for few rays, they are better spent on few records than on poor ones.
     if (!given.contains("cache_error"))
         s.cache_error = Settings().cache_error * std::clamp(std::pow(effort, -0.3), 1.0, 2.0);

@@ -28,6 +28,8 @@ namespace {
 constexpr double kClose = 1.5;
 /// Of the time, each of the two renders of either method that show how large their errors are.
 constexpr double kPart = 1.0 / 24;
+/// Samples of a pixel that the first of them should have.
+constexpr double kSamplesOfPart = 1.5;
 /// What counts less than this share of the better method's seconds would only cost it its statistics.
 constexpr double kNoWeight = 0.2;
 constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -90,8 +92,14 @@ class RenderInTime {
     /// Whether two methods are so close that a longer look is worth its time. Several small photon maps are worse than
     /// a large one, and what they show of it is little.
     bool is_close() const {
-        return tried_.size() > 1 && tried_[1].predicted < kClose * tried_[0].predicted &&
-               !tried_[0].method->keeps_photons && !tried_[1].method->keeps_photons;
+        return tried_.size() > 1 && tried_[1].predicted < kClose * tried_[0].predicted && fits_part(tried_[0]) &&
+               fits_part(tried_[1]);
+    }
+    /// Whether a part of the time shows anything of the method: of one that samples pixels, a sample of each at least.
+    bool fits_part(const TriedMethod& t) const {
+        if (t.method->keeps_photons) return false;
+        const double of_samples = t.of.taken / t.of.samples * pixels_ / t.of.cost.pixels;
+        return !t.method->samples_pixels || kSamplesOfPart * of_samples < kPart * left();
     }
 
     /// The method, and what it costs.
@@ -136,10 +144,12 @@ class RenderInTime {
                                                method_->name, made[k].error, tried_[k].predicted));
             if (k == 0 && kClose * made[0].error < tried_[1].predicted) break; // not so close after all
         }
-        const std::size_t better = made[1].error < made[0].error ? 1 : 0;
+        // What is too slow for a part may be the better one for all: its trial has to do.
+        const auto error = [&](std::size_t k) { return made[k].error < kNever ? made[k].error : tried_[k].predicted; };
+        const std::size_t better = error(1) < error(0) ? 1 : 0;
         take_over(tried_[better]);
         for (std::size_t k = 0; k < made.size(); ++k) {
-            const double weight = k == better ? 1 : made[better].error / made[k].error;
+            const double weight = k == better ? 1 : error(better) / error(k);
             if (!made[k].mean.empty() && weight > kNoWeight) mean_.add(made[k].mean.take(), weight * made[k].seconds);
         }
         remarks_.push_back("the rest of the time went to " + std::string(method_->name));

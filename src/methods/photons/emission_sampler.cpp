@@ -59,7 +59,7 @@ constinit const Method methods::ipm{.name = "ipm",
                                     .follows_user_paths = true,
                                     .asks_for_direct_light = true,
                                     .importance = ImportanceUse::guide,
-                                    .trial = {.share = 0.30, .by_work = true},
+                                    .trial = {.share = 0.30, .by_work = true, .doubt = 1.4},
                                     .render = render_photons,
                                     .make_sampler = [](const SamplerContext& c) -> std::unique_ptr<PhotonSampler> {
                                         return std::make_unique<EmissionSampler>(c, true);

@@ -25,10 +25,10 @@ constexpr double kBearable = 40;
 constexpr std::uint64_t kSeed = 1; // as GatherCoverage: the choice doesn't change with the seed
 /// Gather rays to find out by. Fewer miss what few of them find, and take it for little.
 constexpr std::int64_t kRays = 1 << 15, kBlock = 256;
-/// So many are enough where they leave no doubt: where as many as that find light outside gather coverage, by their
-/// effective number, and its variance is a quarter of what is bearable.
+/// So many, or twice as many, and so on, are enough where they leave no doubt: where as many as that find light outside
+/// gather coverage, by their effective number, and its variance is half of what is bearable.
 constexpr std::int64_t kFirst = 1 << 12;
-constexpr double kSure = 100, kSurelyBearable = kBearable / 4;
+constexpr double kSure = 40, kSurelyBearable = kBearable / 2;
 /// What so many of them find may be chance. Where many others, by their effective number, find light as well, these
 /// tell of the noise.
 constexpr std::int64_t kChance = 3;
@@ -96,9 +96,10 @@ bool too_noisy(const Scene& scene, const GatherCoverage& coverage, int max_scatt
                        rays[static_cast<std::size_t>(i)]);
         });
     };
-    trace({0, kFirst});
-    if (surely_bearable(std::span(rays).first(kFirst))) return false;
-    trace({kFirst, kRays});
+    for (std::int64_t begin = 0, end = kFirst; begin < kRays; begin = end, end *= 2) {
+        trace({begin, end});
+        if (surely_bearable(std::span(rays).first(static_cast<std::size_t>(end)))) return false;
+    }
     if (effective_rays(rays) == 0) return true;
     if (!too_noisy(rays)) return false;
     std::ranges::nth_element(rays, rays.end() - kChance, {}, &GatheredLight::beyond);
