@@ -20,9 +20,9 @@ std::vector<Photon> ImportanceGuide::some(const PhotonMap& importons) {
 std::optional<double> ImportanceGuide::visible_power(const Vertex& v, const Vec3& to_light, const Rgb& power) const {
     const Vec3 side = facing(v.point.ng, to_light);
     // What goes through is wanted on the other side, too: the better of the two tells.
-    auto answer = map_.irradiance(v.point.p, side);
+    auto answer = map_.irradiance(v.point, side);
     if (v.bsdf.traits().through) {
-        const auto behind = map_.irradiance(v.point.p, -side);
+        const auto behind = map_.irradiance(v.point, -side);
         if (!answer.known || (behind.known && luminance(behind.irradiance) > luminance(answer.irradiance)))
             answer = behind;
     }
