@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kBlock = 4;      // pixels
 constexpr int kParts = 4;      // of the picture, each way, in which light may be missing
-constexpr int kSmooth = 3;     // pixels, each way: a pixel's noise must not be what it is compared with
+constexpr int kSmooth = 1;     // pixels, each way: more than one, for its noise must not be what it is compared with
 constexpr double kDark = 0.01; // squared mean of the picture, lamps in view left out, that is added to a pixel's square
 // Share of the pixels, those with the largest errors, that are left out, as error measures of pictures do. These have
 // several times the samples in a pixel: of bright ones that are rare, and in few pixels of a trial, they leave out
