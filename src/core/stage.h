@@ -3,6 +3,8 @@
 
 #include "core/settings.h"
 
+#include <limits>
+
 namespace keyhole {
 
 /// A kind of stage. Its time in all passes is about proportional to what a setting says, and to a power of the number
@@ -15,6 +17,9 @@ struct Stage {
     std::int64_t Settings::*setting = nullptr; ///< null: the settings have no say
     double pixel_power = 0;
     Work work = Work::other;
+    /// Bounds of the setting, beyond which the time follows it no more.
+    std::int64_t least = 1, most = std::numeric_limits<std::int64_t>::max();
+    bool once = false; ///< for all passes
 };
 
 /// Those that several methods have.
@@ -22,7 +27,6 @@ namespace stages {
 inline constexpr Stage brightness{"brightness", &Settings::brightness_samples, 0, Stage::Work::brightness};
 inline constexpr Stage seeds{"seeds"};
 inline constexpr Stage importance{"importance", &Settings::importons};
-inline constexpr Stage emission{"emission", &Settings::light_paths};
 inline constexpr Stage tuning{"tuning"};
 inline constexpr Stage chains{"chains", &Settings::mutations, 0, Stage::Work::chains};
 inline constexpr Stage photons_of_chains{"photons", &Settings::mutations, 0, Stage::Work::chains};

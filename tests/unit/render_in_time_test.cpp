@@ -38,6 +38,17 @@ TEST(StageWork, IsInProportionToWhatAStageDoes) {
     EXPECT_DOUBLE_EQ(ratio(stages::photons_of_light_paths), 14);
 }
 
+TEST(StageWork, OfWhatIsDoneOnceAndWithinBoundsIsNoMore) {
+    const Stage bounded{.name = "", .setting = &Settings::light_paths, .least = 100, .most = 1000, .once = true};
+    Settings few, more, many;
+    few.light_paths = 10;
+    more.light_paths = 300;
+    many.light_paths = 5000;
+    many.passes = 4;
+    EXPECT_DOUBLE_EQ(stage_work(bounded, more, 1) / stage_work(bounded, few, 1), 3);
+    EXPECT_DOUBLE_EQ(stage_work(bounded, many, 1) / stage_work(bounded, few, 1), 10);
+}
+
 TEST(Blend, IsTheWeightedMeanOfEveryLayer) {
     Picture a{2, 1, {{"x", Image(2, 1, 1)}, {"y", Image(2, 1, 3)}}, {}, {}}, b = a;
     a.layers["x"].data = {1, 2};

@@ -8,8 +8,9 @@ namespace keyhole {
 
 double stage_work(const Stage& stage, const Settings& settings, double pixels) {
     if (stage.setting == nullptr) return 1;
-    return static_cast<double>(std::max<std::int64_t>(1, settings.passes)) *
-           static_cast<double>(settings.*stage.setting) * std::pow(pixels, stage.pixel_power);
+    const std::int64_t passes = stage.once ? 1 : std::max<std::int64_t>(1, settings.passes);
+    const std::int64_t value = std::clamp(settings.*stage.setting, stage.least, stage.most);
+    return static_cast<double>(passes) * static_cast<double>(value) * std::pow(pixels, stage.pixel_power);
 }
 
 Experience::Experience(const Settings& settings, double effort, double pixels, const RenderStats& stats, double seconds)

@@ -7,8 +7,6 @@
 namespace keyhole {
 namespace {
 
-/// Light paths for each path that learns where they are to begin, and the bounds of these.
-constexpr std::int64_t kPathsOfLearning = 16, kLeastPaths = 2048, kMostPaths = 1 << 16;
 constexpr std::size_t kMemoryOfLearning = 5;
 
 /// Along user paths light goes as they say.
@@ -37,7 +35,7 @@ LearnedLightPaths learn_light_paths(const SamplerContext& c, RenderStats& stats,
     if (!is_worth_it(c)) return {};
     const StageClock clock(stats, stages::emission);
     LearnedLightPaths learned =
-        learn_light_paths(c, std::clamp(c.settings.light_paths / kPathsOfLearning, kLeastPaths, kMostPaths), run);
+        learn_light_paths(c, std::clamp(c.settings.light_paths / kPathsOfLearning, kLeastLearning, kMostLearning), run);
     stats.values["emitters that matter"] = learned.emission->effective_emitters();
     stats.values["light scattered as it was learned"] = learned.scattering ? learned.scattering->helped_share() : 0;
     stats.values["learned_light_paths_bytes"] =

@@ -1,6 +1,7 @@
 // Where light paths begin and go on, learned once for all passes: whoever makes one of them makes the same photons.
 #pragma once
 
+#include "core/stage.h"
 #include "methods/photons/photon_sampler.h"
 #include "sampling/guidance/learned/learned_emission.h"
 #include "sampling/guidance/learned/learned_scattering.h"
@@ -8,6 +9,17 @@
 #include <optional>
 
 namespace keyhole {
+
+/// Light paths for each path that learns where they are to begin, and the bounds of these.
+constexpr std::int64_t kPathsOfLearning = 16, kLeastLearning = 2048, kMostLearning = 1 << 16;
+
+namespace stages {
+inline constexpr Stage emission{.name = "emission",
+                                .setting = &Settings::light_paths,
+                                .least = kPathsOfLearning * kLeastLearning,
+                                .most = kPathsOfLearning * kMostLearning,
+                                .once = true};
+} // namespace stages
 
 /// Each none where it doesn't pay.
 struct LearnedLightPaths {
