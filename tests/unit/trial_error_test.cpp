@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace keyhole {
@@ -49,6 +50,21 @@ TEST(TrialErrors, MissLightThatTwoRendersAgreeNotToFind) {
     const std::vector<TrialError> e = trial_errors(methods);
     EXPECT_EQ(e[0].missing, 0);
     EXPECT_GT(e[1].missing, 0.1) << "half of the picture lacks two thirds of its light";
+}
+
+/// Both renders of the one are black but for a few samples, and so agree: errors are not relative to that.
+TEST(TrialErrors, AreNotRelativeToThePictureOfAMethodThatFindsNothing) {
+    std::vector<TrialPictures> methods{halves(0.1, 0, 1, 1), halves(0, 0, 0, 2)};
+    for (Image* image : {&methods[1].first, &methods[1].second}) std::ranges::fill(image->data, 0.0f);
+    *methods[1].first.at(5, 5) = 100;
+    const std::vector<TrialError> e = trial_errors(methods);
+    EXPECT_NEAR(e[0].grain, 0.01, 0.002);
+    EXPECT_GT(e[1].missing, 0.5);
+}
+
+TEST(TrialErrors, OfNarrowerPixelsAreLessOnlyBeyondChance) {
+    EXPECT_EQ(variance_less(halves(1, 0, 1, 1), halves(0.99, 0, 1, 2)), 0);
+    EXPECT_NEAR(variance_less(halves(0.3, 0, 1, 1), halves(0.1, 0, 1, 2)), 0.06, 0.02);
 }
 
 /// One pixel in 200 has met light that is rare: in a picture of ten times the samples one in 20 will.

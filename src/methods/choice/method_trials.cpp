@@ -245,7 +245,7 @@ double work_asked_for(const TrialContext& c, std::span<const TriedMethod> tried)
 double variance_within_pixels(std::span<const TriedMethod> tried) {
     const auto path = std::ranges::find_if(tried, [](const TriedMethod& t) { return t.narrow.has_value(); });
     if (path == tried.end()) return 0;
-    return std::max(0.0, variance_of_most(path->pictures) - variance_of_most(*path->narrow)) * path->of.samples;
+    return variance_less(path->pictures, *path->narrow) * path->of.samples;
 }
 
 /// Errors of all, for so much time or work, and the best first.

@@ -1,5 +1,6 @@
 #include "methods/choice/trial_error.h"
 
+#include "core/statistics.h"
 #include "core/vec.h"
 
 #include <algorithm>
@@ -19,6 +20,10 @@ constexpr double kDark = 0.01; // squared mean of the picture, lamps in view lef
 constexpr double kTrimmed = 0.01, kTrimmedOfRare = 0.0025;
 // Share of the pixels, the brightest, that may show lamps, or be blurred with one.
 constexpr double kLamps = 0.1;
+// Share of the pixels in which bright, rare samples may be.
+constexpr double kRareSamples = 0.05;
+// Of the brightness that another method finds in most of the picture, what shows that a method finds its light.
+constexpr double kFindsLight = 0.5;
 constexpr double kStandardErrors = 2; // that two means differ by before light is missing
 
 using Values = std::vector<double>;
@@ -27,14 +32,14 @@ double mean(const Values& v) {
     return v.empty() ? 0 : std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size());
 }
 
-double trimmed_mean(Values v, double trimmed) {
+Values without_largest(Values v, double share) {
     std::ranges::sort(v);
-    v.resize(v.size() - static_cast<std::size_t>(std::ceil(trimmed * static_cast<double>(v.size()))));
-    return mean(v);
+    v.resize(v.size() - static_cast<std::size_t>(std::ceil(share * static_cast<double>(v.size()))));
+    return v;
 }
 
 /// Brightness of a picture without its brightest pixels: beside a lamp in view everything else would be dark.
-double typical(const Values& picture) { return trimmed_mean(picture, kLamps); }
+double typical(const Values& picture) { return mean(without_largest(picture, kLamps)); }
 
 /// A grid of numbers, row by row.
 struct Grid {
@@ -85,25 +90,31 @@ Grid difference_of(const TrialPictures& m) {
     return combined(m, [](double a, double b) { return a - b; });
 }
 
-/// Half the squared difference is the variance of one of two. Relative to `picture`.
-double relative_variance(const Grid& difference, const Grid& picture, double trimmed = kTrimmed) {
+/// Half the squared difference is the variance of one of two. Relative to `picture`; of pixels.
+Values relative_variances(const Grid& difference, const Grid& picture) {
     const double dark = kDark * typical(picture.values) * typical(picture.values);
     Values v;
     for (std::size_t i = 0; i < difference.values.size(); ++i) {
         const double d = difference.values[i], p = picture.values[i];
         v.push_back(p * p + dark > 0 ? d * d / 2 / (p * p + dark) : 0);
     }
-    return trimmed_mean(std::move(v), trimmed);
+    return v;
+}
+double relative_variance(const Grid& difference, const Grid& picture, double trimmed = kTrimmed) {
+    return mean(without_largest(relative_variances(difference, picture), trimmed));
 }
 
-/// The mean of all, each weighted by the reciprocal of its variance relative to itself.
+/// The mean of all, each weighted by the reciprocal of its variance relative to itself. One that hardly finds anything
+/// where others see light agrees with itself as well: it has no say.
 Grid common_picture(std::span<const TrialPictures> methods) {
+    double brightest = 0;
+    for (const TrialPictures& m : methods) brightest = std::max(brightest, typical(mean_of(m).values));
     Grid sum{methods[0].first.width, methods[0].first.height, Values(methods[0].first.data.size(), 0.0)};
     double weights = 0;
     for (const TrialPictures& m : methods) {
         const Grid own = mean_of(m);
+        if (!(mean(own.values) > 0) || typical(own.values) < kFindsLight * brightest) continue;
         const double weight = 1 / (relative_variance(difference_of(m), own.smooth()) + 1e-9);
-        if (!(mean(own.values) > 0)) continue; // a black picture agrees with itself
         weights += weight;
         for (std::size_t i = 0; i < sum.values.size(); ++i) sum.values[i] += weight * own.values[i];
     }
@@ -140,8 +151,15 @@ Image luminance_of(const Picture& picture, const std::string& layer) {
     return y;
 }
 
-double variance_of_most(const TrialPictures& pictures) {
-    return relative_variance(difference_of(pictures), mean_of(pictures).smooth(), 0.05);
+double variance_less(const TrialPictures& wide, const TrialPictures& narrow) {
+    const auto of_most = [](const TrialPictures& m) {
+        RunningStats stats;
+        for (const double v : without_largest(relative_variances(difference_of(m), mean_of(m).smooth()), kRareSamples))
+            stats.add(v);
+        return stats;
+    };
+    const RunningStats w = of_most(wide), n = of_most(narrow);
+    return std::max(0.0, w.mean() - n.mean() - std::hypot(w.standard_error(), n.standard_error()));
 }
 
 double share_of_grain(const TrialPictures& part, const TrialPictures& whole) {

@@ -30,9 +30,9 @@ struct TrialError {
 /// The luminance of a layer: by default, of what is looked at.
 Image luminance_of(const Picture& picture, const std::string& layer = "beauty");
 
-/// Variance of pixels of one of two renders, relative to their mean, without the twentieth where it is largest: bright,
-/// rare samples say nothing of the rest.
-double variance_of_most(const TrialPictures& pictures);
+/// By how much the variance of pixels, relative to their mean, is smaller in narrower ones, as far as it can't be
+/// chance. Without the twentieth where it is largest: bright, rare samples say nothing of the rest.
+double variance_less(const TrialPictures& wide, const TrialPictures& narrow);
 
 /// The share of the grain of two renders that a part of their light has: 0 to 1.
 double share_of_grain(const TrialPictures& part, const TrialPictures& whole);
