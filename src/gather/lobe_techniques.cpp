@@ -9,11 +9,12 @@
 namespace keyhole {
 namespace {
 
-/// Rays that look for lobes, and the lobes of a shape that are measured, at least and at most: what is small is met
-/// seldom, but rays may be aimed at it later.
+/// Rays that look for lobes; no more than so many for a pixel, for small pictures, which methods are chosen by, would
+/// spend most of their time on it.
 constexpr std::int64_t kRays = 16'384;
-/// No more than so many for a pixel: small pictures, which methods are chosen by, would spend most of their time on it.
 constexpr double kRaysOfPixel = 8;
+/// Lobes of a shape that are measured, at least and at most: what is small is met seldom, but rays may be aimed at it
+/// later.
 constexpr int kLeastLobes = 8, kMostLobes = 32;
 constexpr std::int64_t kBlock = 64;
 

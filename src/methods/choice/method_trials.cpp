@@ -232,8 +232,7 @@ double work_asked_for(const TrialContext& c, std::span<const TriedMethod> tried)
     const double pixels = c.scene.camera().window().size();
     const auto ipm = std::ranges::find(tried, &methods::ipm, &TriedMethod::method);
     if (ipm == tried.end()) {
-        const TrialCost& of = tried.front().of;
-        return of.taken / of.samples * static_cast<double>(c.settings.spp) * pixels / of.cost.pixels;
+        return static_cast<double>(c.settings.spp) * tried.front().of.per_sample(pixels);
     }
     Settings s = c.settings;
     s.method = &methods::ipm;
@@ -329,8 +328,7 @@ Settings settings_of_same_work(const TrialContext& c, std::span<const TriedMetho
     s.method = best.method;
     const double pixels = c.scene.camera().window().size(), work = work_asked_for(c, tried);
     if (best.method->samples_pixels) {
-        const double per_sample = best.of.taken / best.of.samples * pixels / best.of.cost.pixels;
-        s.spp = std::max(s.spp, static_cast<std::int64_t>(work / per_sample));
+        s.spp = std::max(s.spp, static_cast<std::int64_t>(work / best.of.per_sample(pixels)));
     } else if (!best.method->keeps_photons) {
         const double effort = affordable_effort(best.of.cost, s, {}, {}, pixels, work);
         const Settings same = with_effort(s, effort, static_cast<std::int64_t>(pixels), {});

@@ -23,6 +23,8 @@ struct TrialCost {
     StageBalance balance;                      ///< that it found best
     std::optional<PhotonQuality::Noise> noise; ///< told where time is limited: otherwise settings stay as they are
 
+    /// What one more sample of each of so many pixels would take: seconds, or rays.
+    double per_sample(double pixels) const { return taken / samples * pixels / cost.pixels; }
     /// Settings of a render of so many seconds, or rays, at least with effort `least`; `effort` becomes its effort.
     Settings settings_for(const Settings& s, const std::set<std::string>& given, double pixels, double seconds,
                           double& effort) const;

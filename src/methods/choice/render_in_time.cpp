@@ -98,8 +98,7 @@ class RenderInTime {
     /// Whether a part of the time shows anything of the method: of one that samples pixels, a sample of each at least.
     bool fits_part(const TriedMethod& t) const {
         if (t.method->keeps_photons) return false;
-        const double of_samples = t.of.taken / t.of.samples * pixels_ / t.of.cost.pixels;
-        return !t.method->samples_pixels || kSamplesOfPart * of_samples < kPart * left();
+        return !t.method->samples_pixels || kSamplesOfPart * t.of.per_sample(pixels_) < kPart * left();
     }
 
     /// The method, and what it costs.

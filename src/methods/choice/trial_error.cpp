@@ -107,13 +107,15 @@ double relative_variance(const Grid& difference, const Grid& picture, double tri
 /// The mean of all, each weighted by the reciprocal of its variance relative to itself. One that hardly finds anything
 /// where others see light agrees with itself as well: it has no say.
 Grid common_picture(std::span<const TrialPictures> methods) {
-    double brightest = 0;
-    for (const TrialPictures& m : methods) brightest = std::max(brightest, typical(mean_of(m).values));
+    Values brightness;
+    for (const TrialPictures& m : methods) brightness.push_back(typical(mean_of(m).values));
+    const double brightest = std::ranges::max(brightness);
     Grid sum{methods[0].first.width, methods[0].first.height, Values(methods[0].first.data.size(), 0.0)};
     double weights = 0;
-    for (const TrialPictures& m : methods) {
+    for (std::size_t k = 0; k < methods.size(); ++k) {
+        const TrialPictures& m = methods[k];
         const Grid own = mean_of(m);
-        if (!(mean(own.values) > 0) || typical(own.values) < kFindsLight * brightest) continue;
+        if (!(mean(own.values) > 0) || brightness[k] < kFindsLight * brightest) continue;
         const double weight = 1 / (relative_variance(difference_of(m), own.smooth()) + 1e-9);
         weights += weight;
         for (std::size_t i = 0; i < sum.values.size(); ++i) sum.values[i] += weight * own.values[i];
