@@ -5,6 +5,7 @@
 #include "photon_support.h"
 #include "scene/material.h"
 #include "scene/warp.h"
+#include "support/window_room.h"
 
 #include <gtest/gtest.h>
 
@@ -156,6 +157,22 @@ TEST(GatherRays, AreTracedOnFromSlatsThatAreFinerThanTheEstimate) {
     const GatherRays::Arrival found = below(gather, {0.5005f, 0.25f, 0.5f}, rng);
     EXPECT_NEAR(found.distance, 0.25, 1e-4);
     EXPECT_EQ(luminance(found.indirect), 0) << "a mean over slats";
+}
+
+/// No photon lies on the side that the ray meets, so that nothing is known there.
+TEST(GatherRays, FindLightThatComesThroughFromTheOtherSide) {
+    SceneDescription d;
+    const Rectangle pane{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}};
+    d.shapes.push_back(shape_of(pane));
+    d.shapes.front().material = test::ground_glass();
+    const Scene scene(std::move(d));
+    const SurfacePatches patches(scene);
+    Rng rng = make_rng(5);
+    PhotonSet photons;
+    throw_photons(pane, 20'000, rng, photons.main_photons, Rgb(1.0), -1);
+    throw_photons(pane, 2'000, rng, photons.pilots, Rgb(1.0), -1);
+    const MappedGather gather(scene, patches, photons, lookups());
+    EXPECT_GT(luminance(below(gather, {0.5f, 0.25f, 0.5f}, rng).indirect), 0);
 }
 
 /// Irradiance [W/m^2] a little above the middle of a metal floor of roughness 0.02, on which 100 kW/m^2 fall from
