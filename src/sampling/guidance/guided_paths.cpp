@@ -1,6 +1,6 @@
 #include "sampling/guidance/guided_paths.h"
 
-#include <cmath>
+#include "core/integer_power.h"
 
 namespace keyhole {
 namespace {
@@ -36,7 +36,7 @@ double GuidedPaths::expected_connections(const Path& y) const {
         const int first = guide.vertices();
         if (n <= first) return;
         double light = guide.density(y) * chosen;
-        if (light > 0) light *= std::pow(kGoOn, n - first - 1); // of both walks together
+        if (light > 0) light *= integer_power(kGoOn, n - first - 1); // of both walks together
         for (int s = first; s < n && light > 0; ++s) {
             const auto k = static_cast<std::size_t>(s);
             if (joinable(y.x[k - 1], y.x[k])) {

@@ -1,3 +1,4 @@
+#include "core/integer_power.h"
 #include "sampling/paths/path_tracer.h"
 #include "sampling/primary/path_builder.h"
 
@@ -70,7 +71,7 @@ class EndpointBuilder final : public PathBuilder {
   private:
     static constexpr double kContinue = 0.7;
     static int geometric(double u) { return static_cast<int>(std::log1p(-u) / std::log(kContinue)); }
-    static double probability(int n) { return std::pow(kContinue, n) * (1 - kContinue); }
+    static double probability(int n) { return integer_power(kContinue, n) * (1 - kContinue); }
 
     BuilderContext c_;
 };

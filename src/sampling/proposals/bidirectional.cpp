@@ -1,5 +1,6 @@
 // BD, bidirectional: delete a sub-path, insert one of possibly other length, sampled from either end and joined (Veach
 // 1997, section 11.2.1). It reaches every path that carries light: it alone makes a chain ergodic.
+#include "core/integer_power.h"
 #include "sampling/proposals/cut.h"
 #include "sampling/proposals/edit.h"
 #include "sampling/proposals/registry.h"
@@ -45,7 +46,7 @@ class Bidirectional final : public Proposal<Path> {
 
 double Bidirectional::cut_weight(int removed, bool everything) {
     constexpr double full = 0.3; // a fresh path now and then, whatever its length
-    const double local = removed == 0 ? 0.3 : std::pow(0.6, removed - 1);
+    const double local = removed == 0 ? 0.3 : integer_power(0.6, removed - 1);
     return local + (everything ? full : 0);
 }
 
@@ -88,7 +89,7 @@ std::array<int, 2> Bidirectional::insertions(const Path& x, const Cut& cut) cons
 double length_weight(int change) {
     constexpr std::array<double, 4> w{1.0, 0.4, 0.15, 0.07};
     const int j = std::abs(change);
-    return j < 4 ? w[static_cast<std::size_t>(j)] : 0.07 * std::pow(0.5, j - 3);
+    return j < 4 ? w[static_cast<std::size_t>(j)] : 0.07 * integer_power(0.5, j - 3);
 }
 
 double Bidirectional::insertion_probability(const Path& x, const Cut& cut, int added) const {
