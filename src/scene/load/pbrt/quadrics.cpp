@@ -8,7 +8,7 @@
 namespace keyhole::pbrt {
 namespace {
 
-constexpr std::uint32_t kAround = 256, kAlong = 128; // facets; they lie within 1e-4 radii
+constexpr std::uint32_t kAround = 128, kAlong = 64; // facets; they lie within 3e-4 radii
 
 /// A point of a surface of revolution about z, before it is turned by phi.
 struct ProfilePoint {
