@@ -8,6 +8,8 @@ namespace {
 constexpr double kByPower = 0.125; // share of the choice that looks at power only
 constexpr std::size_t kFewEmitters = 3;
 
+double mixed(double by_power, double by_effect) { return kByPower * by_power + (1 - kByPower) * by_effect; }
+
 double safe_acos(double x) { return std::acos(std::clamp(x, -1.0, 1.0)); }
 
 /// The smallest cone around two cones of normals.
@@ -142,41 +144,43 @@ double LightTree::left_share(const SurfacePoint& point, const Node& node) const 
 }
 
 LightTree::Choice LightTree::sample(const SurfacePoint& point, double u) const {
-    std::uint32_t chosen;
-    if (leaf_of_.empty()) {
-        chosen = by_power_->sample(u);
-    } else if (u < kByPower) {
-        chosen = by_power_->sample(u / kByPower);
-    } else {
-        chosen = sample_by_effect(point, (u - kByPower) / (1 - kByPower));
+    if (leaf_of_.empty() || u < kByPower) {
+        const std::uint32_t chosen = by_power_->sample(leaf_of_.empty() ? u : u / kByPower);
+        return {chosen, probability(point, chosen)};
     }
-    return {chosen, probability(point, chosen)};
+    const Choice chosen = sample_by_effect(point, (u - kByPower) / (1 - kByPower));
+    return {chosen.emitter, mixed(by_power_->probability(chosen.emitter), chosen.probability)};
 }
 
 double LightTree::probability(const SurfacePoint& point, std::uint32_t emitter) const {
     const double power = by_power_->probability(emitter);
-    return leaf_of_.empty() ? power : kByPower * power + (1 - kByPower) * effect_probability(point, emitter);
+    return leaf_of_.empty() ? power : mixed(power, effect_probability(point, emitter));
 }
 
-std::uint32_t LightTree::sample_by_effect(const SurfacePoint& point, double u) const {
+LightTree::Choice LightTree::sample_by_effect(const SurfacePoint& point, double u) const {
     const double near = nodes_.empty() ? 0.0 : importance(point, nodes_[0]), total = near + far_irradiance_;
-    if (!(total > 0)) return by_power_->sample(u);
+    if (!(total > 0)) {
+        const std::uint32_t chosen = by_power_->sample(u);
+        return {chosen, by_power_->probability(chosen)};
+    }
     u *= total;
     if (u >= near && !far_.empty()) {
         u -= near;
-        for (const Far& f : far_)
-            if ((u -= f.irradiance) < 0) return f.emitter;
-        return far_.back().emitter;
+        const auto chosen = std::ranges::find_if(far_, [&](const Far& f) { return (u -= f.irradiance) < 0; });
+        const Far& far = chosen != far_.end() ? *chosen : far_.back();
+        return {far.emitter, far.irradiance / total};
     }
     u /= near;
+    double p = near / total;
     std::uint32_t i = 0;
     while (nodes_[i].left != 0) {
         const double share = left_share(point, nodes_[i]);
         const bool left = u < share;
         u = left ? u / share : (u - share) / (1 - share);
+        p *= left ? share : 1 - share;
         i = left ? nodes_[i].left : nodes_[i].right;
     }
-    return nodes_[i].emitter;
+    return {nodes_[i].emitter, p};
 }
 
 double LightTree::effect_probability(const SurfacePoint& point, std::uint32_t emitter) const {

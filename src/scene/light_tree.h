@@ -42,7 +42,7 @@ class LightTree {
 
     static double importance(const SurfacePoint& point, const Node& node);
     std::uint32_t build(std::vector<Node>& leaves, std::size_t begin, std::size_t end, std::uint32_t parent);
-    std::uint32_t sample_by_effect(const SurfacePoint& point, double u) const;
+    Choice sample_by_effect(const SurfacePoint& point, double u) const;
     double effect_probability(const SurfacePoint& point, std::uint32_t emitter) const;
     /// Of the left one of two children.
     double left_share(const SurfacePoint& point, const Node& node) const;

@@ -54,5 +54,26 @@ TEST(BallTree, CountsTheBallThatARayBeginsInAndNoneBehindIt) {
     EXPECT_TRUE(BallTree().along({0, 0, 0}, {0, 0, 1}).empty());
 }
 
+TEST(BallTree, TellsKindsApart) {
+    const std::vector<Ball> balls = scattered_balls(300, 1);
+    std::vector<std::uint32_t> kinds;
+    for (std::size_t i = 0; i < balls.size(); ++i) kinds.push_back(i % 7 == 0 ? 3 : 90'000);
+    const BallTree tree(balls, kinds);
+    const BallTree all(balls);
+    Rng rng(5, StreamPurpose::test, 0);
+    const auto number = [&] { return static_cast<float>(2 * rng.next() - 1); };
+    for (int i = 0; i < 100; ++i) {
+        const Vec3 w = Vec3(number(), number(), number()).normalized();
+        for (const std::uint32_t kind : {3u, 90'000u}) {
+            std::vector<std::uint32_t> expected;
+            for (const std::uint32_t ball : all.along({0, 0, 0}, w))
+                if (kinds[ball] == kind) expected.push_back(ball);
+            const auto found = tree.along({0, 0, 0}, w, kind);
+            EXPECT_EQ(std::vector<std::uint32_t>(found.begin(), found.end()), expected);
+        }
+        EXPECT_TRUE(tree.along({0, 0, 0}, w, 4).empty());
+    }
+}
+
 } // namespace
 } // namespace keyhole

@@ -22,19 +22,20 @@ bool passes(const Ball& ball, const Vec3& origin, const Vec3& w);
 /// A ball around them all.
 Ball ball_around(std::span<const Ball> balls);
 
-/// A bounding volume hierarchy over balls. Immutable and thread-safe.
+/// Bounding volume hierarchies over balls, one for each kind. Immutable and thread-safe.
 class BallTree {
   public:
     /// None.
     BallTree();
-    explicit BallTree(std::vector<Ball> balls);
+    /// @param kinds  of each ball; none: all are of kind 0
+    explicit BallTree(std::vector<Ball> balls, std::span<const std::uint32_t> kinds = {});
     ~BallTree();
     BallTree(BallTree&&) noexcept;
     BallTree& operator=(BallTree&&) noexcept;
 
     std::span<const Ball> balls() const { return balls_; }
-    /// Indices of the balls that the ray passes(), ascending; until this thread asks again.
-    std::span<const std::uint32_t> along(const Vec3& origin, const Vec3& w) const;
+    /// Indices of the balls of a kind that the ray passes(), ascending; until this thread asks again.
+    std::span<const std::uint32_t> along(const Vec3& origin, const Vec3& w, std::uint32_t kind = 0) const;
     /// Memory, that of the balls included.
     std::size_t bytes() const;
 

@@ -78,7 +78,10 @@ EmissionTargets::EmissionTargets(const Scene& scene, std::span<const SeenLight> 
         add_cell(here, balls, weights);
     }
     choice_ = EmitterDistribution(weights);
-    targets_ = BallTree(std::move(balls));
+    std::vector<std::uint32_t> emitters; // a line of light may have been drawn towards its emitter's targets only
+    emitters.reserve(balls.size());
+    for (const std::uint32_t group : group_of_) emitters.push_back(groups_[group].emitter);
+    targets_ = BallTree(std::move(balls), emitters);
 }
 
 /// `seen`: sorted by emitter.
@@ -151,9 +154,8 @@ double EmissionTargets::pdf(const FirstEdge& edge) const {
     const Group* last = nullptr; // targets of a group follow each other
     Ways ways;
     double sum = 0;
-    for (const std::uint32_t i : targets_.along(ray.origin.p, w)) {
+    for (const std::uint32_t i : targets_.along(ray.origin.p, w, x0.emitter)) {
         const Group& group = groups_[group_of_[i]];
-        if (group.emitter != x0.emitter) continue;
         if (std::exchange(last, &group) != &group) ways = group.ways(x0, ray, own, on_map);
         sum += choice_.probability(i) * ways.pdf(targets_.balls()[i], w);
     }

@@ -128,8 +128,10 @@ EmitterPoint LearnedDirectLight::sample(const SurfacePoint& at, SampleSource& so
     const double u = source.next();
     EmitterPoint drawn;
     if (u < cell.plain) {
-        const std::uint32_t emitter = scene_->light_tree().sample(asked_for(cell, at), u / cell.plain).emitter;
+        const auto [emitter, by_tree] = scene_->light_tree().sample(asked_for(cell, at), u / cell.plain);
         drawn.point = point_of(emitter, scene_->emitter(emitter).sample_point(source).point);
+        const Share* share = cell.share_of(emitter);
+        drawn.pdf = pdf(cell, at, drawn.point, share != nullptr ? share->by_tree : by_tree);
     } else {
         const double v = (u - cell.plain) / (1 - cell.plain);
         const auto above = std::ranges::upper_bound(cell.shares, v, {}, &Share::up_to);
@@ -140,8 +142,8 @@ EmitterPoint LearnedDirectLight::sample(const SurfacePoint& at, SampleSource& so
             const auto [u0, u1] = source.take<2>();
             drawn.point = point_of(share.emitter, infinite_point(share.directions.sample(at.p, u0, u1)));
         }
+        drawn.pdf = pdf(cell, at, drawn.point, share.by_tree);
     }
-    drawn.pdf = pdf(cell, at, drawn.point);
     return drawn;
 }
 
@@ -150,16 +152,17 @@ double LearnedDirectLight::by_tree(const Cell& cell, const SurfacePoint& at, std
     return scene_->light_tree().probability(asked_for(cell, at), emitter);
 }
 
-double LearnedDirectLight::pdf(const Cell& cell, const SurfacePoint& at, const SurfacePoint& x0) const {
+double LearnedDirectLight::pdf(const Cell& cell, const SurfacePoint& at, const SurfacePoint& x0, double by_tree) const {
     const Emitter& emitter = scene_->emitter(x0.emitter);
     const double point_pdf = emitter.point_pdf(x0);
-    double sum = cell.plain * by_tree(cell, at, x0.emitter) * point_pdf;
+    double sum = cell.plain * by_tree * point_pdf;
     if (cell.plain < 1) sum += (1 - cell.plain) * cell.pdf(x0.emitter, at.p, direction(at, x0), point_pdf);
     return sum;
 }
 
 double LearnedDirectLight::pdf(const SurfacePoint& at, const SurfacePoint& x0) const {
-    return pdf(cell_of(at), at, x0);
+    const Cell& cell = cell_of(at);
+    return pdf(cell, at, x0, by_tree(cell, at, x0.emitter));
 }
 
 double LearnedDirectLight::pdf(const FoundLight& f) const {

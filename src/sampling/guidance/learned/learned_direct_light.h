@@ -86,7 +86,7 @@ class LearnedDirectLight final : public DirectLightSampler {
     }
     /// With which the light tree chooses an emitter in a cell.
     double by_tree(const Cell& cell, const SurfacePoint& at, std::uint32_t emitter) const;
-    double pdf(const Cell& cell, const SurfacePoint& at, const SurfacePoint& x0) const;
+    double pdf(const Cell& cell, const SurfacePoint& at, const SurfacePoint& x0, double by_tree) const;
 
     const Scene* scene_;
     SurfaceCells tree_;
