@@ -73,14 +73,14 @@ RenderPaths::RenderPaths(const Scene& scene, const Settings& settings, const Use
     OpeningSearch search = search_of(settings, context);
     const TransportEnds ends = trace_transport_ends(scene, kPaths, search.seed, context);
     if (light_finds_its_way(scene, ends, search.seed, context)) return;
+    const std::optional<LearnedEmission> learned = emission_without_openings(scene, settings, context);
+    if (learned) search.learned = &*learned;
     if (!paths_.empty()) {
         const LightGuides guides(scene, paths_);
         own_.values["gain by openings"] = gain_ =
-            std::max(1.0, gain_by_guides(scene, guides, ends.eye, search.seed, context));
+            std::max(1.0, gain_by_guides(scene, guides, ends.eye, search.seed, context, search.learned));
         return;
     }
-    const std::optional<LearnedEmission> learned = emission_without_openings(scene, settings, context);
-    if (learned) search.learned = &*learned;
     const OpeningsFound found = find_openings(scene, ends, search, context);
     if (found.paths.paths.empty()) return;
     paths_ = bind_user_paths(scene, found.paths);

@@ -115,13 +115,11 @@ double most_visible(const PhotonWeights& weights, std::int64_t known, std::int64
 
 void trace_one(const Scene& scene, const EmissionOptions& options, Rng& rng, Collector& collector) {
     const int depth = options.rule.max_scatterings;
-    if (!options.user_paths.empty()) return trace_light_path(scene, options.user_paths, depth, rng, collector);
-    const auto light = options.learned != nullptr ? options.learned->sample(rng) : emit_light(scene, rng);
-    if (!light) return;
-    if (options.scattering != nullptr)
+    const LightPathSampling sampling{&options.user_paths, options.learned};
+    if (options.scattering == nullptr || sampling.guided())
+        return trace_light_path(scene, sampling, depth, rng, collector);
+    if (const auto light = sampling.emit(scene, rng))
         trace_light_path(scene, *light, depth, rng, collector, *options.scattering);
-    else
-        trace_light_path(scene, *light, depth, rng, collector);
 }
 
 EmissionBlock trace_block(const Scene& scene, const EmissionOptions& options, Range paths, Collector collector) {

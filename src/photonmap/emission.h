@@ -21,9 +21,9 @@ struct EmissionOptions {
     StorageRule rule{};
     std::uint64_t seed;
     LightGuides user_paths{};                 ///< that half of the light paths follow, where there are any
-    const LearnedEmission* learned = nullptr; ///< where light paths begin if there are no user paths; null: by power
+    const LearnedEmission* learned = nullptr; ///< where the others begin; null: by power
     const LearnedScattering* scattering =
-        nullptr;                               ///< where they go on, likewise; null: by BSDFs alone. Not with weights
+        nullptr; ///< where light paths go on if there are no user paths; null: by BSDFs alone. Not with weights
     const TechniqueWeights* weights = nullptr; ///< where chains make photons of the same maps; null: they don't
     bool cut_outliers =
         false; ///< whether photons whose visible power stands for that of thousands lose what is too much

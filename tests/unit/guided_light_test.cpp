@@ -50,21 +50,43 @@ PowerByPart trace(const Scene& scene, std::int64_t count, std::uint64_t seed, au
     return all;
 }
 
-TEST_P(AlongUserPaths, LightArrivesWithThePowerThatItHasWithoutThem) {
-    const LightGuides guides(*scene, paths);
-    const PowerByPart free =
-        trace(*scene, 400'000, 1, [&](Rng& rng, Arrivals& sink) { trace_light_path(*scene, kDepth, rng, sink); });
-    int led = 0;
-    const PowerByPart guided = trace(*scene, 400'000, 2, [&](Rng& rng, Arrivals& sink) {
-        trace_guided_light_path(*scene, guides, kDepth, rng, sink);
-    });
+void expect_same_power(const PowerByPart& free, const PowerByPart& guided) {
+    int told = 0;
     for (std::size_t k = 0; k < free.size(); ++k) {
         if (!(free[k].mean() > 20 * free[k].standard_error())) continue; // too little light to say
         EXPECT_TRUE(test::same_mean(free[k], guided[k], 2 * kParts))
             << "part " << k << ", ratio " << guided[k].mean() / free[k].mean();
-        ++led;
+        ++told;
     }
-    EXPECT_GE(led, 8);
+    EXPECT_GE(told, 8);
+}
+
+PowerByPart trace_free(const Scene& scene) {
+    return trace(scene, 400'000, 1, [&](Rng& rng, Arrivals& sink) { trace_light_path(scene, kDepth, rng, sink); });
+}
+
+TEST_P(AlongUserPaths, LightArrivesWithThePowerThatItHasWithoutThem) {
+    const LightGuides guides(*scene, paths);
+    expect_same_power(trace_free(*scene), trace(*scene, 400'000, 2, [&](Rng& rng, Arrivals& sink) {
+                          trace_guided_light_path(*scene, {&guides}, kDepth, rng, sink);
+                      }));
+}
+
+/// User paths beside emission that was learned, through a slit.
+TEST(AlongUserPathsAndLearned, LightArrivesWithThePowerThatItHas) {
+    const auto scene = test::two_rooms(1);
+    const UserPaths paths = bind_user_paths(*scene, test::two_rooms_paths(*scene, 1));
+    const LightGuides guides(*scene, paths);
+    const LearnedEmission learned(*scene, look_for_light(*scene, {.paths = 8192, .max_scatterings = kDepth}, {}).ends);
+    const PowerByPart free = trace_free(*scene);
+    const auto with = [&](const LightPathSampling& sampling) {
+        return trace(*scene, 200'000, 2,
+                     [&](Rng& rng, Arrivals& sink) { trace_guided_light_path(*scene, sampling, kDepth, rng, sink); });
+    };
+    const PowerByPart led = with({&guides}), both = with({&guides, &learned});
+    expect_same_power(free, both);
+    // And it is another sampler than the one that has learned nothing.
+    EXPECT_NE(led[0].variance(), both[0].variance());
 }
 
 TEST_P(AlongUserPaths, StageOneFindsTheSameBrightness) {
@@ -133,7 +155,7 @@ TEST(ThroughASlit, UserPathsFindLightThatIsHardToFind) {
     const LightGuides light(*scene, paths);
     const RunningStats free = beyond([&](Rng& rng, auto& sink) { trace_light_path(*scene, kDepth, rng, sink); });
     const RunningStats led =
-        beyond([&](Rng& rng, auto& sink) { trace_guided_light_path(*scene, light, kDepth, rng, sink); });
+        beyond([&](Rng& rng, auto& sink) { trace_guided_light_path(*scene, {&light}, kDepth, rng, sink); });
     EXPECT_LT(led.standard_error(), 0.5 * free.standard_error());
     EXPECT_TRUE(test::same_mean(led, free, 2));
 }
@@ -156,7 +178,7 @@ TEST(ThroughASlit, NoPhotonIsMuchBrighterThanOthers) {
     for (std::uint64_t i = 0; i < 400'000; ++i) {
         Rng rng(7, StreamPurpose::test, i);
         sink.power = 0;
-        trace_guided_light_path(*scene, light, kDepth, rng, sink);
+        trace_guided_light_path(*scene, {&light}, kDepth, rng, sink);
         sum += sink.power;
         squares += sink.power * sink.power;
     }

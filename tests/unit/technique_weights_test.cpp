@@ -195,10 +195,14 @@ TEST(LightPathDensity, SumsFreeWalksAndWalksAlongUserPaths) {
         *scene, {{test::user_path("floor, wall", {{0, 1.95f, 0}, {0.2f, 0, 0.4f}, {0.2f, 1.625f, 3}}, 0.9),
                   test::user_path("floor", {{0, 1.95f, 0}, {0.2f, 0, 0.4f}}, 0.7)}});
     const LightGuides guides(*scene, paths);
-    expect_equal(
-        trace_counts(*scene, 400'000,
-                     [&](Rng& rng, auto& sink) { trace_guided_light_path(*scene, guides, kDepth, rng, sink); }),
-        density_of_cells(*scene, {&guides, nullptr}, 1'000'000));
+    const LearnedEmission learned(*scene, look_for_light(*scene, {.paths = 4096, .max_scatterings = kDepth}, {}).ends);
+    for (const LightPathSampling& sampling : {LightPathSampling{&guides}, LightPathSampling{&guides, &learned}}) {
+        SCOPED_TRACE(sampling.learned != nullptr ? "learned" : "by power");
+        expect_equal(
+            trace_counts(*scene, 400'000,
+                         [&](Rng& rng, auto& sink) { trace_guided_light_path(*scene, sampling, kDepth, rng, sink); }),
+            density_of_cells(*scene, sampling, 500'000));
+    }
 }
 
 /// What chains get of a photon and what light tracing gets of it are computed apart: the one from a path's vertices,

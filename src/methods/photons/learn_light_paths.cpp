@@ -9,14 +9,11 @@ namespace {
 
 constexpr std::size_t kMemoryOfLearning = 5;
 
-/// Along user paths light goes as they say.
-bool is_worth_it(const SamplerContext& c) { return c.user_paths.empty() && LearnedEmission::can_learn(c.scene); }
-
 } // namespace
 
 LearnedLightPaths learn_light_paths(const SamplerContext& c, std::int64_t paths, const RunContext& run) {
     LearnedLightPaths learned;
-    if (!is_worth_it(c)) return learned;
+    if (!LearnedEmission::can_learn(c.scene)) return learned;
     FoundLightPaths found =
         look_for_light(c.scene,
                        {.paths = paths,
@@ -26,13 +23,14 @@ LearnedLightPaths learn_light_paths(const SamplerContext& c, std::int64_t paths,
                         .most_bytes = static_cast<std::size_t>(c.settings.photon_memory) / kMemoryOfLearning},
                        run);
     learned.emission.emplace(c.scene, std::move(found.ends));
+    if (!c.user_paths.empty()) return learned; // along which light goes on as they say
     learned.scattering.emplace(found.scatterings);
     if (!learned.scattering->helps()) learned.scattering.reset();
     return learned;
 }
 
 LearnedLightPaths learn_light_paths(const SamplerContext& c, RenderStats& stats, const RunContext& run) {
-    if (!is_worth_it(c)) return {};
+    if (!LearnedEmission::can_learn(c.scene)) return {};
     const StageClock clock(stats, stages::emission);
     LearnedLightPaths learned =
         learn_light_paths(c, std::clamp(c.settings.light_paths / kPathsOfLearning, kLeastLearning, kMostLearning), run);

@@ -12,11 +12,11 @@ Path& scratch() {
 
 } // namespace
 
-GuidedLightWalk::GuidedLightWalk(const Scene& scene, const LightGuides& guides)
-    : scene_(&scene), guides_(&guides), path_(&scratch()), density_(guides.empty() ? 1 : 1 - kGuided) {}
+GuidedLightWalk::GuidedLightWalk(const Scene& scene, const LightPathSampling& sampling)
+    : scene_(&scene), sampling_(sampling), path_(&scratch()), density_(sampling.guided() ? 1 - kGuided : 1) {}
 
-bool GuidedLightWalk::emit(const Vertex& x0, const Vec3& w) {
-    path_->x.push_back(x0);
+bool GuidedLightWalk::emit(const SurfacePoint& x0, const Vec3& w) {
+    path_->x.push_back(make_vertex(x0));
     Vertex& v = path_->x.back();
     v.event = Event::finite;
     past_.from_infinity = v.point.site == Site::infinite;
@@ -31,6 +31,10 @@ bool GuidedLightWalk::emit(const Vertex& x0, const Vec3& w) {
 
 void GuidedLightWalk::arrive(const Vertex& v) {
     const SurfacePoint& from = last().point;
+    if (sampling_.learned != nullptr && vertices() == 1) {
+        density_ *= sampling_.learned->density_ratio(from, direction(from, v.point), v.point.p);
+        reference_ = luminance(power());
+    }
     path_->x.push_back(v);
     Vertex& here = path_->x.back();
     here.event = Event::finite;
@@ -38,9 +42,9 @@ void GuidedLightWalk::arrive(const Vertex& v) {
     product_ *= here.pdf_from_light;
     power_ *= scene_->transmittance(from, here.point);
     past_.density = density_;
-    if (!(product_ > 0) || !here.bsdf.traits().finite) return;
+    if (!sampling_.guided() || !(product_ > 0) || !here.bsdf.traits().finite) return;
     double guided = 0;
-    guides_->for_each([&](const GuidedSubPath& guide, double probability) {
+    sampling_.user_paths->for_each([&](const GuidedSubPath& guide, double probability) {
         if (guide.vertices() == vertices()) guided += probability * guide.density(*path_) / product_;
     });
     if (!(guided > 0)) return;

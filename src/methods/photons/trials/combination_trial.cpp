@@ -89,11 +89,7 @@ void try_light_paths(const SamplerContext& c, const EmissionGuide& guide, const 
     parallel_blocks(kPaths, kPathsOfTrialBlock, run, [&](std::int64_t i) {
         Rng rng(seed_of_trial(c.settings), StreamPurpose::emission, static_cast<std::uint64_t>(i));
         Sink sink{c.scene, weighing, c.storage(), trial.paths[static_cast<std::size_t>(i)]};
-        if (sampling.emission() == nullptr) {
-            trace_light_path(c.scene, *sampling.user_paths, sink.rule.max_scatterings, rng, sink);
-        } else if (const auto light = sampling.emission()->sample(rng)) {
-            trace_light_path(c.scene, *light, sink.rule.max_scatterings, rng, sink);
-        }
+        trace_light_path(c.scene, sampling, sink.rule.max_scatterings, rng, sink);
     });
     trial.rays_of_path = static_cast<double>(rays_traced() - before) / kPaths;
 }

@@ -87,7 +87,7 @@ double try_emission(const SamplerContext& c, const Scene* walls, const RunContex
     parallel_blocks(extent.light_paths, kPathsOfBlock, run, [&](std::int64_t i) {
         Rng rng(seed, StreamPurpose::emission, static_cast<std::uint64_t>(i));
         VisiblePower sink{c.scene, global, caustic, c.storage()};
-        trace_light_path(c.scene, user_paths, depth, rng, sink);
+        trace_light_path(c.scene, {&user_paths}, depth, rng, sink);
         samples[static_cast<std::size_t>(i)] = sink.shares;
     });
     return relative_variance(samples) * static_cast<double>(rays_traced() - before) /

@@ -84,7 +84,7 @@ double gain_by_guides(const Scene& scene, const LightGuides& guides, const std::
         MomentSink sink{cells, parts[static_cast<std::size_t>(part)], learned};
         for (std::int64_t i = part * kPathsOfPart; i < (part + 1) * kPathsOfPart; ++i) {
             Rng rng(seed, StreamPurpose::guidance_gain, static_cast<std::uint64_t>(i));
-            trace_guided_light_path(scene, guides, kMostScatterings, rng, sink);
+            trace_guided_light_path(scene, {&guides, learned}, kMostScatterings, rng, sink);
         }
     });
     MomentsByCell all;

@@ -11,7 +11,8 @@ namespace keyhole {
 /// free paths bring to a place, over that of the mixture, in the geometric mean over the places that matter to the eye,
 /// which `eye` tells in coarse cells. (The arithmetic one would be that of the few cells to which one path came.) Both
 /// are estimated from the mixture, whose densities are known, so that what free paths hardly ever find counts in full.
-/// Free paths begin as `learned` says; null: by power. 1 where no light arrives. The same on any number of threads.
+/// Free paths, those of the mixture too, begin as `learned` says; null: by power. 1 where no light arrives. The same on
+/// any number of threads.
 /// @throws Interrupted
 double gain_by_guides(const Scene& scene, const LightGuides& guides, const std::vector<TransportEnd>& eye,
                       std::uint64_t seed, const RunContext& context, const LearnedEmission* learned = nullptr);
