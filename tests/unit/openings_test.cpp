@@ -147,7 +147,8 @@ TEST(GainByGuides, OfDoorsIsSmallWhereTheRightLampsAreFoundWithoutThem) {
     OpeningSearch with_learned = search();
     with_learned.learned = &learned;
     const double gain = found_in(*scene, with_learned).gain;
-    EXPECT_LT(gain, by_power.gain / 3);
+    EXPECT_LT(gain, by_power.gain / 2);
+    EXPECT_GT(gain, 0.4) << "half of the paths are the free ones, whatever the others find";
 }
 
 // What leads through an opening that there isn't takes half of the light away from where it is wanted.
