@@ -186,19 +186,19 @@ LightTree::Choice LightTree::sample_by_effect(const SurfacePoint& point, double 
 double LightTree::effect_probability(const SurfacePoint& point, std::uint32_t emitter) const {
     const double near = nodes_.empty() ? 0.0 : importance(point, nodes_[0]), total = near + far_irradiance_;
     if (!(total > 0)) return by_power_->probability(emitter);
-    std::uint32_t i = leaf_of_[emitter];
+    const std::uint32_t i = leaf_of_[emitter];
     if (i == SurfacePoint::kNone) {
         const auto f = std::ranges::find(far_, emitter, &Far::emitter);
         return f->irradiance / total;
     }
-    double p = near / total;
-    while (i != 0) {
-        const std::uint32_t parent = nodes_[i].parent;
+    // From the root on, as sample_by_effect() multiplies: the same to the last bit.
+    const auto reached = [&](const auto& self, std::uint32_t node) -> double {
+        if (node == 0) return near / total;
+        const std::uint32_t parent = nodes_[node].parent;
         const double left = left_share(point, nodes_[parent]);
-        p *= nodes_[parent].left == i ? left : 1 - left;
-        i = parent;
-    }
-    return p;
+        return self(self, parent) * (nodes_[parent].left == node ? left : 1 - left);
+    };
+    return reached(reached, i);
 }
 
 } // namespace keyhole
