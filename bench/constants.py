@@ -33,8 +33,9 @@ ONE = re.compile(rf"(\w+)(?: = ({VALUE})|(\([^()]*\)))")
 PAPER = re.compile(r"[A-Z][^\W\d]+(?: et al\.| and [A-Z][^\W\d]+)?,? \(?(?:19|20)\d\d")
 HEAD = """# Numbers that steer
 
-Constants that code gives a name, but those of file formats. `bench/constants.py` makes this table, keeps the last column, and
-measures: it halves and doubles a constant, and compares errors at equal CPU time. "Arbitrary" is what neither changes.
+Constants that code gives a name, but those of file formats. `bench/constants.py` makes this table, keeps the last
+column, and measures: it halves and doubles a constant, and compares errors at equal CPU time. "Arbitrary" is what
+neither changes.
 """
 
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Words that this project once made up for things that have a name: none of them in what is tracked.
+"""Words that this project once made up for things that have a name: none of them in what is tracked. And prose wraps.
 
-scripts/check_words.py [DIRECTORY...] prints PATH:LINE: WORD, the field's word, and the line; exits with 1 if there are any.
+scripts/check_words.py [DIRECTORY...] prints PATH:LINE: WORD, the field's word, and the line, and lines of prose that are
+wider than 120 characters; exits with 1 if there are any.
 Identifiers are read as words: `photonScout`, `photon_scout` and `PhotonScout` all have a scout."""
 import pathlib
 import re
@@ -49,6 +50,7 @@ ALLOWED = (
 
 WORD = re.compile("|".join(f"(?P<w{i}>\\b(?:{w})\\b)" for i, w in enumerate(WORDS)), re.I)
 NAMES = list(WORDS.values())
+WIDEST = 120
 SPLIT = re.compile(r"_|(?<=[a-z0-9])(?=[A-Z])")
 EXCEPT = re.compile("|".join(ALLOWED), re.I)
 
@@ -61,6 +63,16 @@ def found(line):
     return [(m.group(0), NAMES[int(m.lastgroup[1:])]) for m in WORD.finditer(plain)]
 
 
+def too_wide(lines):
+    """Numbers of prose lines that don't wrap; tables, code and links can't."""
+    code = False
+    for number, line in enumerate(lines, 1):
+        if line.lstrip().startswith("```"):
+            code = not code
+        if len(line) > WIDEST and not code and not line.startswith(("|", "    ", "![")) and "http" not in line:
+            yield number
+
+
 def main():
     root = pathlib.Path(__file__).resolve().parent.parent
     tracked = subprocess.run(["git", "-C", str(root), "ls-files", "-z", "--", *(sys.argv[1:] or FOLDERS)],
@@ -69,11 +81,15 @@ def main():
     for path in tracked:
         if not path.endswith(SUFFIXES) or path == "scripts/check_words.py" or not (root / path).is_file():
             continue
-        for number, line in enumerate((root / path).read_text(errors="replace").splitlines(), 1):
+        lines = (root / path).read_text(errors="replace").splitlines()
+        for number in too_wide(lines) if path.endswith(".md") else ():
+            print(f"{path}:{number}: wider than {WIDEST} characters")
+            wrong += 1
+        for number, line in enumerate(lines, 1):
             for word, name in found(line):
                 print(f"{path}:{number}: {word} ({name}): {line.strip()[:120]}")
                 wrong += 1
-    print(f"{wrong} home-made words" if wrong else "no home-made words")
+    print(f"{wrong} home-made words and wide lines" if wrong else "no home-made words, no wide lines")
     return wrong > 0
 
 

@@ -45,6 +45,10 @@ constexpr float kKnown = 0.25f;
 /// the light rather than in the shadow beside it: farther away nothing is known of that.
 constexpr float kInTheSameLight = 0.5f;
 
+/// Rays that may be traced on one after the other, in crevices. Four make light there a little better, and rooms full
+/// of small things noisier.
+constexpr int kMostTracedOn = 2;
+
 /// Caustics are the lesser part of the light where they are below this share of the rest; least probability with which
 /// they are looked at there.
 constexpr double kLesserCaustic = 0.1, kLeastLook = 0.1;
@@ -63,7 +67,7 @@ constexpr double kFine = 0.5;
 struct GatherRays::Leg {
     float distance;  ///< from the vertex before [m]
     int scatterings; ///< between the eye and the vertex it led to, that one included
-    bool secondary;  ///< a ray that was traced on from where another one ended
+    int traced_on;   ///< rays before it, each traced on from where the last one ended
 };
 
 /// The walk along a gather ray, through specular vertices. It ends where the maps are asked: its last vertex is d2, so
@@ -99,7 +103,7 @@ struct GatherRays::Walk : SpecularWalkHooks {
 
 GatherRays::Arrival GatherRays::trace(const Vertex& from, const Vec3& w, double pdf, int scatterings,
                                       SampleSource& source) const {
-    return trace(from, w, pdf, {0, scatterings, false}, source);
+    return trace(from, w, pdf, {0, scatterings, 0}, source);
 }
 
 GatherRays::Arrival GatherRays::trace(const Vertex& from, const Vec3& w, double pdf, const Leg& start,
@@ -110,15 +114,21 @@ GatherRays::Arrival GatherRays::trace(const Vertex& from, const Vec3& w, double 
     return walk.arrival;
 }
 
-bool GatherRays::goes_on(const Leg& leg, std::uint32_t place, const Vec3& position) const {
+bool GatherRays::goes_on(const Leg& leg, const std::optional<std::uint32_t>& place, const Vec3& position) const {
     // Where the gather coverage ends, light from beyond it would be lost.
-    if (leg.secondary || maps_.coverage != nullptr) return false;
+    if (leg.traced_on == kMostTracedOn || maps_.coverage != nullptr) return false;
+    // That no photon came near doesn't mean that no light does.
+    if (!place) return true;
     // Farther away than its estimate looks, the place is one of other surfaces, as beside a frame on which no photon
     // lies: they may have a hundred times the light.
-    if (!maps_.irradiance->is_near(place, position)) return true;
+    const bool near = maps_.irradiance->is_near(*place, position);
     // The estimate is a mean over its radius. Seen from nearer than that, as in corners, or on a surface that is finer,
     // the mean is not good enough.
-    return is_fine(place) || leg.distance < maps_.irradiance->radius(place);
+    const bool seen_from_near = leg.distance < maps_.irradiance->radius(*place);
+    if (leg.traced_on == 0) return !near || seen_from_near || is_fine(*place);
+    // To trace paths further costs more noise than it removes error, but in crevices: there all estimates have the
+    // light of the room before them.
+    return seen_from_near && (!near || maps_.irradiance->is_one_sided(*place));
 }
 
 bool GatherRays::is_fine(std::uint32_t place) const { return maps_.irradiance->area_share(place) < kFine; }
@@ -133,11 +143,11 @@ Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSou
     // Photons may be near, but none that this place sees: those of the other side of a wall.
     const auto place = known.known ? std::optional(known.place) : std::nullopt;
     if (!v.bsdf.traits().diffuse) return lobe(v, back, place, leg, source);
-    const bool on = place && goes_on(leg, *place, v.point.p);
+    const bool on = goes_on(leg, place, v.point.p);
     const Rgb f = v.bsdf.diffuse_reflectance(back);
     Rgb sum = f * direct(place, v, back, source);
     if (on)
-        sum += traced_on(v, back, *place, leg, source);
+        sum += traced_on(v, back, place, leg, source);
     else if (place)
         sum += f * known.irradiance;
     if (!v.bsdf.traits().glossy) return sum;
@@ -168,7 +178,7 @@ Vertex GatherRays::widened(const Vertex& v, const Bsdf& part) const {
 
 Rgb GatherRays::lobe(const Vertex& v, const Vec3& back, const std::optional<std::uint32_t>& place, const Leg& leg,
                      SampleSource& source) const {
-    const bool may_trace = maps_.lobes != nullptr && !leg.secondary;
+    const bool may_trace = maps_.lobes != nullptr && leg.traced_on == 0;
     if (may_trace && !(place && maps_.lobes->by_photons(v.point.shape)))
         return lobe_traced_on(v, back, place, leg, source);
     const Vertex wide = widened(v, v.bsdf);
@@ -179,7 +189,7 @@ Rgb GatherRays::lobe_traced_on(const Vertex& v, const Vec3& back, const std::opt
                                const Leg& leg, SampleSource& source) const {
     Rgb sum = next_event(scene_, v, back, 1, source);
     if (const auto next = continue_walk(v, back, From::eye, source); next && !is_specular(next->event)) {
-        const Arrival arrival = trace(v, next->w, next->pdf, {0, leg.scatterings + 1, true}, source);
+        const Arrival arrival = trace(v, next->w, next->pdf, {0, leg.scatterings + 1, leg.traced_on + 1}, source);
         sum += next->weight * (arrival.emitted + arrival.indirect);
     }
     // Light that specular vertices alone brought here is found by no ray.
@@ -208,7 +218,7 @@ std::optional<LobeNoise> GatherRays::lobe_noise(const Vertex& v, const Vec3& bac
         const double difference = luminance(a) - luminance(b);
         return difference * difference / 2;
     };
-    const Leg leg{0, scatterings, false};
+    const Leg leg{0, scatterings, 0};
     const Rgb first = lobe_traced_on(v, back, place, leg, source);
     const Rgb second = lobe_traced_on(v, back, place, leg, source);
     const Vertex wide = widened(v, v.bsdf);
@@ -216,15 +226,17 @@ std::optional<LobeNoise> GatherRays::lobe_noise(const Vertex& v, const Vec3& bac
     return LobeNoise{variance(once, again) + variance_of_photons(wide, back), variance(first, second)};
 }
 
-Rgb GatherRays::traced_on(const Vertex& v, const Vec3& back, std::uint32_t place, const Leg& leg,
+Rgb GatherRays::traced_on(const Vertex& v, const Vec3& back, const std::optional<std::uint32_t>& place, const Leg& leg,
                           SampleSource& source) const {
     Rgb sum(0.0);
     if (const auto next = continue_walk(v, back, From::eye, source); next && !is_specular(next->event))
-        sum += next->weight * trace(v, next->w, next->pdf, {0, leg.scatterings + 1, true}, source).indirect;
+        sum +=
+            next->weight * trace(v, next->w, next->pdf, {0, leg.scatterings + 1, leg.traced_on + 1}, source).indirect;
+    if (!place) return sum;
     // Light that specular vertices alone brought here is found by no ray.
-    const bool known = maps_.irradiance->is_near(place, v.point.p);
-    if (known ? maps_.irradiance->has_caustics(place) : scene_.traits().delta)
-        sum += photons(Asked::caustics, place, v, facing(v.point.ng, back), back, source);
+    const bool known = maps_.irradiance->is_near(*place, v.point.p);
+    if (known ? maps_.irradiance->has_caustics(*place) : scene_.traits().delta)
+        sum += photons(Asked::caustics, *place, v, facing(v.point.ng, back), back, source);
     return sum;
 }
 

@@ -80,15 +80,16 @@ class GatherRays {
     struct Leg;
     struct Walk;
     Arrival trace(const Vertex& from, const Vec3& w, double pdf, const Leg& start, SampleSource& source) const;
-    /// Whether what the estimate at a place says of `position` isn't good enough for a ray from `leg.distance` away,
-    /// so that it has to be traced on.
-    bool goes_on(const Leg& leg, std::uint32_t place, const Vec3& position) const;
+    /// Whether what the estimate at the place of `position`, if it has one, says of that isn't good enough for a ray
+    /// from `leg.distance` away, so that it has to be traced on.
+    bool goes_on(const Leg& leg, const std::optional<std::uint32_t>& place, const Vec3& position) const;
     /// Whether the surface around a place is finer than the estimate there.
     bool is_fine(std::uint32_t place) const;
     /// Radiance towards `back` that `v` reflects by its finite part.
     Rgb reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSource& source) const;
-    /// What `v`, near a place, reflects of indirect light that comes along a ray more.
-    Rgb traced_on(const Vertex& v, const Vec3& back, std::uint32_t place, const Leg& leg, SampleSource& source) const;
+    /// What `v`, whose place is `place`, if it has one, reflects of indirect light that comes along a ray more.
+    Rgb traced_on(const Vertex& v, const Vec3& back, const std::optional<std::uint32_t>& place, const Leg& leg,
+                  SampleSource& source) const;
     /// Irradiance that emitters bring, weighed as the diffuse part weighs it: that of the place, if it does for `v`.
     Rgb direct(const std::optional<std::uint32_t>& place, const Vertex& v, const Vec3& back,
                SampleSource& source) const;

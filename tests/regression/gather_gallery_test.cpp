@@ -91,6 +91,30 @@ TEST(Gallery, CornersAreNotDarkened) {
     EXPECT_LT(worst, 0.06);
 }
 
+TEST(Gallery, CrevicesHaveTheirLight) {
+    // A board 12 cm before a wall, seen from before the mouth between them. Far in there, few photons fall or none, and
+    // gather rays meet nothing else: it is not as dark as that, and not as bright as the room.
+    test::SceneMaker m;
+    const auto white = make_diffuse(Rgb(0.7));
+    m.room({-1, 0, -1}, {1, 2, 3}, white);
+    m.rectangle({0.88f, 0, -1}, {0, 2, 0}, {0, 0, 1}, white, Rgb(0.0), true);
+    m.rectangle({-0.3f, 1.95f, 1}, {0.6f, 0, 0}, {0, 0, 0.6f}, make_diffuse(Rgb(0.0)), Rgb(20.0));
+    m.camera({0.94f, 1, 1.5f}, {0.94f, 1, -1}, 3.6f).window(24, 24);
+    const auto scene = m.build();
+    const auto mean = [&](const char* method, int seeds) {
+        Settings settings = small_settings();
+        settings.method = &method_named(method);
+        settings.light_paths = 2000;
+        double sum = 0;
+        for (int seed = 1; seed <= seeds; ++seed) {
+            settings.seed = seed;
+            sum += render_layer(*scene, settings, "indirect").mean(0, 24) / seeds;
+        }
+        return sum;
+    };
+    EXPECT_NEAR(mean("ipm", 32) / mean("path", 64), 1, 0.12);
+}
+
 TEST(Gallery, LowQualityShowsNoDiscs) {
     // A plain wall. Records are few and noisy, but their borders make no step from pixel to pixel.
     test::SceneMaker m;

@@ -10,6 +10,9 @@ namespace {
 
 /// How high above the surface two places are tested for sight of each other, as a share of their distance.
 constexpr float kLift = 0.25f;
+/// How far from a place the middle of its photons' power lies, over the radius, where their light is one-sided: that of
+/// a half disc lies at 0.42.
+constexpr double kOffCentre = 0.5;
 constexpr unsigned kLevels = 8;
 
 /// Distance of a place over the largest radius of estimates. Farther than the estimates themselves look: where photons
@@ -59,12 +62,14 @@ IrradianceMap::Count IrradianceMap::estimate(std::uint32_t i, const PhotonMap& m
     // The pilot photon in the middle is there by choice of the place, so it is no evidence of the density there.
     const float r = piloted_radius(pilots_, query, 1);
     double sum = 0, squares = 0;
-    bool caustics = false;
+    Imath::V3d moment(0.0);
+    unsigned marks = 0;
     const auto one = [&](const Photon& p) {
         const double power = luminance(p.power());
         sum += power;
         squares += power * power;
-        caustics = caustics || p.caustic();
+        moment += power * Imath::V3d(p.position() - place.position());
+        if (p.caustic()) marks |= Estimate::caustics;
         return 1.0;
     };
     DensityEstimate e =
@@ -72,8 +77,9 @@ IrradianceMap::Count IrradianceMap::estimate(std::uint32_t i, const PhotonMap& m
             ? estimate_density_in_sight(*options.scene, main_photons, query.region, r, *options.patches, one)
             : estimate_density(main_photons, query.region, r, options.patches, one);
     e.value /= share_in_reach(options.coverage, query.region, r);
+    if (moment.length() > kOffCentre * sum * r) marks |= Estimate::one_sided;
     const double disc = kPi * static_cast<double>(r) * r;
-    estimates_[i] = Estimate(e.value, caustics, r, disc > 0 ? e.area / disc : 0.0,
+    estimates_[i] = Estimate(e.value, marks, r, disc > 0 ? e.area / disc : 0.0,
                              e.obstructed ? obstructed_levels(*options.patches, query.region, r) : std::uint8_t{0});
     return {static_cast<double>(e.photons), squares > 0 ? sum * sum / squares : 0.0};
 }

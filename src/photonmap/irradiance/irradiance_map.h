@@ -54,6 +54,9 @@ class IrradianceMap {
     double area_share(std::uint32_t i) const { return estimates_[i].area_share(); }
     /// Whether caustic photons are among those of the estimate at place i (Photon::caustic()).
     bool has_caustics(std::uint32_t i) const { return estimates_[i].has_caustics(); }
+    /// Whether its light lies on one side of it, as in a crevice whose mouth it reaches: there the estimate is too
+    /// bright.
+    bool is_one_sided(std::uint32_t i) const { return estimates_[i].is_one_sided(); }
     /// Whether a position is within that radius of it, times `share`.
     bool is_near(std::uint32_t i, const Vec3& position, float share = 1) const {
         const float reach = share * radius(i);
@@ -77,15 +80,18 @@ class IrradianceMap {
 
     class Estimate {
       public:
+        enum Mark : unsigned { caustics = 1, one_sided = 2 };
         Estimate() = default;
         /// `obstructed`, bit i: something may stand on the region of radius / 2^i.
-        Estimate(const Rgb& e, bool caustics, float radius, double area_share, std::uint8_t obstructed)
-            : irradiance_(e, caustics ? 1 : 0), obstructed_(obstructed),
+        /// `marks`: of Mark.
+        Estimate(const Rgb& e, unsigned marks, float radius, double area_share, std::uint8_t obstructed)
+            : irradiance_(e, marks), obstructed_(obstructed),
               area_share_(static_cast<std::uint8_t>(std::lround(255 * std::clamp(area_share, 0.0, 1.0)))),
               radius_(static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(radius) >> 16)) {}
 
         Rgb irradiance() const { return irradiance_.decode(); }
-        bool has_caustics() const { return irradiance_.marks() != 0; }
+        bool has_caustics() const { return (irradiance_.marks() & caustics) != 0; }
+        bool is_one_sided() const { return (irradiance_.marks() & one_sided) != 0; }
         unsigned obstructed() const { return obstructed_; }
         double area_share() const { return area_share_ / 255.0; }
         /// At most the one given, and at least 127/128 of it [m].
