@@ -58,14 +58,15 @@ struct RenderOptions {
     bool in_time() const { return timeout || cpu_time; }
 };
 
-/// Null for --quiet.
-std::unique_ptr<TerminalProgress> make_progress(bool quiet) {
+/// Null for --quiet. Refers to `stop`.
+std::unique_ptr<TerminalProgress> make_progress(bool quiet, const StopToken& stop) {
     if (quiet) return nullptr;
     const char* term = std::getenv("TERM");
     const bool terminal = isatty(STDERR_FILENO) != 0 && term != nullptr && std::string_view(term) != "dumb";
     winsize size{};
     const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
-    return std::make_unique<TerminalProgress>(stderr, terminal, known ? size.ws_col : 80);
+    return std::make_unique<TerminalProgress>(stderr, terminal, known ? size.ws_col : 80, &TerminalProgress::Clock::now,
+                                              [&stop] { return stop.seconds_left(); });
 }
 
 /// Settings that the command line names.
@@ -149,7 +150,7 @@ RenderResult render_scene(LoadedScene& loaded, RenderOptions& options, std::vect
         const std::uint64_t hash = scene_hash(scene);
         const Picture expected{window.width, window.height, {}, render_identity(loaded.settings, hash), {}};
         WorkPartition share = options.checkpoints.share(options.outputs.exr, expected, loaded.settings, options.team);
-        const auto progress = make_progress(options.quiet);
+        const auto progress = make_progress(options.quiet, stop);
         if (options.writes()) view.watch(share);
         const RunContext context{&stop, progress.get()};
         // Parts of a render have to agree on its settings: none can follow from the time. And where passes end by

@@ -79,6 +79,28 @@ TEST(TerminalProgress, PlainLinesComeEveryTenthOrTenSeconds) {
     EXPECT_EQ(count(screen.text(), '\r'), 0);
 }
 
+TEST(TerminalProgress, AStageThatEndsByTimeIsNotJudgedByItsWork) {
+    Screen screen;
+    double left = 8; // of 10 s that a process with two threads computes
+    TerminalProgress progress(
+        screen.file, true, 100, [&] { return screen.time; }, [&] { return left; });
+    progress.begin("path tracing", 1'000'000'000, "samples");
+    screen.time += 1s;
+    left -= 2;
+    progress.advance(1000);
+    EXPECT_THAT(screen.text(), HasSubstr("path tracing [######..................]  25 %  1.00 ksamples/s  3.0 s left"));
+    progress.begin("gather", 1000, "samples"); // that will be done before
+    screen.time += 1s;
+    left -= 2;
+    progress.advance(500);
+    EXPECT_THAT(screen.text(), HasSubstr("gather [############............]  50 %  500 samples/s  1.0 s left"));
+    progress.begin("late", 1000, "samples"); // when time is up
+    left = 0;
+    screen.time += 1s;
+    progress.advance(100);
+    EXPECT_THAT(screen.text(), testing::Not(testing::AnyOf(HasSubstr("nan"), HasSubstr("inf"), HasSubstr("-"))));
+}
+
 TEST(TerminalProgress, NeverWritesPastTheLastColumn) {
     Screen screen;
     TerminalProgress progress(screen.file, true, 30, [&] { return screen.time; });

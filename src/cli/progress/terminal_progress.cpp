@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace keyhole {
 namespace {
@@ -20,8 +21,14 @@ constexpr const char* kEraseLine = "\r\033[K";
 
 } // namespace
 
-TerminalProgress::TerminalProgress(std::FILE* out, bool terminal, int columns, std::function<Clock::time_point()> now)
-    : out_(out), terminal_(terminal), columns_(static_cast<std::size_t>(std::max(columns, 20))), now_(std::move(now)) {}
+TerminalProgress::TerminalProgress(std::FILE* out, bool terminal, int columns, std::function<Clock::time_point()> now,
+                                   std::function<double()> time_left)
+    : out_(out), terminal_(terminal), columns_(static_cast<std::size_t>(std::max(columns, 20))), now_(std::move(now)),
+      time_left_(std::move(time_left)) {}
+
+double TerminalProgress::time_left() const {
+    return time_left_ ? time_left_() : std::numeric_limits<double>::infinity();
+}
 
 void TerminalProgress::begin(std::string_view stage, std::uint64_t total, std::string_view unit) {
     const std::lock_guard lock(mutex_);
@@ -31,6 +38,7 @@ void TerminalProgress::begin(std::string_view stage, std::uint64_t total, std::s
     done_ = 0;
     drawn_done_ = 0;
     start_ = drawn_ = now_();
+    time_left_at_start_ = time_left();
     if (terminal_) draw(start_, 0);
 }
 
@@ -76,7 +84,9 @@ void TerminalProgress::draw(Clock::time_point now, std::uint64_t done) {
 }
 
 std::string TerminalProgress::line(double seconds, std::uint64_t done) const {
-    const double share = total_ == 0 ? 0 : std::min(1.0, static_cast<double>(done) / static_cast<double>(total_));
+    double share = total_ == 0 ? 0 : std::min(1.0, static_cast<double>(done) / static_cast<double>(total_));
+    if (std::isfinite(time_left_at_start_) && time_left_at_start_ > 0)
+        share = std::max(share, 1 - time_left() / time_left_at_start_);
     std::string text = stage_;
     if (terminal_) {
         constexpr std::size_t kBar = 24;
