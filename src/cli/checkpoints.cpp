@@ -1,6 +1,7 @@
 #include "cli/checkpoints.h"
 
 #include "cli/real_range.h"
+#include "cli/words/tell.h"
 #include "core/error.h"
 #include "core/work_item_set.h"
 #include "film/files/exr.h"
@@ -127,7 +128,7 @@ WorkPartition Checkpoints::share(const std::string& exr, const Picture& render, 
             left_over.clear();
         } catch (const InputError& e) {
             // A full disk is no reason to lose the render as well: there may be room again.
-            fmt::print(stderr, "keyhole: warning: no checkpoint: {}\n", e.what());
+            tell("keyhole: warning: no checkpoint: {}\n", e.what());
         }
     };
     return share;

@@ -5,6 +5,7 @@
 #include "cli/page/page_parts.h"
 #include "cli/progress/interrupt.h"
 #include "cli/resolution.h"
+#include "cli/words/tell.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "film/files/atomic_file.h"
@@ -80,18 +81,21 @@ int run(InspectOptions o) {
     RunContext context;
     context.stop = &stop;
     std::string page;
+    std::optional<std::string> unsaved;
     with_threads(o.threads, [&] {
         Scene scene(std::move(loaded.description));
         const UserPaths paths = bind_user_paths(scene, working_paths(loaded.user_paths, scene));
         const auto start = std::chrono::steady_clock::now();
         Inspection inspection = inspect_scene(scene, settings, paths, o.limits, context);
         for (const std::string& warning : load_warnings) inspection.render.stats.warn(Doubt::scene, warning);
+        unsaved = inspection.render.stats.unsaved;
         const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
         page = kInspectionPage.with(page_data(scene, inspection, {name, took.count(), loaded.user_paths}).dump());
     });
     if (stop.requested()) return kInterrupted;
     write_file_atomically(o.output, page);
-    fmt::print(stderr, "{}: {:.1f} MB\n", o.output, 1e-6 * static_cast<double>(page.size()));
+    tell("{}: {:.1f} MB\n", o.output, 1e-6 * static_cast<double>(page.size()));
+    if (unsaved) throw InputError(*unsaved);
     return kSuccess;
 }
 

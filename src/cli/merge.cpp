@@ -2,6 +2,7 @@
 #include "cli/command.h"
 #include "cli/pictures/denoising.h"
 #include "cli/pictures/outputs.h"
+#include "cli/words/tell.h"
 #include "film/files/exr.h"
 #include "film/join.h"
 
@@ -44,7 +45,7 @@ int merge(MergeOptions o) {
     o.outputs.write(
         std::move(joined), [&](const Picture& picture) { return denoising.apply(picture, StopToken(), stats); },
         [] { return std::string(); });
-    if (share) fmt::print(stderr, "{}: a share, {} of {}\n", o.outputs.exr, whole, all);
+    if (share) tell("{}: a share, {} of {}\n", o.outputs.exr, whole, all);
     return kSuccess;
 }
 

@@ -2,11 +2,14 @@
 
 #include "cli/command.h"
 #include "cli/process_group.h"
+#include "cli/standard_streams.h"
+#include "cli/words/tell.h"
 #include "core/error.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -34,7 +37,7 @@ std::string joined(int argc, char** argv) {
 /// One line on stderr.
 int fail(int code, std::string message) {
     std::ranges::replace(message, '\n', ' ');
-    fmt::print(stderr, "keyhole: {}\n", message);
+    tell("keyhole: {}\n", message);
     return code;
 }
 
@@ -60,13 +63,15 @@ int run(int argc, char** argv, ProcessGroup* team) {
     }
     if (team != nullptr && team->rank() > 0 && !app.got_subcommand("render")) return kSuccess;
     const int code = action();
-    if (std::fflush(stdout) != 0) return fail(kInternalError, "cannot write to the standard output");
-    return code;
+    if (std::fflush(stdout) == 0) return code;
+    // A reader that has seen enough knows.
+    return errno == EPIPE ? kInternalError : fail(kInternalError, "cannot write to the standard output");
 }
 
 } // namespace
 
 int run_program(int argc, char** argv, ProcessGroup* team) {
+    secure_standard_streams();
     try {
         return run(argc, argv, team);
     } catch (const InputErrors& e) {

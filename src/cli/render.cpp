@@ -12,6 +12,7 @@
 #include "cli/words/metadata.h"
 #include "cli/words/report.h"
 #include "cli/words/stats_json.h"
+#include "cli/words/tell.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "film/errors/sample_noise.h"
@@ -216,8 +217,8 @@ void write(RenderResult& result, const RenderOptions& options, const StopToken& 
         [&] { return json_text(stats_json(result.stats)) + "\n"; });
     if (options.verbose) print_report(result.stats);
     if (!options.quiet)
-        fmt::print(stderr, "{}: {} x {} pixels{}\n", options.outputs.exr, width, height,
-                   result.stats.complete ? "" : ", stopped early");
+        tell("{}: {} x {} pixels{}\n", options.outputs.exr, width, height,
+             result.stats.complete ? "" : ", stopped early");
 }
 
 int run(RenderOptions options) {
@@ -229,7 +230,8 @@ int run(RenderOptions options) {
     else if (options.outputs.png.empty())
         options.outputs.png = default_png(options.outputs.exr);
     if (options.writes()) options.outputs.check();
-    if (const std::string file = options.checkpoints.file(options.outputs.exr); !file.empty()) check_writable(file);
+    for (const std::string& file : {options.checkpoints.file(options.outputs.exr), options.save_map})
+        if (!file.empty()) check_writable(file);
 
     const InterruptHandler interrupts(stop);
     std::vector<std::string> load_warnings;
@@ -243,10 +245,11 @@ int run(RenderOptions options) {
     if (!options.quiet) print_warnings(result.stats);
     if (!has_picture(result)) {
         if (!stop.requested()) throw InputError("the time was up before the first pixel: nothing was written");
-        fmt::print(stderr, "keyhole: stopped before there was a unit of work to keep: nothing was written\n");
+        tell("keyhole: stopped before there was a unit of work to keep: nothing was written\n");
         return kInterrupted;
     }
     write(result, options, stop);
+    if (result.stats.unsaved) throw InputError(*result.stats.unsaved);
     if (stop.requested()) return kInterrupted;
     return options.strict && !result.stats.warnings.empty() ? kNotTrusted : kSuccess;
 }

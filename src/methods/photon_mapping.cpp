@@ -1,4 +1,5 @@
 // The methods that render from photon maps: pass by pass a sampler, the maps, the gather.
+#include "core/error.h"
 #include "core/shared_work.h"
 #include "methods/method.h"
 #include "methods/photons/pass_gather.h"
@@ -130,9 +131,13 @@ class Passes {
     /// Where a file is asked for.
     void save(const Photons& photons, const RunContext& context) {
         if (c_.settings.save_map.empty()) return;
-        if (context.communicator == nullptr || context.communicator->rank() == 0)
-            save_photons(c_.settings.save_map, photon_file_key(c_.scene, c_.settings, c_.coverage), photons);
         saved_ = true;
+        if (context.communicator != nullptr && context.communicator->rank() > 0) return;
+        try {
+            save_photons(c_.settings.save_map, photon_file_key(c_.scene, c_.settings, c_.coverage), photons);
+        } catch (const InputError& e) { // the picture must not be lost with them
+            stats_.unsaved = e.what();
+        }
     }
 
     /// Samples pixels, round by round of a pass. Returns whether the last round came to its end.
@@ -161,7 +166,7 @@ class Passes {
     PassObserver* observer_;
     RenderStats& stats_;
     PixelSampling pixels_;
-    bool saved_ = false;
+    bool saved_ = false;               // or tried to
     std::optional<std::int64_t> next_; // unit
 };
 

@@ -1,6 +1,7 @@
 // keyhole-mpi: the program on several machines, started by mpirun. `render` is shared out by passes; every other
 // subcommand is run by rank 0 alone.
 #include "cli/program.h"
+#include "cli/words/tell.h"
 #include "core/error.h"
 #include "mpi/mpi_process_group.h"
 
@@ -23,7 +24,7 @@ int run(int argc, char** argv) {
         if (group.is_cut_off()) std::_Exit(code);
         MPI_Abort(MPI_COMM_WORLD, code); // the others would wait for this one
     } catch (const InputError& e) {
-        fmt::print(stderr, "keyhole: {}\n", e.what());
+        tell("keyhole: {}\n", e.what());
         MPI_Abort(MPI_COMM_WORLD, kBadInput);
     }
     return kInternalError;

@@ -1,14 +1,12 @@
-// The only file that knows Embree.
+// Rays by Embree.
 #include "scene/accelerator.h"
 
+#include "core/embree_device.h"
 #include "scene/geometry.h"
-
-#include <embree3/rtcore.h>
 
 #include <atomic>
 #include <cstddef>
 #include <limits>
-#include <stdexcept>
 
 namespace keyhole {
 namespace {
@@ -67,8 +65,7 @@ struct Accelerator::Embree {
     RTCScene scene = nullptr;
     std::atomic<std::ptrdiff_t> bytes{0};
 
-    Embree() : device(rtcNewDevice(device_config())) {
-        if (device == nullptr) throw std::runtime_error("Embree gave no device");
+    Embree() : device(new_device(device_config())) {
         const auto count = [](void* self, ssize_t change, bool /*before or after*/) {
             static_cast<Embree*>(self)->bytes.fetch_add(change, std::memory_order_relaxed);
             return true;

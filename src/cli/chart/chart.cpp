@@ -3,6 +3,7 @@
 #include "cli/chart/outputs.h"
 #include "cli/command.h"
 #include "cli/resolution.h"
+#include "cli/words/tell.h"
 #include "cli/words/units.h"
 #include "core/bytes.h"
 #include "core/error.h"
@@ -61,13 +62,12 @@ class Chart {
     int make() {
         std::vector<Reference> references;
         for (const ChartScene& scene : scenes_) {
-            fmt::print(stderr, "{}: reference\n", scene.name);
+            tell("{}: reference\n", scene.name);
             references.push_back(make_reference(scene, options_, renderer_, jobs_));
             if (stop_.requested()) return kInterrupted;
             if (!references.back().method.empty())
-                fmt::print(stderr, "{}: reference by {}, known to {:.2g} %, {} of CPU time\n", scene.name,
-                           references.back().method, 100 * references.back().standard_error,
-                           duration(references.back().cpu_seconds));
+                tell("{}: reference by {}, known to {:.2g} %, {} of CPU time\n", scene.name, references.back().method,
+                     100 * references.back().standard_error, duration(references.back().cpu_seconds));
         }
         render_all();
         std::vector<SceneChart> charts;
@@ -93,16 +93,15 @@ class Chart {
             missing.push_back(i);
             seconds += runs_[i].seconds;
         }
-        fmt::print(stderr, "{} runs, {} of them to be made, in about {}\n", runs_.size(), missing.size(),
-                   duration(seconds / jobs_));
+        tell("{} runs, {} of them to be made, in about {}\n", runs_.size(), missing.size(), duration(seconds / jobs_));
         std::atomic<std::size_t> done{0};
         run_jobs(jobs_, missing.size(), [&](std::size_t k) {
             if (stop_.requested()) return;
             const std::size_t i = missing[k];
             render(i);
             if (!stop_.requested())
-                fmt::print(stderr, "[{}/{}] {}: {}\n", ++done, missing.size(), runs_[i].name(scenes_[runs_[i].scene]),
-                           results_[i]->failure.empty() ? duration(results_[i]->cpu_seconds) : results_[i]->failure);
+                tell("[{}/{}] {}: {}\n", ++done, missing.size(), runs_[i].name(scenes_[runs_[i].scene]),
+                     results_[i]->failure.empty() ? duration(results_[i]->cpu_seconds) : results_[i]->failure);
         });
     }
 
@@ -124,11 +123,11 @@ class Chart {
     void write(const std::vector<SceneChart>& charts) const {
         write_tables(options_.folder, charts, options_);
         const std::string message = draw_figures(options_.folder, charts, options_, stop_);
-        if (!message.empty()) fmt::print(stderr, "keyhole: warning: {}\n", message);
+        if (!message.empty()) tell("keyhole: warning: {}\n", message);
         for (const SceneChart& chart : charts)
-            for (const std::string& failure : chart.failures) fmt::print(stderr, "keyhole: warning: {}\n", failure);
+            for (const std::string& failure : chart.failures) tell("keyhole: warning: {}\n", failure);
         write_page(options_.folder, charts, options_);
-        fmt::print(stderr, "{}/index.html\n", options_.folder);
+        tell("{}/index.html\n", options_.folder);
     }
 
     const ChartOptions& options_;

@@ -1,6 +1,7 @@
 // keyhole paths show: a preview of the scene with user paths drawn over it.
 #include "cli/paths/paths.h"
 #include "cli/pictures/outputs.h"
+#include "cli/words/tell.h"
 #include "film/drawing.h"
 #include "film/files/atomic_file.h"
 #include "film/files/png.h"
@@ -89,7 +90,7 @@ int show(ShowOptions o) {
     Canvas canvas{beauty.width, beauty.height, tonemap(beauty)};
     for (std::size_t i = 0; i < paths.size(); ++i) draw(*all.scene, paths[i], palette_color(i), canvas);
     write_png(o.output, canvas);
-    fmt::print(stderr, "{}: {} paths\n", o.output, paths.size());
+    tell("{}: {} paths\n", o.output, paths.size());
     return kSuccess;
 }
 

@@ -1,5 +1,6 @@
 #include "cli/progress/live_view.h"
 
+#include "cli/words/tell.h"
 #include "core/error.h"
 
 #include <fmt/format.h>
@@ -51,7 +52,7 @@ void LiveView::look(const Picture& picture) {
             write_(picture);
         } catch (const InputError& e) {
             // A full disk is no reason to lose the render as well: there may be room again.
-            fmt::print(stderr, "keyhole: warning: no picture so far: {}\n", e.what());
+            tell("keyhole: warning: no picture so far: {}\n", e.what());
         }
     }
     show(picture);
@@ -60,7 +61,7 @@ void LiveView::look(const Picture& picture) {
 void LiveView::show(const Picture& picture) {
     if (server_ == nullptr) return;
     if (!server_->show(name_, picture.layers.at("beauty"))) {
-        fmt::print(stderr, "keyhole: the viewer has gone; nothing more is sent to it\n");
+        tell("keyhole: the viewer has gone; nothing more is sent to it\n");
         server_.reset();
     }
     shown_ = std::chrono::steady_clock::now();

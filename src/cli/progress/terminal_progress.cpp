@@ -1,5 +1,6 @@
 #include "cli/progress/terminal_progress.h"
 
+#include "cli/words/tell.h"
 #include "cli/words/units.h"
 
 #include <fmt/format.h>
@@ -63,10 +64,9 @@ void TerminalProgress::end() {
     const std::lock_guard lock(mutex_);
     const double seconds = seconds_between(start_, now_());
     const auto done = static_cast<double>(done_);
-    fmt::print(out_, "{}{}: {}{} in {}", terminal_ ? kEraseLine : "", stage_, with_prefix(done), unit_,
-               duration(seconds));
-    if (seconds > 0) fmt::print(out_, ", {}{}/s", with_prefix(done / seconds), unit_);
-    fmt::print(out_, "\n");
+    tell_to(out_, "{}{}: {}{} in {}", terminal_ ? kEraseLine : "", stage_, with_prefix(done), unit_, duration(seconds));
+    if (seconds > 0) tell_to(out_, ", {}{}/s", with_prefix(done / seconds), unit_);
+    tell_to(out_, "\n");
     std::fflush(out_);
 }
 
@@ -76,9 +76,9 @@ void TerminalProgress::draw(Clock::time_point now, std::uint64_t done) {
     const std::string text = line(seconds_between(start_, now), done);
     if (terminal_) {
         // One column short, because some terminals wrap when the last one is filled.
-        fmt::print(out_, "{}{}", kEraseLine, text.substr(0, columns_ - 1));
+        tell_to(out_, "{}{}", kEraseLine, text.substr(0, columns_ - 1));
     } else {
-        fmt::print(out_, "{}\n", text);
+        tell_to(out_, "{}\n", text);
     }
     std::fflush(out_);
 }

@@ -1,5 +1,7 @@
 #include "sampling/guidance/learned/ball_tree.h"
 
+#include "core/embree_device.h"
+
 #include <Imath/ImathBox.h>
 #include <embree3/rtcore.h>
 
@@ -7,7 +9,6 @@
 #include <atomic>
 #include <limits>
 #include <map>
-#include <stdexcept>
 
 namespace keyhole {
 namespace {
@@ -61,8 +62,7 @@ struct BallTree::Embree {
     std::atomic<std::int64_t> bytes{0};
 
     Embree(std::span<const Ball> these, std::span<const std::uint32_t> kinds)
-        : device(rtcNewDevice(nullptr)), balls(these), around(ball_around(these)) {
-        if (device == nullptr) throw std::runtime_error("Embree gave no device");
+        : device(new_device(nullptr)), balls(these), around(ball_around(these)) {
         rtcSetDeviceMemoryMonitorFunction(device, count_bytes, &bytes);
         std::map<std::uint32_t, std::vector<std::uint32_t>> members;
         for (std::uint32_t i = 0; i < balls.size(); ++i) members[kinds.empty() ? 0 : kinds[i]].push_back(i);
