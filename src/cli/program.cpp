@@ -15,6 +15,7 @@
 #include <new>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 namespace keyhole {
 namespace {
@@ -64,8 +65,8 @@ int run(int argc, char** argv, ProcessGroup* team) {
     if (team != nullptr && team->rank() > 0 && !app.got_subcommand("render")) return kSuccess;
     const int code = action();
     if (std::fflush(stdout) == 0) return code;
-    // A reader that has seen enough knows.
-    return errno == EPIPE ? kInternalError : fail(kInternalError, "cannot write to the standard output");
+    if (errno == EPIPE) throw std::system_error(EPIPE, std::generic_category());
+    return fail(kInternalError, "cannot write to the standard output");
 }
 
 } // namespace
@@ -81,6 +82,10 @@ int run_program(int argc, char** argv, ProcessGroup* team) {
         return fail(kBadInput, e.what());
     } catch (const ProcessLost& e) {
         return fail(kInternalError, e.what());
+    } catch (const std::system_error& e) {
+        // A reader that has seen enough knows.
+        if (e.code().value() == EPIPE) return kInternalError;
+        return fail(kInternalError, fmt::format("internal error: {}", e.what()));
     } catch (const std::bad_alloc&) {
         return fail(kBadInput, "not enough memory for what is asked: try fewer pixels, samples or threads");
     } catch (const std::exception& e) {

@@ -55,7 +55,7 @@ void expect_the_same_by_all(Scene& scene) {
     base.spp = 8;
     base.brightness_samples = 20'000;
     base.importons = 15'000;
-    base.mutations = 120'000;
+    base.mutations = 300'000;
     base.light_paths = 80'000;
     base.photons = 40'000;
     base.chains = 200;

@@ -1,6 +1,7 @@
 // What the program does when what it writes to fails: never a render that is lost, never a signal.
 #include "film/files/exr.h"
 #include "support/program.h"
+#include "support/sanitizers.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -87,9 +88,7 @@ TEST_F(Faults, FoldersThatAreNotThereAreToldBeforeAnythingIsRendered) {
 }
 
 TEST_F(Faults, TooLittleMemoryIsAnErrorThatSaysSo) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    GTEST_SKIP() << "sanitizers take all addresses that there are";
-#endif
+    if (test::kSanitized) GTEST_SKIP() << "sanitizers take all addresses that there are";
     int errors = 0, pictures = 0;
     for (int mebibytes = 150; mebibytes <= 900; mebibytes += 150) {
         const int code = shell("ulimit -v " + std::to_string(1024 * mebibytes) +

@@ -1,5 +1,6 @@
 // The memory of a render from outside: what the system says that the program held at most.
 #include "support/program.h"
+#include "support/sanitizers.h"
 
 #include <sys/resource.h>
 
@@ -19,9 +20,7 @@ class PeakMemory : public Program, public testing::WithParamInterface<Budget> {}
 double constant_mib(const std::string& method) { return method == "mps" ? 48 : 32; }
 
 TEST_P(PeakMemory, IsTheCeilingAndAConstant) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    GTEST_SKIP() << "a sanitizer's shadow is larger than what it watches";
-#endif
+    if (test::kSanitized) GTEST_SKIP() << "a sanitizer's shadow is larger than what it watches";
     const auto [method, mib] = GetParam();
     // Light paths enough to fill the stores; few photons in an estimate, since what they cost is time.
     const int paths = std::min(20'000 * mib, 700'000);

@@ -82,7 +82,7 @@ TEST(GatherRays, SeeNoPhotonsFromBehindAWallInAShinyFloor) {
 }
 
 TEST(GatherRays, TakeNothingFromPlacesThatLieBeyondTheirOwnEstimates) {
-    Floor floor(make_diffuse(Rgb(0.5)));
+    Floor floor(make_diffuse(Rgb(0.5)), make_diffuse(Rgb(0.0))); // from whose wall no light comes
     floor.throw_on(0.5f, 0.6f, 20'000);
     EXPECT_NEAR(floor.seen_at(0.55f), 0.5 / kPi * 20'000 / 0.1, 0.1 * 0.5 / kPi * 20'000 / 0.1);
     EXPECT_EQ(floor.seen_at(0.8f), 0) << "light from 0.2 m away";

@@ -2,13 +2,11 @@
 #include "gather/direct_irradiance_cache.h"
 #include "photonmap/emission.h"
 #include "photonmap/irradiance/irradiance_map.h"
+#include "support/sanitizers.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define KEYHOLE_FOREIGN_ALLOCATOR 1
-#endif
 #include <malloc.h>
 
 namespace keyhole {
@@ -23,9 +21,7 @@ double allocated() {
 class PhotonBytes : public testing::TestWithParam<std::size_t> {};
 
 TEST_P(PhotonBytes, AreAtMost32WithIndexIrradianceAndDirectLight) {
-#ifdef KEYHOLE_FOREIGN_ALLOCATOR
-    GTEST_SKIP() << "the sanitizer's allocator keeps no such account";
-#endif
+    if (test::kSanitized) GTEST_SKIP() << "the sanitizer's allocator keeps no such account";
     const std::size_t n = GetParam();
     const auto scene = test::mirror_glass_box(); // photons of many normals, and both maps
     const SurfacePatches patches(*scene);

@@ -5,6 +5,7 @@
 #include "methods/choice/experience.h"
 #include "methods/choice/render_in_time.h"
 #include "methods/method.h"
+#include "support/sanitizers.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -74,7 +75,7 @@ TEST_P(RenderInTime, IsAsBrightAsTheScene) {
     s = {};
     s.method = &method_named(GetParam());
     StopToken stop;
-    stop.set_cpu_limit(cpu_seconds() + 1);
+    stop.set_cpu_limit(cpu_seconds() + test::kSlowdown);
     RunContext context;
     context.stop = &stop;
     const RenderResult result = render_in_time(*scene, s, {}, context);
