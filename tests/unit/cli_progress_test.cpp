@@ -101,6 +101,20 @@ TEST(TerminalProgress, AStageThatEndsByTimeIsNotJudgedByItsWork) {
     EXPECT_THAT(screen.text(), testing::Not(testing::AnyOf(HasSubstr("nan"), HasSubstr("inf"), HasSubstr("-"))));
 }
 
+TEST(TerminalProgress, PlainLinesComeEveryTenthOfTheTime) {
+    Screen screen;
+    double left = 20;
+    TerminalProgress progress(
+        screen.file, false, 80, [&] { return screen.time; }, [&] { return left; });
+    progress.begin("path tracing", 1'000'000'000, "samples");
+    for (int i = 0; i < 80; ++i) { // 20 s: a line after one, and then one for every two
+        screen.time += 250ms;
+        left -= 0.25;
+        progress.advance(100);
+    }
+    EXPECT_THAT(count(screen.text(), '\n'), testing::AllOf(testing::Ge(9), testing::Le(11)));
+}
+
 TEST(TerminalProgress, NeverWritesPastTheLastColumn) {
     Screen screen;
     TerminalProgress progress(screen.file, true, 30, [&] { return screen.time; });

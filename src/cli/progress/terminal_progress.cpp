@@ -38,6 +38,7 @@ void TerminalProgress::begin(std::string_view stage, std::uint64_t total, std::s
     total_ = total;
     done_ = 0;
     drawn_done_ = 0;
+    drawn_share_ = 0;
     start_ = drawn_ = now_();
     time_left_at_start_ = time_left();
     if (terminal_) draw(start_, 0);
@@ -45,10 +46,10 @@ void TerminalProgress::begin(std::string_view stage, std::uint64_t total, std::s
 
 bool TerminalProgress::due(Clock::time_point now, std::uint64_t done) const {
     if (terminal_) return now - drawn_ >= 100ms;
-    const bool tenth = total_ > 0 && static_cast<double>(done - drawn_done_) >= 0.1 * static_cast<double>(total_);
+    if (now - drawn_ < 1s) return false;
     // The first line comes early: it says what runs, and how long it will take.
     const bool first = drawn_done_ == 0 && done > 0;
-    return now - drawn_ >= 10s || ((tenth || first) && now - drawn_ >= 1s);
+    return first || now - drawn_ >= 10s || share_of(done) - drawn_share_ >= 0.1;
 }
 
 void TerminalProgress::advance(std::uint64_t units) {
@@ -73,6 +74,7 @@ void TerminalProgress::end() {
 void TerminalProgress::draw(Clock::time_point now, std::uint64_t done) {
     drawn_ = now;
     drawn_done_ = done;
+    drawn_share_ = share_of(done);
     const std::string text = line(seconds_between(start_, now), done);
     if (terminal_) {
         // One column short, because some terminals wrap when the last one is filled.
@@ -83,10 +85,14 @@ void TerminalProgress::draw(Clock::time_point now, std::uint64_t done) {
     std::fflush(out_);
 }
 
+double TerminalProgress::share_of(std::uint64_t done) const {
+    const double work = total_ == 0 ? 0 : std::min(1.0, static_cast<double>(done) / static_cast<double>(total_));
+    const bool ends_by_time = std::isfinite(time_left_at_start_) && time_left_at_start_ > 0;
+    return ends_by_time ? std::max(work, 1 - time_left() / time_left_at_start_) : work;
+}
+
 std::string TerminalProgress::line(double seconds, std::uint64_t done) const {
-    double share = total_ == 0 ? 0 : std::min(1.0, static_cast<double>(done) / static_cast<double>(total_));
-    if (std::isfinite(time_left_at_start_) && time_left_at_start_ > 0)
-        share = std::max(share, 1 - time_left() / time_left_at_start_);
+    const double share = share_of(done);
     std::string text = stage_;
     if (terminal_) {
         constexpr std::size_t kBar = 24;

@@ -38,6 +38,8 @@ class TerminalProgress final : public Progress {
     void draw(Clock::time_point now, std::uint64_t done);
     std::string line(double seconds, std::uint64_t done) const;
     double time_left() const;
+    /// How much of the stage is over, by work or by time.
+    double share_of(std::uint64_t done) const;
 
     std::FILE* out_;
     bool terminal_;
@@ -54,6 +56,7 @@ class TerminalProgress final : public Progress {
     std::mutex mutex_; ///< guards what follows and the output
     Clock::time_point drawn_;
     std::uint64_t drawn_done_ = 0;
+    double drawn_share_ = 0;
 };
 
 } // namespace keyhole
