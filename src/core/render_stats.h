@@ -85,9 +85,8 @@ struct RenderStats {
     std::vector<std::string> remarks;     ///< choices that were made, in words
     std::vector<std::string> warnings;    ///< in words
     std::map<std::string, Doubt> doubts;  ///< what warnings are about; those that aren't here: the render
-    std::optional<std::string>
-        unsaved;          ///< why photons were not kept that were to be; none: they were, or not asked for
-    bool complete = true; ///< false after a stop
+    std::optional<std::string> unsaved;   ///< why photons that were to be kept weren't
+    bool complete = true;                 ///< false after a stop
 
     void warn(Doubt about, std::string warning) {
         doubts[warning] = about;

@@ -71,7 +71,6 @@ TEST_F(Faults, APhotonMapThatMayNotGrowIsAnErrorAndThePictureStays) {
     EXPECT_EQ(shell("ulimit -f 200; $K render " KEYHOLE_SOURCE_DIR "/scenes/box.yaml --method ipm -q --no-png -o a.exr "
                     "--save-map a.kmap --resolution 24x16 -D light_paths=20k -D photons=20k"),
               2);
-
     EXPECT_THAT(read("err"), HasSubstr("a.kmap: cannot write: File too large"));
     EXPECT_FALSE(exists("a.kmap"));
     expect_picture("a.exr");

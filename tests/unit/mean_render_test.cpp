@@ -37,4 +37,21 @@ TEST(MeanRender_OfMethodsThatKnowSurfacesAndNone, KeepsBothInEitherOrder) {
     }
 }
 
+TEST(MeanRender, TellsOfPhotonsThatAnyOfThemDidNotKeep) {
+    for (const double later : {0.5, 2.0, 1000.0}) { // the lesser one, the greater one, and one that replaces it
+        MeanRender mean;
+        RenderResult first = result_of(AccumulationBuffer::Parts::film);
+        first.stats.unsaved = "disk full";
+        mean.add(std::move(first), 1);
+        mean.add(result_of(AccumulationBuffer::Parts::film), later);
+        EXPECT_EQ(mean.take().stats.unsaved, "disk full") << later;
+    }
+    MeanRender mean;
+    RenderStats without_picture;
+    without_picture.unsaved = "disk full";
+    mean.leave_out(without_picture);
+    mean.add(result_of(AccumulationBuffer::Parts::film), 1);
+    EXPECT_EQ(mean.take().stats.unsaved, "disk full");
+}
+
 } // namespace keyhole

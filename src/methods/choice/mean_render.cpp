@@ -20,7 +20,7 @@ void share_layers(Picture& a, Picture& b) {
 
 void MeanRender::add(RenderResult&& result, double weight) {
     if (!result_ || weight_ <= kNegligible * weight) {
-        if (result_) add_time_of(result_->stats);
+        if (result_) leave_out(result_->stats);
         result_ = std::move(result);
         weight_ = most_ = weight;
         return;
@@ -36,11 +36,11 @@ void MeanRender::add(RenderResult&& result, double weight) {
         result_->settings = result.settings;
     }
     result_->stats.samples = samples;
-    add_time_of(result.stats);
+    leave_out(result.stats);
 }
 
-/// One line for all stages of it.
-void MeanRender::add_time_of(const RenderStats& stats) {
+void MeanRender::leave_out(const RenderStats& stats) {
+    if (stats.unsaved) unsaved_ = stats.unsaved;
     for (const StageStats& stage : stats.stages) {
         others_.wall_seconds += stage.wall_seconds;
         others_.cpu_seconds += stage.cpu_seconds;
@@ -51,6 +51,7 @@ void MeanRender::add_time_of(const RenderStats& stats) {
 RenderResult MeanRender::take() {
     auto& stages = result_->stats.stages;
     if (others_.cpu_seconds > 0) stages.insert(stages.begin(), others_);
+    if (unsaved_) result_->stats.unsaved = std::move(unsaved_);
     return std::move(*result_);
 }
 

@@ -4,6 +4,7 @@
 #include "methods/render.h"
 
 #include <optional>
+#include <string>
 
 namespace keyhole {
 
@@ -15,14 +16,16 @@ class MeanRender {
     /// A render without weight stands until another takes its place.
     void add(RenderResult&& result, double weight);
     const Picture& picture() const { return result_->picture; }
-    /// A render that gave no picture took time, too.
-    void add_time_of(const RenderStats& stats);
+    /// Takes in what counts of a render whose other statistics aren't told, with a picture or without one: time that it
+    /// took, and that its photons weren't kept.
+    void leave_out(const RenderStats& stats);
     RenderResult take();
 
   private:
     std::optional<RenderResult> result_;
     double weight_ = 0, most_ = 0;
     StageStats others_{.stage = &stages::others};
+    std::optional<std::string> unsaved_;
 };
 
 } // namespace keyhole

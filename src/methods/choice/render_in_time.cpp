@@ -228,7 +228,7 @@ class RenderInTime {
         used_up_ = last && method_->samples_pixels && given_.contains("spp");
         const bool holes = empty_pixels(result) > 0;
         if (!has_picture(result) || (holes && (!last || !mean_.empty()))) {
-            mean_.add_time_of(result.stats);
+            mean_.leave_out(result.stats);
             return std::nullopt;
         }
         if (chosen.spp == 1 << 24)
