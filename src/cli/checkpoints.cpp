@@ -80,45 +80,45 @@ void Checkpoints::read(const std::string& exr, const NamedPicture& render) {
 }
 
 WorkPartition Checkpoints::share(const std::string& exr, const Picture& render, const Settings& settings,
-                                 ProcessGroup* team) {
+                                 ProcessGroup* group) {
     WorkPartition share;
     if (!pass_range.empty()) {
         const auto [begin, end] = parse_range(pass_range);
         share.first_pass = begin;
         share.end_pass = end;
     }
-    share.keep_sums = !pass_range.empty() || team != nullptr;
+    share.keep_sums = !pass_range.empty() || group != nullptr;
     if (share.keep_sums && (settings.passes < share.end_pass.value_or(1) || settings.target_error > 0))
         throw InputError(fmt::format("found passes={} and target_error={}, expected a number of passes that is known "
                                      "beforehand and not below what is to be shared out",
                                      settings.passes, settings.target_error));
-    if (settings.adaptive && (asked() || team != nullptr))
+    if (settings.adaptive && (asked() || group != nullptr))
         throw InputError("found adaptive=true, expected false of a render that is made in parts, or may be: none of "
                          "them knows how noisy the others' samples are");
-    if (team != nullptr) {
-        share.take_number = [team] { return team->take_number(); };
-        share.processes = team->size();
-        share.communicator = team;
+    if (group != nullptr) {
+        share.take_number = [group] { return group->take_number(); };
+        share.processes = group->size();
+        share.communicator = group;
     }
     if (checkpoint && std::isnan(*checkpoint)) throw InputError("--checkpoint: found nan, expected seconds");
     if (file(exr).empty()) return share;
-    const int rank = team != nullptr ? team->rank() : 0;
+    const int rank = group != nullptr ? group->rank() : 0;
     if (resume) {
         if (rank == 0) read(exr, {"the render", render});
-        if (team != nullptr) team->wait_for_all(); // until the first has made one file of all
+        if (group != nullptr) group->wait_for_all(); // until the first has made one file of all
         if (rank > 0 && fs::exists(file(exr))) {
             done_ = {file(exr), read_exr(file(exr))};
             done_.picture.sums.clear(); // the first process has them
         }
         // Whoever goes on before all have read would write over it, and its new units would be done twice.
-        if (team != nullptr) team->wait_for_all();
+        if (group != nullptr) group->wait_for_all();
         if (!done_.name.empty()) share.done = &done_.picture;
     }
     share.save_every = checkpoint.value_or(kSeconds);
     // What more processes left of an earlier render would stand in the way of going on from this one.
     std::vector<std::string> left_over;
     if (!resume && rank == 0)
-        for (int r = team != nullptr ? team->size() : 1; r < kMostRanks; ++r)
+        for (int r = group != nullptr ? group->size() : 1; r < kMostRanks; ++r)
             if (const std::string path = file(exr, r); fs::exists(path)) left_over.push_back(path);
     share.save = [path = file(exr, rank), identity = render.metadata, left_over](Picture picture) mutable {
         picture.metadata.insert(identity.begin(), identity.end());

@@ -26,9 +26,9 @@ struct Checkpoints {
 
     /// The share that this asks for. `exr` is the output; checkpoints go beside it. `render` has the size and the
     /// identity (render_identity()) of pictures of the render; a checkpoint to go on from has to have the same. Keeps
-    /// what the share refers to. With a team every process has its checkpoints; all are read.
+    /// what the share refers to. With a group every process has its checkpoints; all are read.
     /// @throws InputError for a range that can't be, and for checkpoints that can't be read or are of another render.
-    WorkPartition share(const std::string& exr, const Picture& render, const Settings& settings, ProcessGroup* team);
+    WorkPartition share(const std::string& exr, const Picture& render, const Settings& settings, ProcessGroup* group);
 
     /// The file of checkpoints for an output, of process `rank`; empty: none is written.
     std::string file(const std::string& exr, int rank = 0) const;

@@ -18,8 +18,8 @@ using Action = std::function<int()>;
 
 /// Each adds its subcommand to `app`; parsing it sets `action`.
 /// @param command_line for the picture's metadata.
-/// @param team the processes that share a render; null: this one is alone.
-void add_render_command(CLI::App& app, Action& action, const std::string& command_line, ProcessGroup* team);
+/// @param group the processes that share a render; null: this one is alone.
+void add_render_command(CLI::App& app, Action& action, const std::string& command_line, ProcessGroup* group);
 void add_merge_command(CLI::App& app, Action& action, const std::string& command_line);
 void add_diff_command(CLI::App& app, Action& action);
 void add_paths_command(CLI::App& app, Action& action);

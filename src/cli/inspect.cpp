@@ -5,6 +5,7 @@
 #include "cli/page/page_parts.h"
 #include "cli/progress/interrupt.h"
 #include "cli/resolution.h"
+#include "cli/words/stats_json.h"
 #include "cli/words/tell.h"
 #include "core/error.h"
 #include "core/parallel.h"
@@ -90,7 +91,7 @@ int run(InspectOptions o) {
         for (const std::string& warning : load_warnings) inspection.render.stats.warn(Doubt::scene, warning);
         unsaved = inspection.render.stats.unsaved;
         const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-        page = kInspectionPage.with(page_data(scene, inspection, {name, took.count(), loaded.user_paths}).dump());
+        page = kInspectionPage.with(json_line(page_data(scene, inspection, {name, took.count(), loaded.user_paths})));
     });
     if (stop.requested()) return kInterrupted;
     write_file_atomically(o.output, page);

@@ -42,12 +42,12 @@ int fail(int code, std::string message) {
     return code;
 }
 
-int run(int argc, char** argv, ProcessGroup* team) {
+int run(int argc, char** argv, ProcessGroup* group) {
     CLI::App app("Metropolis photon sampling: a physically based renderer.", "keyhole");
     app.set_version_flag("--version", "keyhole " KEYHOLE_VERSION "\n" KEYHOLE_BUILD);
     app.require_subcommand(1);
     Action action;
-    add_render_command(app, action, joined(argc, argv), team);
+    add_render_command(app, action, joined(argc, argv), group);
     add_merge_command(app, action, joined(argc, argv));
     add_diff_command(app, action);
     add_paths_command(app, action);
@@ -62,7 +62,7 @@ int run(int argc, char** argv, ProcessGroup* team) {
         if (e.get_exit_code() == 0) return app.exit(e); // help and version
         return fail(kBadInput, std::string(e.what()) + " (see --help)");
     }
-    if (team != nullptr && team->rank() > 0 && !app.got_subcommand("render")) return kSuccess;
+    if (group != nullptr && group->rank() > 0 && !app.got_subcommand("render")) return kSuccess;
     const int code = action();
     if (std::fflush(stdout) == 0) return code;
     if (errno == EPIPE) throw std::system_error(EPIPE, std::generic_category());
@@ -71,10 +71,10 @@ int run(int argc, char** argv, ProcessGroup* team) {
 
 } // namespace
 
-int run_program(int argc, char** argv, ProcessGroup* team) {
+int run_program(int argc, char** argv, ProcessGroup* group) {
     secure_standard_streams();
     try {
-        return run(argc, argv, team);
+        return run(argc, argv, group);
     } catch (const InputErrors& e) {
         for (const std::string& line : e.lines()) fail(kBadInput, line);
         return kBadInput;

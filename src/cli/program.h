@@ -6,8 +6,8 @@
 
 namespace keyhole {
 
-/// @param team the processes that share `render`; null: this one is alone.
+/// @param group the processes that share `render`; null: this one is alone.
 /// @returns an ExitCode.
-int run_program(int argc, char** argv, ProcessGroup* team);
+int run_program(int argc, char** argv, ProcessGroup* group);
 
 } // namespace keyhole

@@ -52,10 +52,10 @@ struct RenderOptions {
     int threads = 0;
     std::optional<double> timeout, cpu_time; ///< [s]
     std::string quality, display_server;
-    ProcessGroup* team = nullptr; ///< null: this process is alone
+    ProcessGroup* group = nullptr; ///< null: this process is alone
     StopToken::Clock::time_point begun = StopToken::Clock::now();
 
-    bool writes() const { return team == nullptr || team->rank() == 0; }
+    bool writes() const { return group == nullptr || group->rank() == 0; }
     bool in_time() const { return timeout || cpu_time; }
 };
 
@@ -85,16 +85,16 @@ Picture join_parts(Picture a, Picture b) {
 }
 
 /// Joins what all processes have done, on the first of them.
-void join_team(ProcessGroup& team, RenderResult& result, const std::string& checkpoint) {
+void join_group(ProcessGroup& group, RenderResult& result, const std::string& checkpoint) {
     Picture all;
     try {
-        all = team.collect(std::move(result.picture), join_parts);
+        all = group.collect(std::move(result.picture), join_parts);
     } catch (const ProcessLost& e) {
         throw ProcessLost(fmt::format("{}; {}", e.what(),
                                       checkpoint.empty() ? "nothing is kept without --checkpoint"
                                                          : "what is done is in checkpoints: go on with --resume"));
     }
-    if (team.rank() > 0) return;
+    if (group.rank() > 0) return;
     result.picture = {};
     if (all.metadata["units"].empty()) return;
     result.picture = join_pictures(std::array{NamedPicture{"all parts", std::move(all)}});
@@ -150,13 +150,13 @@ RenderResult render_scene(LoadedScene& loaded, RenderOptions& options, std::vect
         start_clock(options, stop);
         const std::uint64_t hash = scene_hash(scene);
         const Picture expected{window.width, window.height, {}, render_identity(loaded.settings, hash), {}};
-        WorkPartition share = options.checkpoints.share(options.outputs.exr, expected, loaded.settings, options.team);
+        WorkPartition share = options.checkpoints.share(options.outputs.exr, expected, loaded.settings, options.group);
         const auto progress = make_progress(options.quiet, stop);
         if (options.writes()) view.watch(share);
         const RunContext context{&stop, progress.get()};
         // Parts of a render have to agree on its settings: none can follow from the time. And where passes end by
         // something else, they do.
-        const bool alone = options.team == nullptr && !options.checkpoints.asked();
+        const bool alone = options.group == nullptr && !options.checkpoints.asked();
         const bool ends_by_time = loaded.settings.passes > 0 && loaded.settings.target_error == 0;
         result = options.in_time() && alone && ends_by_time && loaded.settings.load_map.empty()
                      ? render_in_time(scene, loaded.settings, named_settings(options.overrides), context,
@@ -169,18 +169,18 @@ RenderResult render_scene(LoadedScene& loaded, RenderOptions& options, std::vect
         if (options.checkpoints.resume && share.done == nullptr)
             result.stats.remarks.emplace_back("found no checkpoint to go on from: started from the beginning");
     });
-    if (options.team != nullptr) join_team(*options.team, result, options.checkpoints.file(options.outputs.exr));
+    if (options.group != nullptr) join_group(*options.group, result, options.checkpoints.file(options.outputs.exr));
     if (!result.picture.layers.empty()) view.show(result.picture);
     return result;
 }
 
 /// The scene with the settings that the options ask for.
 /// @throws InputError for a scene, settings and options that don't go together.
-LoadedScene load_scene(const RenderOptions& options, std::vector<std::string>& warnings) {
+LoadedScene load_for(const RenderOptions& options, std::vector<std::string>& warnings) {
     std::set<std::string> named = named_settings(options.overrides);
     // An error to reach asks for as many passes as that takes, unless somebody says how many.
     std::vector<std::string> overrides = options.overrides;
-    const bool in_passes = options.in_time() && (options.team != nullptr || options.checkpoints.asked());
+    const bool in_passes = options.in_time() && (options.group != nullptr || options.checkpoints.asked());
     if (named.contains("target_error") || in_passes) {
         overrides.insert(overrides.begin(), "passes=0");
         named.insert("passes"); // an effort has no say in it
@@ -194,7 +194,7 @@ LoadedScene load_scene(const RenderOptions& options, std::vector<std::string>& w
     if (!options.save_map.empty() && !loaded.settings.method->keeps_photons)
         throw InputError(fmt::format("--save-map: found method {}, expected one that keeps photons: {}",
                                      loaded.settings.method->name, names_of(&Method::keeps_photons)));
-    if (options.team != nullptr && options.in_time())
+    if (options.group != nullptr && options.in_time())
         throw InputError("found --timeout or --cpu-time, which end one process; expected --passes, a number that all "
                          "processes know beforehand");
     loaded.settings.save_map = options.save_map;
@@ -235,7 +235,7 @@ int run(RenderOptions options) {
 
     const InterruptHandler interrupts(stop);
     std::vector<std::string> load_warnings;
-    LoadedScene loaded = load_scene(options, load_warnings);
+    LoadedScene loaded = load_for(options, load_warnings);
     options.outputs.exposure = loaded.settings.exposure.value;
     options.outputs.noise_layers = loaded.settings.noise_layers;
     options.outputs.denoise = loaded.settings.denoise;
@@ -277,11 +277,11 @@ std::string settings_help() {
 
 } // namespace
 
-void add_render_command(CLI::App& app, Action& action, const std::string& command_line, ProcessGroup* team) {
+void add_render_command(CLI::App& app, Action& action, const std::string& command_line, ProcessGroup* group) {
     CLI::App* command = app.add_subcommand("render", "Render a scene");
     auto o = std::make_shared<RenderOptions>();
     o->command_line = command_line;
-    o->team = team;
+    o->group = group;
     command->add_option("SCENE", o->scene, "scene file (YAML, .pbrt, .gltf or .glb)")->required();
     command->add_option("-o,--output", o->outputs.exr,
                         "picture to write (.exr); default: the scene's name, in this folder");

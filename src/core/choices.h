@@ -22,7 +22,8 @@ enum class PowerRule {
     marginal,   ///< divided by the importance map's E: consistent, and every photon weighs the same where it is asked;
                 ///< `reciprocal` where importons are too few to say, or where some may lie behind a wall:
                 ///< 1 / E would have a heavy tail
-    reciprocal, ///< weighed by a density of camera sub-paths, normalised by drawing them until one is valid: unbiased
+    reciprocal, ///< weighed by a density of camera sub-paths, normalised by drawing them until one is valid: unbiased,
+                ///< but for places that so few leave that drawing is given up
     literal,    ///< MPS 3.2 to the letter, brought to the right total: for comparison only
 };
 constexpr auto words_of(PowerRule) { return std::to_array<std::string_view>({"marginal", "reciprocal", "literal"}); }

@@ -63,9 +63,9 @@ class CacheFill {
     /// The rest of the rays, where records have the most to say: most of them stand in corners and serve a few pixels.
     void refine(int rays_on_average, const RunContext& context) {
         if (rays_on_average <= first_) return;
-        std::vector<double> worths = cache_.relative_noise();
-        for (std::size_t i = 0; i < worths.size(); ++i) worths[i] *= cache_.radius(i) / placed_[i].pixel;
-        const std::vector<int> rays = share_rays(worths, first_, rays_on_average - first_);
+        std::vector<double> weights = cache_.relative_noise();
+        for (std::size_t i = 0; i < weights.size(); ++i) weights[i] *= cache_.radius(i) / placed_[i].pixel;
+        const std::vector<int> rays = share_rays(weights, first_, rays_on_average - first_);
         const std::uint64_t streams = 2 * kSteps.size() * pixels(); // that fill_level() uses
         for (std::size_t begin = 0; begin < placed_.size() && !context.stopped(); begin += kBatch) {
             std::vector<HemisphereEstimate> found(std::min(kBatch, placed_.size() - begin));

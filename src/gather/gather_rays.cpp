@@ -254,14 +254,14 @@ Rgb GatherRays::caustic(const Vertex& v, const Vec3& normal, const Vec3& back, d
     if (!(p > 0)) return Rgb(0.0);
     const PilotSurroundings& surroundings = *maps_.caustic_surroundings;
     // By chance only where a look takes rays.
-    if (p < 1 && !maps_.patches->takes_rays() && !surroundings.parted(query.region, piloted)) p = 1;
+    if (p < 1 && !maps_.patches->takes_rays() && !surroundings.partly_occluded(query.region, piloted)) p = 1;
     if (p < 1 && !(source.next() < p)) return Rgb(0.0);
     const Surroundings around = surroundings.around(query.region, piloted);
     if (!(around.area > 0)) return Rgb(0.0);
     const PhotonMap& photons = maps_.caustic->main_photons();
     const auto reflected = reflection(v, back);
     const double area = around.area * p;
-    if (!around.parted) return estimate_density(photons, query.region, r, area, reflected).value;
+    if (!around.partly_occluded) return estimate_density(photons, query.region, r, area, reflected).value;
     const auto all = [&](const Photon& photon) { return luminance(reflected(photon) * photon.power()); };
     const auto seen = weight_in_sight(scene_, query.region, r, reflected);
     const auto light = [&](const Photon& photon) { return seen(photon) * photon.power(); };
@@ -299,7 +299,7 @@ Rgb GatherRays::global(const Vertex& v, const Vec3& back) const {
     });
 }
 
-bool GatherRays::may_be_parted(std::uint32_t place, const SurfaceRegion& region) const {
+bool GatherRays::may_be_partly_occluded(std::uint32_t place, const SurfaceRegion& region) const {
     const IrradianceMap& map = *maps_.irradiance;
     return map.obstructed(place) ||
            (!map.is_near(place, region.position, kKnown) && maps_.patches->obstructed(region, map.radius(place)));
@@ -345,7 +345,7 @@ Rgb GatherRays::photons(Asked asked, std::uint32_t place, const Vertex& v, const
         return sum_over_few(map, {query.region, r, kPhotonsOfLobe}, power, light, source) / area;
     };
     const auto reflected = reflection(v, back);
-    if (!may_be_parted(place, query.region)) return few(reflected);
+    if (!may_be_partly_occluded(place, query.region)) return few(reflected);
     return few(weight_in_sight(scene_, query.region, r, reflected));
 }
 

@@ -102,7 +102,7 @@ class GatherRays {
     Rgb lobe_traced_on(const Vertex& v, const Vec3& back, const std::optional<std::uint32_t>& place, const Leg& leg,
                        SampleSource& source) const;
     /// Whether something may stand on a region near a place, which has the radius of that, and hide photons there.
-    bool may_be_parted(std::uint32_t place, const SurfaceRegion& region) const;
+    bool may_be_partly_occluded(std::uint32_t place, const SurfaceRegion& region) const;
     /// What the global map says of light that `v` reflects towards `back`.
     Rgb global(const Vertex& v, const Vec3& back) const;
     /// Which of the photons near a place count.

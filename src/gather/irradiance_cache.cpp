@@ -23,8 +23,8 @@ Vec3 to_vec(const Rgb& c) { return {static_cast<float>(c.x), static_cast<float>(
 
 float luminance_of(const Vec3& c) { return c.dot(Vec3(0.2126f, 0.7152f, 0.0722f)); }
 
-/// Of cells as wide as the reach of their records, so that these stand in 8 to 27 of them: larger cells would offer
-/// more records in vain.
+/// The level whose cells are about as wide as a record's radius of use, so that each record overlaps 8 to 27 of them:
+/// larger cells would offer more records in vain.
 int level_of(float reach) { return static_cast<int>(std::ceil(std::log2(reach))); }
 
 struct CellIndex {
@@ -178,9 +178,9 @@ void IrradianceCache::refine(std::size_t i, const HemisphereEstimate& more, doub
     }
 }
 
-std::vector<IrradianceCache::Say> IrradianceCache::others_at(std::uint32_t i) const {
+std::vector<IrradianceCache::Prediction> IrradianceCache::others_at(std::uint32_t i) const {
     const Stored& here = records_[i];
-    std::vector<Say> found;
+    std::vector<Prediction> found;
     visit_near(here.position, [&](std::uint32_t k) {
         if (k == i) return;
         const Stored& r = records_[k];

@@ -48,14 +48,14 @@ class IrradianceCache {
     /// `share` in [0,1]. How far it is used stays as it is.
     void refine(std::size_t i, const HemisphereEstimate& more, double share);
 
-    /// What another record says of the place of one.
-    struct Say {
+    /// The irradiance that a neighbour's gradients predict at a record (Ward and Heckbert 1992).
+    struct Prediction {
         std::uint32_t record;
         double weight;
         Rgb irradiance; ///< that it predicts there [W/m^2]
     };
-    /// Of all other records that have a say at record `i`.
-    std::vector<Say> others_at(std::uint32_t i) const;
+    /// The predictions of all other records whose weight at record `i` is positive.
+    std::vector<Prediction> others_at(std::uint32_t i) const;
     /// Takes `change` [W/m^2] into record `i`, whose gradients change in proportion. No channel becomes negative.
     void change(std::uint32_t i, const Rgb& change);
 

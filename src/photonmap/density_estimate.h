@@ -11,9 +11,8 @@ enum class Unbiased {
     /// (k-1) / A_k: the k-th photon sets the region's border and doesn't count. Exact in expectation for photons
     /// thrown with locally uniform density, also where max_radius cuts the region off.
     density,
-    /// k / A_k: A_k / k has the expectation of the reciprocal density (Booth 2007, Suykens 2000). Where max_radius cuts
-    /// in,
-    /// n / A, which has no such property: no photon at all is a possible outcome.
+    /// k / A_k: A_k / k has the expectation of the reciprocal density (Booth 2007, Suykens 2000). Where max_radius
+    /// cuts in, n / A, which has no such property: no photon at all is a possible outcome.
     reciprocal,
 };
 

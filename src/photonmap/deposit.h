@@ -14,8 +14,8 @@
 namespace keyhole {
 
 /// What the power of photons is computed from. The caustic map's photons are `marginal` under every rule: from d1 there
-/// is one edge to the eye and nothing to draw. Where no mirror or lens gives the eye a second way to d1, that edge's
-/// density is E, and no map is asked.
+/// is one edge to the eye and nothing to draw. With a pinhole camera and no specular surfaces d1 has one camera
+/// sub-path only: its density is E, and no map is asked.
 struct DepositOptions {
     const ImportanceMap* global = nullptr;  ///< at d2; null under `reciprocal`
     const ImportanceMap* caustic = nullptr; ///< at d1

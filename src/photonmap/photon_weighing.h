@@ -17,8 +17,8 @@ struct EmissionGuide {
     const ImportanceGuide* caustic = nullptr; ///< at d1
 };
 
-/// Which maps light goes to that arrives at a vertex, whatever the camera sub-path: stored_kind() for all paths that
-/// begin so.
+/// The maps that store a photon arriving at a vertex: those that stored_kind() names for any camera sub-path that the
+/// light sub-path could be joined to.
 struct StorageRule {
     int max_scatterings = 24;
     bool caustics = true;                     ///< whether there is a caustic map

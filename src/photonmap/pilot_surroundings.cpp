@@ -6,7 +6,7 @@
 namespace keyhole {
 namespace {
 
-constexpr unsigned kSteps = 255, kParted = 256;
+constexpr unsigned kSteps = 255, kPartlyOccluded = 256;
 
 /// The four bits above: nothing stands within max_radius / 2^(level - 1); 0: within no such distance that is known.
 constexpr unsigned kLevelShift = 9, kMostLevel = 15;
@@ -26,9 +26,9 @@ PilotSurroundings::PilotSurroundings(const PhotonMap& pilots, const SurfacePatch
     : pilots_(pilots), patches_(patches), k_(k), max_radius_(max_radius), shrink_(shrink),
       known_(pilots.photons().size()) {}
 
-bool PilotSurroundings::parted(const SurfaceRegion& region, const PilotedRegion& piloted) const {
+bool PilotSurroundings::partly_occluded(const SurfaceRegion& region, const PilotedRegion& piloted) const {
     const auto packed = known_around(region, piloted);
-    return packed ? (*packed & kParted) != 0 : own(region, piloted.radius).parted;
+    return packed ? (*packed & kPartlyOccluded) != 0 : own(region, piloted.radius).partly_occluded;
 }
 
 Surroundings PilotSurroundings::around(const SurfaceRegion& region, const PilotedRegion& piloted) const {
@@ -36,9 +36,9 @@ Surroundings PilotSurroundings::around(const SurfaceRegion& region, const Pilote
     const auto packed = known_around(region, piloted);
     if (!packed) return own(region, r);
     const unsigned steps = *packed & kSteps;
-    const bool parted = (*packed & kParted) != 0;
-    if (!parted && steps < kSteps) return {patches_.area(region, r), false};
-    return {kPi * static_cast<double>(r) * r * steps / kSteps, parted};
+    const bool partly_occluded = (*packed & kPartlyOccluded) != 0;
+    if (!partly_occluded && steps < kSteps) return {patches_.area(region, r), false};
+    return {kPi * static_cast<double>(r) * r * steps / kSteps, partly_occluded};
 }
 
 std::optional<PilotSurroundings::Packed> PilotSurroundings::known_around(const SurfaceRegion& region,
@@ -47,7 +47,7 @@ std::optional<PilotSurroundings::Packed> PilotSurroundings::known_around(const S
     const Packed packed = at(*piloted.nearest);
     const float distance = (pilots_[*piloted.nearest].position() - region.position).length();
     const bool clear = distance + piloted.radius <= clear_distance(packed, max_radius_);
-    return clear || (packed & kParted) != 0 ? std::optional(packed) : std::nullopt;
+    return clear || (packed & kPartlyOccluded) != 0 ? std::optional(packed) : std::nullopt;
 }
 
 PilotSurroundings::Packed PilotSurroundings::at(std::uint32_t pilot) const {
@@ -65,7 +65,7 @@ PilotSurroundings::Packed PilotSurroundings::measure(const Photon& pilot) const 
     const double share = around.area / (kPi * static_cast<double>(r) * r);
     // At least one step: a pilot photon lies on some surface, and 0 says that nobody asked.
     const auto steps = static_cast<unsigned>(std::lround(kSteps * std::clamp(share, 1.0 / kSteps, 1.0)));
-    if (around.parted) return static_cast<Packed>(steps | kParted);
+    if (around.partly_occluded) return static_cast<Packed>(steps | kPartlyOccluded);
     // The smallest of the distances that is far enough.
     const auto level = static_cast<unsigned>(
         std::clamp(std::log2(max_radius_ / (kClear * r)) + 1, 1.0f, static_cast<float>(kMostLevel)));

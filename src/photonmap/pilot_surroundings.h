@@ -21,7 +21,7 @@ class PilotSurroundings {
     PilotSurroundings(const PhotonMap& pilots, const SurfacePatches& patches, int k, float max_radius, float shrink);
 
     /// Whether only what the middle of a region sees counts there.
-    bool parted(const SurfaceRegion& region, const PilotedRegion& piloted) const;
+    bool partly_occluded(const SurfaceRegion& region, const PilotedRegion& piloted) const;
     /// Around the region of a lookup that the pilot photons have sized. At an edge of the surface its own area is
     /// measured: the pilot photons near by lie farther from the edge than a lookup at it.
     Surroundings around(const SurfaceRegion& region, const PilotedRegion& piloted) const;

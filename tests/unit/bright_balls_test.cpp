@@ -27,7 +27,7 @@ class Findings {
     }
 
     Rng rng_{1, StreamPurpose::test, 0};
-    std::vector<Finding> all_;
+    std::vector<RadianceSample> all_;
 };
 
 TEST(BrightBalls, AreNoneWhereAllIsAlike) {

@@ -92,6 +92,7 @@ TEST(Chart, LogKeepsResultsAndForgetsALineCutShort) {
         log.add("a",
                 {.cpu_seconds = 1.5, .peak_bytes = 77, .chosen = "ipm", .stages = {{"gather", 0.25}}, .failure = {}});
         log.add("b", {.chosen = {}, .stages = {}, .failure = "ended by a signal"});
+        log.add("caf\xe9", {.chosen = "path", .stages = {}, .failure = {}}); // not UTF-8
     }
     std::ofstream(path, std::ios::app) << R"({"key":"c","cpu_sec)";
     const RunLog log(path);
@@ -102,6 +103,8 @@ TEST(Chart, LogKeepsResultsAndForgetsALineCutShort) {
     EXPECT_EQ(log.find("a")->stages, (std::vector<std::pair<std::string, double>>{{"gather", 0.25}}));
     EXPECT_EQ(log.find("b")->failure, "ended by a signal");
     EXPECT_FALSE(log.find("c"));
+    ASSERT_TRUE(log.find("caf\xe9"));
+    EXPECT_EQ(log.find("caf\xe9")->chosen, "path");
     scratch.write("other.txt", "no log\n");
     EXPECT_THROW(RunLog(scratch.path("other.txt")), InputError);
 }

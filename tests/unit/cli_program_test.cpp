@@ -110,6 +110,15 @@ TEST_F(Program, WordsThatAreNotUtf8AreWarnedOf) {
     EXPECT_THAT(read("s.json"), HasSubstr("\xEF\xBF\xBDx")) << read("s.json");
 }
 
+TEST_F(Program, NamesThatAreNotUtf8LoseNoPage) {
+    std::filesystem::copy(scratch.path("scene.yaml"), scratch.path("caf\xe9.yaml"));
+    EXPECT_EQ(run("inspect caf\xe9.yaml -o page.html --resolution 8x6 -D light_paths=1000"), 0) << read("err");
+    EXPECT_THAT(read("page.html"), HasSubstr("caf\xEF\xBF\xBD"));
+    EXPECT_EQ(run("chart caf\xe9.yaml --methods path --times 0.3 --reference-time 2 --repeats 1 -o report"), 0)
+        << read("err");
+    EXPECT_TRUE(exists("report/index.html"));
+}
+
 TEST_F(Program, ATimeoutLeavesWhatThereIs) {
     ASSERT_EQ(run("render scene.yaml -o a.exr --spp 10M --timeout 0.5"), 0) << read("err");
     EXPECT_EQ(read_exr(scratch.path("a.exr")).metadata.at("complete"), "no");

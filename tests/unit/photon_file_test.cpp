@@ -65,6 +65,28 @@ TEST_F(SavedMap, MakesTheSamePicture) {
     for (const auto& [name, image] : picture_.layers) EXPECT_EQ(image.data, again.layers.at(name).data) << name;
 }
 
+/// Rough metal asks the map in another way where its photons lie wherever light comes.
+TEST(SavedMapOfAll, MakesTheSamePictureOfRoughMetal) {
+    const auto value = [](double x) { return constant_texture(x); };
+    const MaterialPtr metal = make_conductor(constant_texture(Rgb(0.8)), value(0.2), value(0.2));
+    test::SceneMaker m;
+    const auto scene = m.room({-1, 0, -1}, {1, 2, 3}, make_diffuse(Rgb(0.6)))
+                           .rectangle({-0.5f, 1.9f, -0.5f}, {0, 0, 1}, {1, 0, 0}, make_black(), Rgb(5.0))
+                           .rectangle({-0.9f, 0.01f, -0.9f}, {0, 0, 2}, {1.8f, 0, 0}, metal)
+                           .sphere({0.3f, 0.5f, 0}, 0.4f, metal)
+                           .camera({0, 1, 2.9f}, {0, 0.95f, -1}, 50)
+                           .window(24, 16)
+                           .build();
+    ScratchDirectory directory;
+    Settings s = small_settings();
+    s.method = &methods::ipm;
+    s.gather_coverage = false;
+    s.save_map = directory.path("map.photons");
+    const Image saved = render(*scene, s, {}).picture.layers.at("beauty");
+    std::swap(s.save_map, s.load_map);
+    EXPECT_EQ(render(*scene, s, {}).picture.layers.at("beauty").data, saved.data);
+}
+
 TEST_F(SavedMap, IsRefusedForAnotherScene) {
     auto other = test::diffuse_box();
     EXPECT_THAT(refusal(*other, loading()), HasSubstr("another scene"));

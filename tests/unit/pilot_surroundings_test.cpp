@@ -46,7 +46,7 @@ RunningStats densities(const Scene& scene, float x) {
             const Surroundings around = surroundings.around(region, piloted);
             EXPECT_GT(around.area, 0);
             const auto one = [](const Photon&) { return 1.0; };
-            along.add(around.parted
+            along.add(around.partly_occluded
                           ? estimate_density(map.main_photons(), region, piloted.radius, around.area,
                                              weight_in_sight(scene, region, piloted.radius, one))
                                 .value.x
@@ -70,7 +70,7 @@ TEST(PilotSurroundings, TellTheDensityAtEdgesAndWalls) {
     }
 }
 
-/// All pilot photons that are near lie behind the wall, and too far from it to be parted themselves.
+/// All pilot photons that are near lie behind the wall, and too far from it to be partly_occluded themselves.
 TEST(PilotSurroundings, BeforeAWallAreNotThoseOfPhotonsBehindIt) {
     const auto scene = floor_with_wall();
     const SurfacePatches patches(*scene);
@@ -85,8 +85,8 @@ TEST(PilotSurroundings, BeforeAWallAreNotThoseOfPhotonsBehindIt) {
         const SurfaceRegion region{{0.45f, 0, z}, kUp};
         const PilotedRegion piloted = piloted_region(map.pilots(), {region, kReach, kNearest});
         ASSERT_TRUE(piloted.nearest);
-        EXPECT_TRUE(surroundings.parted(region, piloted));
-        EXPECT_TRUE(surroundings.around(region, piloted).parted);
+        EXPECT_TRUE(surroundings.partly_occluded(region, piloted));
+        EXPECT_TRUE(surroundings.around(region, piloted).partly_occluded);
     }
 }
 

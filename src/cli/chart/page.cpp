@@ -3,6 +3,7 @@
 #include "cli/chart/page_pictures.h"
 #include "cli/page/page_parts.h"
 #include "cli/pictures/beauty.h"
+#include "cli/words/stats_json.h"
 #include "film/files/atomic_file.h"
 
 #include <nlohmann/json.hpp>
@@ -102,12 +103,11 @@ void write_page(const std::string& folder, const std::vector<SceneChart>& charts
     Json scenes = Json::array();
     const int shrink = shrink_of(charts, options);
     for (const SceneChart& chart : charts) scenes.push_back(scene_json(chart, options, shrink));
-    const std::string data = Json{
-        {"program", "keyhole " KEYHOLE_VERSION},
-        {"repeats", options.repeats},
-        {"methods", options.methods},
-        {"scenes", scenes}}.dump();
-    write_file_atomically(folder + "/index.html", kChartPage.with(data));
+    const Json data{{"program", "keyhole " KEYHOLE_VERSION},
+                    {"repeats", options.repeats},
+                    {"methods", options.methods},
+                    {"scenes", scenes}};
+    write_file_atomically(folder + "/index.html", kChartPage.with(json_line(data)));
 }
 
 } // namespace keyhole

@@ -1,5 +1,6 @@
 #include "cli/chart/runs.h"
 
+#include "cli/words/stats_json.h"
 #include "core/error.h"
 #include "methods/method.h"
 #include "scene/load/yaml/settings_text.h"
@@ -36,6 +37,9 @@ Json to_json(const std::string& key, const RunResult& r) {
             {"stages", stages},
             {"failure", r.failure}};
 }
+
+/// The key as the log has it: what is not UTF-8 is replaced.
+std::string written(const std::string& key) { return json_line(Json(key)); }
 
 RunResult from_json(const Json& j) {
     RunResult r{.cpu_seconds = j.at("cpu_seconds"),
@@ -91,7 +95,7 @@ RunLog::RunLog(const std::string& path) {
         const Json json = Json::parse(line, nullptr, false);
         if (json.is_discarded() || !json.contains("key"))
             throw InputError(path + ": found a line that is no result of a run, expected a chart's log");
-        results_[json.at("key")] = from_json(json);
+        results_[written(json.at("key"))] = from_json(json);
         whole += line + "\n";
     }
     before.close();
@@ -102,14 +106,14 @@ RunLog::RunLog(const std::string& path) {
 
 std::optional<RunResult> RunLog::find(const std::string& key) const {
     const std::lock_guard lock(mutex_);
-    const auto found = results_.find(key);
+    const auto found = results_.find(written(key));
     return found == results_.end() ? std::nullopt : std::optional(found->second);
 }
 
 void RunLog::add(const std::string& key, const RunResult& result) {
     const std::lock_guard lock(mutex_);
-    results_[key] = result;
-    file_ << to_json(key, result).dump() << "\n" << std::flush;
+    results_[written(key)] = result;
+    file_ << json_line(to_json(key, result)) << "\n" << std::flush;
     if (!file_) throw InputError("cannot write to the chart's log: is the disk full?");
 }
 

@@ -16,5 +16,9 @@ nlohmann::ordered_json stats_json(const RenderStats& stats);
 template <class Json> std::string json_text(const Json& json) {
     return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }
+/// The same in one line, for programs.
+template <class Json> std::string json_line(const Json& json) {
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
 
 } // namespace keyhole

@@ -8,8 +8,8 @@
 
 namespace keyhole {
 
-/// What a ray met.
-struct Finding {
+/// What a gather ray found where it ended.
+struct RadianceSample {
     Vec3 place;
     float distance;  ///< of the ray's origin [m]; 0: not known
     double radiance; ///< that it brings, as luminance [W/(m^2 sr)]
@@ -28,9 +28,9 @@ struct BrightBalls {
     double left = 1;
 };
 
-/// Balls that are worth rays of their own. Bright findings are divided in two again and again, and balls for the parts
+/// Balls that are worth rays of their own. Bright samples are divided in two again and again, and balls for the parts
 /// kept where they promise less variance than one for the whole. A ball leaves out what lies alone; the margin around
-/// the findings in it is wider the fewer these are.
-BrightBalls find_bright_balls(std::span<const Finding> findings);
+/// the samples in it is wider the fewer these are.
+BrightBalls find_bright_balls(std::span<const RadianceSample> samples);
 
 } // namespace keyhole

@@ -15,21 +15,22 @@ namespace {
 constexpr std::size_t kMostSpots = 64;
 
 /// What a gather ray brings of indirect light, and from where; none if it meets nothing.
-std::optional<Finding> find(const GatherRays& rays, std::uint64_t seed, std::int64_t i) {
+std::optional<RadianceSample> find(const GatherRays& rays, std::uint64_t seed, std::int64_t i) {
     Rng rng(seed, StreamPurpose::hot_spots, static_cast<std::uint64_t>(i));
     const auto ray = first_gather_ray(rays, lattice_image_point(seed, StreamPurpose::hot_spots, i), rng);
     if (!ray) return {};
     const VisiblePoint& from = ray->from;
     const auto arrival = rays.trace(from.vertex, ray->w, ray->pdf, from.scatterings, rng);
     if (!std::isfinite(arrival.distance)) return {};
-    return Finding{from.vertex.point.p + ray->w * arrival.distance, arrival.distance, luminance(arrival.indirect)};
+    return RadianceSample{from.vertex.point.p + ray->w * arrival.distance, arrival.distance,
+                          luminance(arrival.indirect)};
 }
 
 } // namespace
 
 HotSpots::HotSpots(const GatherRays& rays, std::int64_t count, std::uint64_t seed, const RunContext& context) {
     constexpr std::int64_t kBlock = 64;
-    std::vector<std::optional<Finding>> found(static_cast<std::size_t>(count));
+    std::vector<std::optional<RadianceSample>> found(static_cast<std::size_t>(count));
     context.begin("hot spots", static_cast<std::uint64_t>(count), "rays");
     parallel_for((count + kBlock - 1) / kBlock, context, [&](std::int64_t b) {
         const std::int64_t end = std::min(count, (b + 1) * kBlock);
@@ -38,13 +39,13 @@ HotSpots::HotSpots(const GatherRays& rays, std::int64_t count, std::uint64_t see
     });
     context.end();
 
-    std::vector<Finding> findings;
+    std::vector<RadianceSample> samples;
     for (const auto& f : found)
-        if (f) findings.push_back(*f);
-    for (const BrightBall& ball : find_bright_balls(findings).balls) {
+        if (f) samples.push_back(*f);
+    for (const BrightBall& ball : find_bright_balls(samples).balls) {
         if (spots_.size() == kMostSpots) break;
         double sum2 = 0, inside = 0;
-        for (const Finding& f : findings) {
+        for (const RadianceSample& f : samples) {
             if ((f.place - ball.centre).length2() > ball.radius * ball.radius) continue;
             sum2 += f.radiance * f.radiance;
             ++inside;
@@ -75,6 +76,7 @@ std::vector<SpotCone> HotSpots::cones_from(const Vec3& p, const Vec3& n, int ray
     std::vector<SpotCone> cones = cones_from(p, n);
     double total = 0;
     for (const SpotCone& cone : cones) total += cone.irradiance;
+    if (!(total > 0)) return {}; // cones so narrow that their solid angles are 0
     for (SpotCone& cone : cones) cone.rays = static_cast<int>(std::lround(rays * share_ * cone.irradiance / total));
     std::erase_if(cones, [](const SpotCone& cone) { return cone.rays == 0; });
     return cones;

@@ -9,8 +9,8 @@
 
 namespace keyhole {
 
-/// A number that the time of a stage in all passes is about proportional to, from one render of a scene to another by
-/// the same method. @param pixels of the picture.
+/// Work of a stage over all passes, in units of its own: its time is roughly proportional to this, from one render of a
+/// scene to another by the same method. @param pixels of the picture.
 double stage_work(const Stage& stage, const Settings& settings, double pixels);
 
 /// The cost of a render by stages, from which that of others by the same method is predicted.

@@ -17,7 +17,7 @@ double pixels(const Picture& picture) { return static_cast<double>(picture.width
 double empty_pixels(const RenderResult& result) { return static_cast<double>(result.stats.no_samples.value_or(0)); }
 
 bool has_picture(const RenderResult& result) {
-    if (result.picture.layers.empty()) return false; // no unit of a team's
+    if (result.picture.layers.empty()) return false; // no unit of a group's
     if (!result.picture.sums.empty()) return result.stats.samples > 0;
     if (!result.stats.complete && !(result.stats.samples > 0) && result.stats.proposals.empty() &&
         !result.stats.no_samples)

@@ -12,10 +12,9 @@ namespace keyhole {
 /// Renders for context.stop->seconds_left(), and uses all of it. Short trials show what each method costs in this scene
 /// and how large its error is; for `auto` the one that promises the least error makes the picture. Where two without
 /// photons are close, each gets a twelfth of the time first if that shows anything, and the rest goes to the one whose
-/// error turns out
-/// smaller. The result is the mean of all renders but the trials, weighted by time and by the errors of whole pictures,
-/// of which no pixel is more than a few thousandths: what biases it is as small. Where chains are run, stage one and
-/// they share time so that their errors shrink together.
+/// error turns out smaller. The result is the mean of all renders but the trials, weighted by time and by the errors of
+/// whole pictures, of which no pixel is more than a few thousandths: what biases it is as small. Where chains are run,
+/// stage one and they share time so that their errors shrink together.
 /// @param given settings that stay as they are.
 /// @param share for its look(); all passes are done here.
 /// @throws InputError where the time is too short for a method that is asked for by name, and as render().

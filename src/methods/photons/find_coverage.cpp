@@ -60,9 +60,9 @@ bool too_noisy(std::span<const GatheredLight> rays) {
     }
     const double bearable = kBearable * all.mean() * all.mean();
     if (!(beyond.mean() > kLeastSeen * all.mean() && beyond.variance() > bearable)) return false;
-    std::vector<Finding> findings;
-    for (const GatheredLight& ray : rays) findings.push_back({ray.place, ray.distance, ray.beyond});
-    return beyond.variance() * find_bright_balls(findings).left > bearable;
+    std::vector<RadianceSample> samples;
+    for (const GatheredLight& ray : rays) samples.push_back({ray.place, ray.distance, ray.beyond});
+    return beyond.variance() * find_bright_balls(samples).left > bearable;
 }
 
 /// How many rays that all found as much would be as good a sample of the light outside gather coverage.
@@ -91,8 +91,8 @@ bool too_noisy(const Scene& scene, const GatherCoverage& coverage, int max_scatt
     const auto trace = [&](Range range) {
         parallel_blocks(range.size(), kBlock, context, [&](std::int64_t k) {
             const std::int64_t i = range.begin + k;
-            Rng rng(kSeed, StreamPurpose::reach_trial, static_cast<std::uint64_t>(i));
-            trace_path(scene, lattice_image_point(kSeed, StreamPurpose::reach_trial, i), max_scatterings, rng,
+            Rng rng(kSeed, StreamPurpose::coverage_trial, static_cast<std::uint64_t>(i));
+            trace_path(scene, lattice_image_point(kSeed, StreamPurpose::coverage_trial, i), max_scatterings, rng,
                        rays[static_cast<std::size_t>(i)]);
         });
     };
@@ -109,7 +109,7 @@ bool too_noisy(const Scene& scene, const GatherCoverage& coverage, int max_scatt
 
 } // namespace
 
-std::int64_t reach_paths(const Settings& settings) {
+std::int64_t coverage_paths(const Settings& settings) {
     return std::clamp<std::int64_t>(settings.importons / 8, 1 << 12, 1 << 16);
 }
 
@@ -118,7 +118,7 @@ CoverageFound find_coverage(const Scene& scene, const Settings& settings, const 
     // Standard photon mapping knows nothing of where photons are worth having: few would be where light is seen.
     if (!settings.gather_coverage || settings.method->stores_everywhere()) return found;
     const auto depth = static_cast<int>(settings.max_depth);
-    const std::int64_t paths = reach_paths(settings);
+    const std::int64_t paths = coverage_paths(settings);
     GatherCoverage coverage(scene, depth, paths, context);
     found.beyond = light_outside_coverage(scene, coverage, depth, paths / 8, context);
     const bool always = settings.plan == Plan::all;

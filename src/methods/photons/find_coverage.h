@@ -14,10 +14,10 @@ struct CoverageFound {
     std::optional<GatherCoverage> coverage; ///< where more light ends beyond it than final gather could find
 };
 
-/// Eye paths that the reach is found by: fewer where the importance of the whole render rests on few.
-std::int64_t reach_paths(const Settings& settings);
+/// Number of eye paths that gather coverage is found by: fewer where the importance of the whole render rests on few.
+std::int64_t coverage_paths(const Settings& settings);
 
-/// Follows from the scene, reach_paths() and the settings `gather_coverage`, `plan` and `max_depth` alone, so that
+/// Follows from the scene, coverage_paths() and the settings `gather_coverage`, `plan` and `max_depth` alone, so that
 /// passes, their shares on other machines and saved maps agree. @throws Interrupted
 CoverageFound find_coverage(const Scene& scene, const Settings& settings, const RunContext& context = {});
 

@@ -19,7 +19,7 @@ namespace keyhole {
 namespace {
 
 constexpr std::array<char, 8> kMagic{'K', 'H', 'P', 'H', 'O', 'T', 'O', 'N'};
-constexpr std::uint32_t kVersion = 6; ///< to be raised whenever Photon, or what a map holds, changes
+constexpr std::uint32_t kVersion = 7; ///< to be raised whenever Photon, or what a map holds, changes
 constexpr std::uint32_t kByteOrder = 0x01020304;
 
 constexpr std::size_t kParts = 4;
@@ -37,9 +37,10 @@ struct Header {
     std::int64_t max_scatterings = 0;
     std::int64_t coverage = 0;
     std::array<std::uint64_t, kParts> photons{};
+    std::uint64_t everywhere = 0; ///< Photons::everywhere, as 0 or 1
     std::uint64_t checksum = 0;
 };
-static_assert(std::is_trivially_copyable_v<Header> && sizeof(Header) == 80);
+static_assert(std::is_trivially_copyable_v<Header> && sizeof(Header) == 88);
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why) {
     throw InputError(fmt::format("{}: {}", path, why));
@@ -72,6 +73,7 @@ void read(std::ifstream& file, std::span<char> into, const std::string& path) {
 std::uint64_t checksum(const Photons& photons) {
     Hash hash;
     for (const auto* part : parts(photons)) hash.add(*part);
+    hash.add(photons.everywhere);
     return hash.value();
 }
 
@@ -84,7 +86,7 @@ std::vector<Photon> read_photons(std::ifstream& file, const std::string& path, s
 } // namespace
 
 PhotonFileKey photon_file_key(const Scene& scene, const Settings& settings, const GatherCoverage* coverage) {
-    return {scene_hash(scene), settings.max_depth, coverage != nullptr ? reach_paths(settings) : 0};
+    return {scene_hash(scene), settings.max_depth, coverage != nullptr ? coverage_paths(settings) : 0};
 }
 
 void save_photons(const std::string& path, const PhotonFileKey& key, const Photons& photons) {
@@ -93,6 +95,7 @@ void save_photons(const std::string& path, const PhotonFileKey& key, const Photo
     header.max_scatterings = key.max_scatterings;
     header.coverage = key.coverage;
     for (std::size_t i = 0; i < kParts; ++i) header.photons[i] = parts(photons)[i]->size();
+    header.everywhere = photons.everywhere ? 1 : 0;
     header.checksum = checksum(photons);
     std::vector<std::span<const char>> bytes{bytes_of(&header)};
     for (const auto* part : parts(photons)) bytes.push_back(bytes_of(part->data(), part->size()));
@@ -115,6 +118,7 @@ Photons load_photons(const std::string& path, const PhotonFileKey& key) {
         refuse(path,
                fmt::format("found {} bytes where the header promises {} photons: the file is damaged", size, all));
     Photons photons;
+    photons.everywhere = header.everywhere != 0;
     for (std::size_t i = 0; i < kParts; ++i) *parts(photons)[i] = read_photons(file, path, header.photons[i]);
     if (checksum(photons) != header.checksum)
         refuse(path, "the photons are not those that were saved: the file is damaged");

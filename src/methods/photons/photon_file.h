@@ -15,10 +15,10 @@ namespace keyhole {
 struct PhotonFileKey {
     std::uint64_t scene;          ///< scene_hash()
     std::int64_t max_scatterings; ///< of the paths
-    std::int64_t coverage;        ///< reach_paths() of the reach that the global map stops at; 0: none
+    std::int64_t coverage;        ///< coverage_paths() of the coverage that the global map stops at; 0: none
 };
 
-/// The key of maps for this scene; `reach` is that of gather rays, null if they come everywhere. Traces some light.
+/// The key of maps for this scene. Traces some light. @param coverage of gather rays; null: they come everywhere
 PhotonFileKey photon_file_key(const Scene& scene, const Settings& settings, const GatherCoverage* coverage);
 
 /// Writes the photons of a pass, as a whole or not at all. @throws InputError if it can't be written.

@@ -32,7 +32,7 @@ PlanItem plan_caustics(const Scene& scene) {
                                 : PlanItem{name, false, "nothing in the scene is specular"};
 }
 
-PlanItem plan_reach(const Settings& settings, bool photons, const CoverageFound& found) {
+PlanItem plan_coverage(const Settings& settings, bool photons, const CoverageFound& found) {
     const char* name = "light beyond gather rays";
     if (!settings.gather_coverage) return {name, false, "the setting gather_coverage is off"};
     if (!photons) return {name, false, "no photon maps"};
@@ -75,7 +75,7 @@ RenderPlan plan_render(const SamplerContext& c, const RunContext& run, std::int6
         add(plan.photons ? plan_caustics(c.scene) : PlanItem{"caustic map and proposals", false, "no photon maps"});
     CoverageFound found;
     if (plan.photons) found = find_coverage(c.scene, s, run);
-    add(plan_reach(s, plan.photons, found));
+    add(plan_coverage(s, plan.photons, found));
     plan.coverage = std::move(found.coverage);
     plan.gather = add(plan_gather(plan.photons, plan.survey));
     plan.cache = add(plan_cache(c.scene, s, plan.gather)) && s.irradiance_cache;

@@ -17,8 +17,8 @@ auto weight_in_sight(const Scene& scene, const SurfaceRegion& region, float r, c
 
 /// What a density estimate over a region divides by.
 struct Surroundings {
-    double area = 0;     ///< of the surface in the region, or of what of it the middle sees [m^2]
-    bool parted = false; ///< only photons in sight of the middle count, and `area` is what it sees
+    double area = 0;              ///< of the surface in the region, or of what of it the middle sees [m^2]
+    bool partly_occluded = false; ///< only photons in sight of the middle count, and `area` is what it sees
 };
 
 /// Those of a region of radius `r`; `obstructed`: what `patches` say of it.
@@ -36,7 +36,7 @@ DensityEstimate estimate_density_in_sight(const Scene& scene, const PhotonMap& m
                                           float r, const SurfacePatches& patches, const Weight& weight) {
     const bool obstructed = patches.obstructed(region, r);
     const Surroundings around = surroundings_of(patches, region, r, obstructed);
-    DensityEstimate e = around.parted
+    DensityEstimate e = around.partly_occluded
                             ? estimate_density(map, region, r, around.area, weight_in_sight(scene, region, r, weight))
                             : estimate_density(map, region, r, around.area, weight);
     e.obstructed = obstructed;

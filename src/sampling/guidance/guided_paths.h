@@ -13,7 +13,8 @@ namespace keyhole {
 /// sample of either.
 class GuidedPaths {
   public:
-    /// `set`: the paths to be found, of at most `max_scatterings`. The scene and the set's reach must outlive it.
+    /// `set`: the paths to be found, of at most `max_scatterings`. The scene and the set's gather coverage must
+    /// outlive it.
     GuidedPaths(const Scene& scene, const UserPaths& paths, PathSet set, int max_scatterings);
 
     /// Number density of the measured path y among those of sample(), by all user paths together, in the convention of

@@ -13,10 +13,10 @@ namespace keyhole {
 /// user's next point, or leads through a portal, or is that of light which is emitted or scattered; specular vertices
 /// follow the user path's events. x0 lies in a patch of the emitter around the user's. The scene must outlive it.
 ///
-/// Light that was scattered anywhere seldom was so where a portal is seen large, and what comes from there carries much
-/// more than the rest. So half of the sub-paths whose portal is behind a bounce cross it along lines that are drawn
-/// there, and are joined to the vertex before. In a corner beside a door that vertex is near as well, and so on: where
-/// there are more bounces, light is followed back by up to three of them before it is joined.
+/// BSDF sampling seldom lands where the portal subtends a large solid angle, and light from there carries much more
+/// than the rest. So half of the sub-paths whose portal is behind a bounce cross it along lines that are drawn there,
+/// and are joined to the vertex before. In a corner beside a door that vertex is near as well, and so on: where there
+/// are more bounces, light is followed back by up to three of them before it is joined.
 class GuidedSubPath {
   public:
     GuidedSubPath(const Scene& scene, const UserPath& path);

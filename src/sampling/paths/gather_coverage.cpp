@@ -13,7 +13,7 @@ namespace keyhole {
 namespace {
 
 constexpr std::int64_t kBlocks = 64;
-constexpr std::uint64_t kSeed = 1; // the reach doesn't change with the seed: passes and their shares are to agree on it
+constexpr std::uint64_t kSeed = 1; // the same for every seed: passes and their shares must agree
 
 /// How many rays come near the typical ray's end at least; cells grow until they do.
 constexpr int kTypical = 32;
@@ -124,21 +124,21 @@ int typical_count(const std::vector<Count>& in_cells, const std::vector<Count>& 
 }
 
 /// Up to kProbees of the rays that end in a cell and around it, evenly spread over them: their numbers.
-std::vector<std::size_t> choose_probees(const std::vector<Count>& in_cells, const Count& around) {
+std::vector<std::size_t> choose_probes(const std::vector<Count>& in_cells, const Count& around) {
     const int chosen = std::min(kProbees, around.rays);
-    std::vector<std::size_t> probees;
+    std::vector<std::size_t> probes;
     int before = 0;
     visit_around(around.cell, [&](std::uint64_t cell) {
         const Count* c = find(in_cells, cell);
         if (c == nullptr) return;
-        for (auto next = probees.size(); next < static_cast<std::size_t>(chosen); next = probees.size()) {
+        for (auto next = probes.size(); next < static_cast<std::size_t>(chosen); next = probes.size()) {
             const int rank = (2 * static_cast<int>(next) + 1) * around.rays / (2 * chosen);
             if (rank >= before + c->rays) break;
-            probees.push_back(c->first + static_cast<std::size_t>(rank - before));
+            probes.push_back(c->first + static_cast<std::size_t>(rank - before));
         }
         before += c->rays;
     });
-    return probees;
+    return probes;
 }
 
 } // namespace
@@ -164,18 +164,17 @@ GatherCoverage::GatherCoverage(const Scene& scene, int max_scatterings, std::int
         if (c.rays >= least) cells_.push_back({c.cell});
     for (Cell& cell : cells_) {
         const Count& c = *find(around, cell.key);
-        const std::vector<std::size_t> probees = choose_probees(in_cells, c);
-        if (std::ranges::none_of(probees, [&](std::size_t i) { return obstructed(places[i].p, places[i].n); }))
-            continue;
-        cell.first = static_cast<std::uint32_t>(probees_.size());
-        cell.probees = static_cast<std::uint8_t>(probees.size());
-        const double each = static_cast<double>(c.rays) / static_cast<double>(probees.size());
+        const std::vector<std::size_t> probes = choose_probes(in_cells, c);
+        if (std::ranges::none_of(probes, [&](std::size_t i) { return obstructed(places[i].p, places[i].n); })) continue;
+        cell.first = static_cast<std::uint32_t>(probes_.size());
+        cell.probes = static_cast<std::uint8_t>(probes.size());
+        const double each = static_cast<double>(c.rays) / static_cast<double>(probes.size());
         cell.least =
-            static_cast<std::uint8_t>(std::clamp(std::ceil(least / each), 1.0, static_cast<double>(probees.size())));
-        for (const std::size_t i : probees) probees_.push_back(above(places[i].p, places[i].n));
+            static_cast<std::uint8_t>(std::clamp(std::ceil(least / each), 1.0, static_cast<double>(probes.size())));
+        for (const std::size_t i : probes) probes_.push_back(above(places[i].p, places[i].n));
     }
     cells_.shrink_to_fit();
-    probees_.shrink_to_fit();
+    probes_.shrink_to_fit();
 }
 
 std::uint64_t GatherCoverage::key(const Vec3& p, const Vec3& n) const {
@@ -203,11 +202,11 @@ bool GatherCoverage::obstructed(const Vec3& p, const Vec3& n) const {
 bool GatherCoverage::comes_to(const Vec3& p, const Vec3& n) const {
     const auto cell = std::ranges::lower_bound(cells_, key(p, n), {}, &Cell::key);
     if (cell == cells_.end() || cell->key != key(p, n)) return false;
-    if (cell->probees == 0) return true;
+    if (cell->probes == 0) return true;
     const Vec3 place = above(p, n);
     int seen = 0;
-    for (int i = 0; i < cell->probees && seen < cell->least; ++i)
-        seen += scene_->visible(probees_[cell->first + static_cast<std::size_t>(i)], place) ? 1 : 0;
+    for (int i = 0; i < cell->probes && seen < cell->least; ++i)
+        seen += scene_->visible(probes_[cell->first + static_cast<std::size_t>(i)], place) ? 1 : 0;
     return seen >= cell->least;
 }
 
@@ -228,7 +227,7 @@ double light_outside_coverage(const Scene& scene, const GatherCoverage& coverage
     parallel_for(kBlocks, context, [&](std::int64_t b) {
         const Range range = split(paths, kBlocks, b);
         for (std::int64_t i = range.begin; i < range.end; ++i) {
-            Rng rng(kSeed, StreamPurpose::reach_light, static_cast<std::uint64_t>(i));
+            Rng rng(kSeed, StreamPurpose::light_beyond_coverage, static_cast<std::uint64_t>(i));
             trace_light_path(scene, max_scatterings, rng, sinks[static_cast<std::size_t>(b)]);
         }
     });

@@ -20,7 +20,7 @@ class Scene;
 class GatherCoverage {
   public:
     /// Traces `paths` eye paths to where a gather ray would ask.
-    /// @param scene must outlive the reach.
+    /// @param scene must outlive this.
     /// @param max_scatterings as everywhere, of a whole path.
     /// @throws Interrupted
     GatherCoverage(const Scene& scene, int max_scatterings, std::int64_t paths = 1 << 16,
@@ -37,9 +37,9 @@ class GatherCoverage {
     /// Around which rays end often enough.
     struct Cell {
         std::uint64_t key;
-        std::uint32_t first = 0;  ///< of its probees
-        std::uint8_t probees = 0; ///< 0: nothing stands there that could hide a place from them
-        std::uint8_t least = 1;   ///< so many of them have to see a place
+        std::uint32_t first = 0; ///< of its probes
+        std::uint8_t probes = 0; ///< 0: nothing stands there that could hide a place from them
+        std::uint8_t least = 1;  ///< so many of them have to see a place
     };
 
     std::uint64_t key(const Vec3& p, const Vec3& n) const;
@@ -48,9 +48,9 @@ class GatherCoverage {
 
     const Scene* scene_;
     Vec3 origin_;
-    float size_ = 0;            // of a cell [m]
-    std::vector<Cell> cells_;   // by key
-    std::vector<Vec3> probees_; // above() the ends of rays in a cell and those around it
+    float size_ = 0;           // of a cell [m]
+    std::vector<Cell> cells_;  // by key
+    std::vector<Vec3> probes_; // above() the ends of rays in a cell and those around it
 };
 
 /// Whether gather rays come to `v` on the side of the unit direction `w`, or on any where light goes through. Vertices

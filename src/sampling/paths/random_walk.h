@@ -14,8 +14,7 @@ namespace keyhole {
 /// they have
 ///   Vertex& place(): a new vertex, which the next one is made in. That before it must stay where it is.
 ///   bool arrive(Vertex& v, const WalkRay& ray): `ray` has met `v`; its throughput is what arrives there. False ends
-///   the
-///     walk.
+///     the walk.
 struct WalkHooks {
     /// The ray met nothing; the vertex that was last made isn't one.
     static void lost() {}

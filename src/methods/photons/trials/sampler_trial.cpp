@@ -2,6 +2,7 @@
 
 #include "core/shared_work.h"
 #include "core/statistics.h"
+#include "methods/photons/learn_light_paths.h"
 #include "methods/photons/radii.h"
 #include "methods/photons/trials/trial_measures.h"
 #include "photonmap/importance/importance_guide.h"
@@ -23,6 +24,7 @@ namespace {
 
 constexpr std::int64_t kSteps = 128;       // of a chain
 constexpr std::int64_t kPathsOfBlock = 64; // light paths
+constexpr std::int64_t kPathsToLearnFrom = 2048; // as many as a render learns from at least
 
 /// How much is tried: less where the render itself will be short.
 struct Extent {
@@ -69,8 +71,9 @@ struct VisiblePower {
     }
 };
 
-/// `walls`: as ImportanceGuide's scene.
-double try_emission(const SamplerContext& c, const Scene* walls, const RunContext& run) {
+/// `walls`: as ImportanceGuide's scene. `learned`: where light paths begin, as in a render by ipm; null: by power.
+double try_emission(const SamplerContext& c, const Scene* walls, const LearnedEmission* learned,
+                    const RunContext& run) {
     const bool delta = c.caustics;
     const Extent extent(c.settings);
     const auto depth = static_cast<int>(c.settings.max_depth);
@@ -87,7 +90,7 @@ double try_emission(const SamplerContext& c, const Scene* walls, const RunContex
     parallel_blocks(extent.light_paths, kPathsOfBlock, run, [&](std::int64_t i) {
         Rng rng(seed, StreamPurpose::emission, static_cast<std::uint64_t>(i));
         VisiblePower sink{c.scene, global, caustic, c.storage()};
-        trace_light_path(c.scene, {&user_paths}, depth, rng, sink);
+        trace_light_path(c.scene, {&user_paths, learned}, depth, rng, sink);
         samples[static_cast<std::size_t>(i)] = sink.shares;
     });
     return relative_variance(samples) * static_cast<double>(rays_traced() - before) /
@@ -136,11 +139,12 @@ double try_metropolis(const SamplerContext& c, const RunContext& run) {
 } // namespace
 
 SamplerTrial try_samplers(const SamplerContext& context, const RunContext& run) {
-    return {try_emission(context, &context.scene, run), try_metropolis(context, run)};
+    const LearnedLightPaths learned = learn_light_paths(context, kPathsToLearnFrom, run);
+    return {try_emission(context, &context.scene, learned.emission_or_null(), run), try_metropolis(context, run)};
 }
 
 bool may_be_lit(const SamplerContext& context, const RunContext& run) {
-    return std::isfinite(try_emission(context, nullptr, run));
+    return std::isfinite(try_emission(context, nullptr, nullptr, run));
 }
 
 } // namespace keyhole

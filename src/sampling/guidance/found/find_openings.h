@@ -29,8 +29,8 @@ struct OpeningsFound {
 
 /// Paths from the emitters through openings: rectangles that narrow lines of sight between lit places and places that
 /// matter to the eye lead through. For each opening and emitter one for each number of bounces, the straight one among
-/// them where light takes it. None where light comes from infinity only. Each works: it was
-/// bound to the scene. The same on any number of threads. @throws Interrupted
+/// them where light takes it. None where light comes from infinity only. Each works: it was bound to the
+/// scene. The same on any number of threads. @throws Interrupted
 OpeningsFound find_openings(const Scene& scene, const TransportEnds& ends, const OpeningSearch& search,
                             const RunContext& context);
 

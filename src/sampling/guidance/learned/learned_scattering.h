@@ -29,7 +29,7 @@ struct SeenScattering {
 /// wouldn't lower that by much. Immutable and thread-safe.
 class LearnedScattering {
   public:
-    /// @param seen in any order; reordered; there may be nothing
+    /// @param seen in any order; may be empty
     explicit LearnedScattering(std::span<const SeenScattering> seen);
 
     /// Whether any cell goes by its histogram.
@@ -50,7 +50,7 @@ class LearnedScattering {
         double plain = 1; ///< share of the directions by the BSDF
         DirectionHistogram directions;
     };
-    /// `found`: of one cell. Adds to `helped` the weight of those that its histogram helps.
+    /// @param found the scatterings of one cell
     static Cell make_cell(std::span<const SeenScattering* const> found);
     const Cell& cell_at(const SurfaceCells::Place& place) const { return cells_[tree_.cell_of(place)]; }
 

@@ -17,7 +17,7 @@ namespace {
 
 using gltf::Document;
 using gltf::Json;
-using gltf::Look;
+using gltf::MaterialData;
 
 /// Looks at everything from above one corner.
 gltf::View view_of_all(const std::vector<Shape>& shapes) {
@@ -44,15 +44,15 @@ class SceneBuilder {
     LoadedScene build() {
         LoadedScene scene;
         scene.description.shapes = shapes();
-        gltf::Things things = gltf::read_nodes(document_);
-        scene.description.emitters = std::move(things.emitters);
+        gltf::LightsAndCamera scene_lights = gltf::read_nodes(document_);
+        scene.description.emitters = std::move(scene_lights.emitters);
         light_up(scene.description);
-        if (!things.view) {
+        if (!scene_lights.view) {
             document_.warn("found no camera: one sees everything");
-            things.view = view_of_all(scene.description.shapes);
+            scene_lights.view = view_of_all(scene.description.shapes);
         }
-        scene.description.camera = things.view->camera;
-        scene.description.window = things.view->window;
+        scene.description.camera = scene_lights.view->camera;
+        scene.description.window = scene_lights.view->window;
         if (document_.root().contains("animations")) document_.warn("animations are left out");
         return scene;
     }
@@ -61,25 +61,25 @@ class SceneBuilder {
     std::vector<Shape> shapes() {
         std::vector<Shape> shapes;
         for (MeshPart& part : import_parts(path_)) {
-            const Look& look = look_of(part.material);
+            const MaterialData& data = material_of(part.material);
             Shape shape;
             shape.geometry = std::move(part.mesh);
-            shape.material = look.material;
-            shape.alpha = look.alpha;
+            shape.material = data.material;
+            shape.alpha = data.alpha;
             shape.name = std::move(part.name);
             shape.material_name = name_of(part.material);
-            if (!is_black(look.emission.radiance)) shape.emission = std::make_unique<SurfaceEmission>(look.emission);
+            if (!is_black(data.emission.radiance)) shape.emission = std::make_unique<SurfaceEmission>(data.emission);
             shapes.push_back(std::move(shape));
         }
         return shapes;
     }
 
     /// The importer numbers materials as the file does; what lies beyond is its own for meshes that name none.
-    const Look& look_of(std::size_t material) {
-        const auto [known, fresh] = looks_.try_emplace(material);
+    const MaterialData& material_of(std::size_t material) {
+        const auto [known, fresh] = materials_.try_emplace(material);
         if (!fresh) return known->second;
         const Json& all = gltf::member(document_.root(), "materials");
-        known->second = gltf::read_look(document_, material < all.size() ? all[material] : Json::object());
+        known->second = gltf::read_material(document_, material < all.size() ? all[material] : Json::object());
         return known->second;
     }
 
@@ -101,7 +101,7 @@ class SceneBuilder {
     std::string path_;
     Warnings warnings_;
     Document document_;
-    std::map<std::size_t, Look> looks_;
+    std::map<std::size_t, MaterialData> materials_;
 };
 
 } // namespace

@@ -46,18 +46,18 @@ class Reader {
     Reader(Document& document, const Json& material)
         : document_(document), material_(material), metal_(member(material, "pbrMetallicRoughness")) {}
 
-    Look read() {
+    MaterialData read() {
         report_extensions();
-        Look look;
-        look.material = surface();
+        MaterialData data;
+        data.material = surface();
         if (material_.contains("normalTexture")) {
             const Json& normals = material_["normalTexture"];
             if (value_or(normals, "scale", 1.0) != 1) document_.warn("the scale of normal maps is left out");
-            look.material = with_normals(look.material, picture<Rgb>(normals, Encoding::linear));
+            data.material = with_normals(data.material, picture<Rgb>(normals, Encoding::linear));
         }
-        look.emission = emission();
-        look.alpha = opacity();
-        return look;
+        data.emission = emission();
+        data.alpha = opacity();
+        return data;
     }
 
   private:
@@ -178,6 +178,6 @@ class Reader {
 
 } // namespace
 
-Look read_look(Document& document, const Json& material) { return Reader(document, material).read(); }
+MaterialData read_material(Document& document, const Json& material) { return Reader(document, material).read(); }
 
 } // namespace keyhole::gltf

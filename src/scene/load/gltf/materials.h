@@ -6,14 +6,14 @@
 
 namespace keyhole::gltf {
 
-/// What a material says of the shapes that have it.
-struct Look {
+/// What shapes get from an entry of `materials`.
+struct MaterialData {
     MaterialPtr material;
     SurfaceEmission emission; ///< black: none
     FloatTexture alpha;       ///< null: opaque
 };
 
 /// The material of an entry of `materials`, or the one of meshes that name none.
-Look read_look(Document& document, const Json& material);
+MaterialData read_material(Document& document, const Json& material);
 
 } // namespace keyhole::gltf

@@ -44,7 +44,7 @@ class Walker {
   public:
     explicit Walker(const Document& document) : document_(document) {}
 
-    Things walk() {
+    LightsAndCamera walk() {
         const Json& root = document_.root();
         if (root.contains("scenes")) {
             const Json& scene = document_.entry("scenes", value_or<std::size_t>(root, "scene", 0));
@@ -114,11 +114,11 @@ class Walker {
     }
 
     const Document& document_;
-    Things things_;
+    LightsAndCamera things_;
 };
 
 } // namespace
 
-Things read_nodes(const Document& document) { return Walker(document).walk(); }
+LightsAndCamera read_nodes(const Document& document) { return Walker(document).walk(); }
 
 } // namespace keyhole::gltf

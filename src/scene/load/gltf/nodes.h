@@ -16,12 +16,12 @@ struct View {
     ImageWindow window;
 };
 
-struct Things {
+struct LightsAndCamera {
     std::vector<std::unique_ptr<Emitter>> emitters; ///< of KHR_lights_punctual
     std::optional<View> view;                       ///< of the first camera
 };
 
 /// Walks the default scene.
-Things read_nodes(const Document& document);
+LightsAndCamera read_nodes(const Document& document);
 
 } // namespace keyhole::gltf
