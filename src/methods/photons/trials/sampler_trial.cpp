@@ -22,8 +22,8 @@
 namespace keyhole {
 namespace {
 
-constexpr std::int64_t kSteps = 128;       // of a chain
-constexpr std::int64_t kPathsOfBlock = 64; // light paths
+constexpr std::int64_t kSteps = 128;             // of a chain
+constexpr std::int64_t kPathsOfBlock = 64;       // light paths
 constexpr std::int64_t kPathsToLearnFrom = 2048; // as many as a render learns from at least
 
 /// How much is tried: less where the render itself will be short.
