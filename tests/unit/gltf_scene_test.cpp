@@ -102,6 +102,37 @@ TEST_F(GltfScene, MaterialsEmitAndAreClear) {
     EXPECT_THAT(warnings_, Contains(HasSubstr("KHR_materials_sheen is left out")));
 }
 
+/// Meshes ask for materials in another order than the file lists them, one for none, and one material nobody asks for.
+TEST_F(GltfScene, MaterialsAreThoseOfTheirMeshes) {
+    const std::string mesh = kTriangle;
+    const std::string primitive = R"({"primitives": [{"attributes": {"POSITION": 0}, "indices": 1)";
+    const std::string meshes = R"("meshes": [)" + primitive + R"(, "material": 3}]}, )" + primitive + "}]}, " +
+                               primitive + R"(, "material": 0}]}])";
+    const std::string rest = R"("scene": 0, "scenes": [{"nodes": [0, 1, 2]}],
+      "nodes": [{"mesh": 2}, {"mesh": 0}, {"mesh": 1}],
+      "materials": [{"name": "same", "emissiveFactor": [1, 0, 0]}, {"name": "unused"}, {"name": "same"},
+                    {"name": "same", "emissiveFactor": [0, 1, 0]}])";
+    const std::string json =
+        R"({"asset": {"version": "2.0"}, )" + mesh.substr(0, mesh.find(R"("meshes")")) + meshes + ", " + rest + "}";
+    for (const bool packed : {false, true}) {
+        const std::string path = folder_.path(packed ? "scene.glb" : "scene.gltf");
+        const auto word = [](std::size_t n) {
+            return std::string{char(n), char(n >> 8), char(n >> 16), char(n >> 24)};
+        };
+        const std::string chunk = json + std::string((4 - json.size() % 4) % 4, ' ');
+        std::ofstream(path) << (packed ? "glTF" + word(2) + word(20 + chunk.size()) + word(chunk.size()) + "JSON" : "")
+                            << chunk;
+        const LoadedScene scene = load(path, {}, nullptr);
+        ASSERT_EQ(scene.description.shapes.size(), 3u);
+        EXPECT_EQ(scene.description.shapes[0].emission->radiance.y, 0);
+        EXPECT_GT(scene.description.shapes[0].emission->radiance.x, 0);
+        EXPECT_EQ(scene.description.shapes[1].emission->radiance.x, 0);
+        EXPECT_GT(scene.description.shapes[1].emission->radiance.y, 0);
+        EXPECT_EQ(scene.description.shapes[2].emission, nullptr);
+        EXPECT_EQ(scene.description.shapes[2].material_name, "");
+    }
+}
+
 TEST_F(GltfScene, OpaqueUnlessItSaysSo) {
     const LoadedScene scene = read(R"("scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
       "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.25]}}])");

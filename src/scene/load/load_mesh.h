@@ -32,16 +32,17 @@ constexpr std::size_t kMaxTriangles = std::size_t{1} << 27;
 /// 1e12, indices out of range, and more than kMaxMeshTriangles triangles.
 TriangleMesh import_mesh(const std::string& path);
 
-/// A part of a file where that places it, with its number of a material.
+/// A part of a file where that places it.
 struct MeshPart {
     TriangleMesh mesh;
-    std::size_t material = 0;
-    std::string name; ///< of the node that places it; may be empty
+    std::string material; ///< its name; may be empty
+    std::string name;     ///< of the node that places it; may be empty
 };
 
 /// Reads the parts of an OBJ, glTF or GLB file one by one, as import_mesh() does.
+/// @param content of the file, which is not read then, but for those that it refers to; null: read it.
 /// @throws InputError as import_mesh().
-std::vector<MeshPart> import_parts(const std::string& path);
+std::vector<MeshPart> import_parts(const std::string& path, const std::string* content = nullptr);
 
 /// Reads the mesh of a PLY file (Turk 1994) in one pass over its bytes, text or binary of either byte order, packed
 /// with gzip or not: positions `x y z`; normals `nx ny nz`; texture coordinates `u v`, `s t`, `texture_u texture_v` or

@@ -11,12 +11,25 @@
 namespace keyhole::gltf {
 namespace {
 
-constexpr std::uint32_t kMagic = 0x46546C67, kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
+constexpr std::uint32_t kMagic = 0x46546C67, kVersion = 2, kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
 
 std::uint32_t word_at(const std::string& bytes, std::size_t at) {
     std::uint32_t word = 0;
     std::memcpy(&word, bytes.data() + at, sizeof word);
     return word;
+}
+
+std::string bytes_of_word(std::size_t word) {
+    const auto small = static_cast<std::uint32_t>(word);
+    std::string bytes(sizeof small, '\0');
+    std::memcpy(bytes.data(), &small, sizeof small);
+    return bytes;
+}
+
+/// A chunk of a .glb, whose size is a multiple of four.
+std::string chunk(std::uint32_t kind, std::string bytes, char padding) {
+    bytes.resize((bytes.size() + 3) / 4 * 4, padding);
+    return bytes_of_word(bytes.size()) + bytes_of_word(kind) + bytes;
 }
 
 std::string read_bytes(const std::string& path) {
@@ -69,6 +82,7 @@ std::string ending_of(const std::string& bytes) { return bytes.starts_with("\x89
 Document::Document(const std::string& path, Warnings& warnings) : path_(path), warnings_(warnings) {
     std::string text = read_bytes(path);
     if (text.size() >= 20 && word_at(text, 0) == kMagic) {
+        packed_ = true;
         const std::size_t json = word_at(text, 12);
         if (word_at(text, 16) != kJsonChunk || json > text.size() - 20) fail("found a broken GLB file");
         const std::size_t second = 20 + json;
@@ -88,6 +102,18 @@ Document::Document(const std::string& path, Warnings& warnings) : path_(path), w
 Document::~Document() {
     std::error_code ignored;
     if (!scratch_.empty()) std::filesystem::remove_all(scratch_, ignored);
+}
+
+std::string Document::with_numbered_materials() const {
+    Json root = root_;
+    if (const auto materials = root.find("materials"); materials != root.end() && materials->is_array())
+        for (std::size_t i = 0; i < materials->size(); ++i)
+            if ((*materials)[i].is_object()) (*materials)[i]["name"] = std::to_string(i);
+    const std::string json = root.dump(-1, ' ', false, Json::error_handler_t::replace);
+    if (!packed_) return json;
+    std::string chunks = chunk(kJsonChunk, json, ' ');
+    if (!binary_.empty()) chunks += chunk(kBinaryChunk, binary_, '\0');
+    return bytes_of_word(kMagic) + bytes_of_word(kVersion) + bytes_of_word(12 + chunks.size()) + chunks;
 }
 
 const Json& Document::entry(const char* list, std::size_t index) const {

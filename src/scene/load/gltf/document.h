@@ -26,6 +26,10 @@ class Document {
     /// Entry `index` of one of the lists at the top. @throws InputError where there is none.
     const Json& entry(const char* list, std::size_t index) const;
 
+    /// The bytes of the file, in which each material has its number for a name: readers number them in an order of
+    /// their own.
+    std::string with_numbered_materials() const;
+
     /// The path of a file with an image: its own, or one that lasts as long as this object.
     std::string image_file(std::size_t index);
 
@@ -45,7 +49,8 @@ class Document {
     std::string path_;
     Warnings& warnings_;
     Json root_;
-    std::string binary_; ///< second part of a .glb
+    bool packed_ = false; ///< a .glb
+    std::string binary_;  ///< its second part
     std::filesystem::path scratch_;
     std::map<std::size_t, std::string> written_; ///< images
 };

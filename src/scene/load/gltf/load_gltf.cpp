@@ -9,6 +9,7 @@
 #include <Imath/ImathBox.h>
 
 #include <algorithm>
+#include <charconv>
 #include <filesystem>
 #include <map>
 
@@ -60,21 +61,30 @@ class SceneBuilder {
   private:
     std::vector<Shape> shapes() {
         std::vector<Shape> shapes;
-        for (MeshPart& part : import_parts(path_)) {
-            const MaterialData& data = material_of(part.material);
+        const std::string content = document_.with_numbered_materials();
+        for (MeshPart& part : import_parts(path_, &content)) {
+            const std::size_t material = number_of(part.material);
+            const MaterialData& data = material_of(material);
             Shape shape;
             shape.geometry = std::move(part.mesh);
             shape.material = data.material;
             shape.alpha = data.alpha;
             shape.name = std::move(part.name);
-            shape.material_name = name_of(part.material);
+            shape.material_name = name_of(material);
             if (!is_black(data.emission.radiance)) shape.emission = std::make_unique<SurfaceEmission>(data.emission);
             shapes.push_back(std::move(shape));
         }
         return shapes;
     }
 
-    /// The importer numbers materials as the file does; what lies beyond is its own for meshes that name none.
+    /// One beyond the last for meshes that name none, for which the importer has a material of its own.
+    std::size_t number_of(const std::string& name) const {
+        const std::size_t count = gltf::member(document_.root(), "materials").size();
+        std::size_t number = count;
+        const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+        return error == std::errc() && *end == '\0' ? std::min(number, count) : count;
+    }
+
     const MaterialData& material_of(std::size_t material) {
         const auto [known, fresh] = materials_.try_emplace(material);
         if (!fresh) return known->second;

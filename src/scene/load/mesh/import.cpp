@@ -3,7 +3,9 @@
 #include "core/error.h"
 
 #include <assimp/BaseImporter.h>
+#include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -122,7 +124,8 @@ class Collector {
         transform_mesh(part, to_world);
         mend_mesh(part, path_);
         if (part.triangles.empty()) return;
-        parts_.push_back({std::move(part), source.mMaterialIndex, name});
+        const aiString material = scene_.mMaterials[source.mMaterialIndex]->GetName();
+        parts_.push_back({std::move(part), material.C_Str(), name});
     }
 
     const aiScene& scene_;
@@ -144,8 +147,23 @@ void keep_readers_of(const std::string& extension, Assimp::Importer& importer) {
     }
 }
 
-std::vector<MeshPart> read_parts(const std::string& path, const std::string& extension) {
+/// One file whose content is here, and those that it refers to, which are read.
+class WithContent : public Assimp::DefaultIOSystem {
+  public:
+    WithContent(std::string path, const std::string& content) : path_(std::move(path)), content_(content) {}
+    Assimp::IOStream* Open(const char* file, const char* mode) override {
+        if (file != path_) return DefaultIOSystem::Open(file, mode);
+        return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(content_.data()), content_.size());
+    }
+
+  private:
+    std::string path_;
+    const std::string& content_;
+};
+
+std::vector<MeshPart> read_parts(const std::string& path, const std::string& extension, const std::string* content) {
     Assimp::Importer importer;
+    if (content != nullptr) importer.SetIOHandler(new WithContent(path, *content)); // which the importer will own
     keep_readers_of(extension, importer);
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
     const auto checked = [&](const aiScene* scene) {
@@ -162,13 +180,15 @@ std::vector<MeshPart> read_parts(const std::string& path, const std::string& ext
 
 } // namespace
 
-std::vector<MeshPart> import_parts(const std::string& path) { return read_parts(path, check_file(path)); }
+std::vector<MeshPart> import_parts(const std::string& path, const std::string* content) {
+    return read_parts(path, check_file(path), content);
+}
 
 TriangleMesh import_mesh(const std::string& path) {
     const std::string extension = check_file(path);
     if (extension == ".ply" || extension == ".ply.gz") return read_ply(path);
     TriangleMesh all;
-    for (MeshPart& part : read_parts(path, extension)) append(all, std::move(part.mesh));
+    for (MeshPart& part : read_parts(path, extension, nullptr)) append(all, std::move(part.mesh));
     return all;
 }
 
