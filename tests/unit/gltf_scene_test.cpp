@@ -8,6 +8,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdint>
+#include <cstring>
 #include <fstream>
 #include <numbers>
 
@@ -102,6 +105,25 @@ TEST_F(GltfScene, MaterialsEmitAndAreClear) {
     EXPECT_THAT(warnings_, Contains(HasSubstr("KHR_materials_sheen is left out")));
 }
 
+/// The same file as a .glb.
+std::string glb(std::string json) {
+    const auto uri = json.find(R"(, "uri")");
+    json.erase(uri, json.find('}', uri) - uri);
+    json.append((4 - json.size() % 4) % 4, ' ');
+    std::string bytes(44, '\0'); // 42, in whole words
+    const std::array<float, 9> positions{0, 0, 0, 1, 0, 0, 0, 1, 0};
+    const std::array<std::uint16_t, 3> indices{0, 1, 2};
+    std::memcpy(bytes.data(), positions.data(), sizeof positions);
+    std::memcpy(bytes.data() + sizeof positions, indices.data(), sizeof indices);
+    const auto word = [](std::size_t n) {
+        std::string w(4, '\0');
+        for (std::size_t i = 0; i < 4; ++i) w[i] = static_cast<char>(n >> 8 * i);
+        return w;
+    };
+    return "glTF" + word(2) + word(28 + json.size() + bytes.size()) + word(json.size()) + "JSON" + json +
+           word(bytes.size()) + std::string("BIN\0", 4) + bytes;
+}
+
 /// Meshes ask for materials in another order than the file lists them, one for none, and one material nobody asks for.
 TEST_F(GltfScene, MaterialsAreThoseOfTheirMeshes) {
     const std::string mesh = kTriangle;
@@ -116,12 +138,7 @@ TEST_F(GltfScene, MaterialsAreThoseOfTheirMeshes) {
         R"({"asset": {"version": "2.0"}, )" + mesh.substr(0, mesh.find(R"("meshes")")) + meshes + ", " + rest + "}";
     for (const bool packed : {false, true}) {
         const std::string path = folder_.path(packed ? "scene.glb" : "scene.gltf");
-        const auto word = [](std::size_t n) {
-            return std::string{char(n), char(n >> 8), char(n >> 16), char(n >> 24)};
-        };
-        const std::string chunk = json + std::string((4 - json.size() % 4) % 4, ' ');
-        std::ofstream(path) << (packed ? "glTF" + word(2) + word(20 + chunk.size()) + word(chunk.size()) + "JSON" : "")
-                            << chunk;
+        std::ofstream(path) << (packed ? glb(json) : json);
         const LoadedScene scene = load(path, {}, nullptr);
         ASSERT_EQ(scene.description.shapes.size(), 3u);
         EXPECT_EQ(scene.description.shapes[0].emission->radiance.y, 0);
