@@ -24,7 +24,8 @@ struct NamedPicture {
 /// How alike two renders have to be: in all settings; in all but the seed and how many samples were taken.
 enum class SameRender { seed, method };
 
-/// Checks by their metadata that two pictures show the same scene, by the same program and settings.
+/// Checks by their metadata that two pictures show the same scene, by the same program and settings; pictures of
+/// other seeds may have had another effort, as those that end by time have.
 /// @throws InputError that says what differs.
 void check_same_render(const NamedPicture& a, const NamedPicture& b, SameRender same);
 

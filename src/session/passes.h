@@ -18,8 +18,10 @@ inline std::uint64_t seed_of_pass(const Settings& settings, std::int64_t pass) {
     return static_cast<std::uint64_t>(rng.next() * 0x1p32) << 20 ^ static_cast<std::uint64_t>(rng.next() * 0x1p32);
 }
 
-/// For one of the renders that a time is filled with: their errors have to be independent.
+/// For one of the renders that a time is filled with: their errors have to be independent. The first has the seed that
+/// was asked for, so that a picture of one render can be made again.
 inline std::int64_t seed_of_render(const Settings& settings, std::int64_t number) {
+    if (number == 0) return settings.seed;
     constexpr std::int64_t kBeyondPasses = std::int64_t{1} << 40; // no pass has such a number
     return static_cast<std::int64_t>(seed_of_pass(settings, kBeyondPasses + number));
 }

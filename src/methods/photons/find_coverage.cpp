@@ -20,7 +20,7 @@ constexpr double kLeastLight = 0.01, kLeastSeen = 0.1;
 /// Variance of what a single gather ray finds outside gather coverage, relative to the square of all indirect light and
 /// where rays are aimed at what is small and bright. Above this, thousands of rays still leave more noise than a
 /// density estimate from photons would.
-constexpr double kBearable = 40;
+constexpr double kBearable = 200;
 
 constexpr std::uint64_t kSeed = 1; // as GatherCoverage: the choice doesn't change with the seed
 /// Gather rays to find out by. Fewer miss what few of them find, and take it for little.
