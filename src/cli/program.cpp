@@ -5,6 +5,7 @@
 #include "cli/standard_streams.h"
 #include "cli/words/tell.h"
 #include "core/error.h"
+#include "scene/load/input.h"
 
 #include <fmt/format.h>
 
@@ -13,6 +14,7 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <set>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -42,6 +44,15 @@ int fail(int code, std::string message) {
     return code;
 }
 
+/// @throws InputError where a word stands for a command that is none.
+void check_command(const CLI::App& app, std::string_view word) {
+    std::set<std::string> names;
+    for (const CLI::App* command : app.get_subcommands({})) names.insert(command->get_name());
+    if (word.starts_with('-') || names.contains(std::string(word))) return;
+    throw InputError(fmt::format("found the command '{}', {} (see --help)", word,
+                                 expected_one_of(word, {names.begin(), names.end()})));
+}
+
 int run(int argc, char** argv, ProcessGroup* group) {
     CLI::App app("Metropolis photon sampling: a physically based renderer.", "keyhole");
     app.set_version_flag("--version", "keyhole " KEYHOLE_VERSION "\n" KEYHOLE_BUILD);
@@ -56,8 +67,11 @@ int run(int argc, char** argv, ProcessGroup* group) {
     add_chart_command(app, action);
     add_inspect_command(app, action);
     add_plan_command(app, action);
+    if (argc > 1) check_command(app, argv[1]);
     try {
         app.parse(argc, argv);
+    } catch (const CLI::ExtrasError& e) {
+        return fail(kBadInput, std::string(e.what()) + " (settings are given as -D KEY=VALUE; see --help)");
     } catch (const CLI::ParseError& e) {
         if (e.get_exit_code() == 0) return app.exit(e); // help and version
         return fail(kBadInput, std::string(e.what()) + " (see --help)");

@@ -75,13 +75,17 @@ void report_eye_samples(const RunningStats& luminance, const Scene& scene, Rende
 
 void report_lost_light(const RunningStats& luminance, const Scene& scene, RenderStats& stats) {
     if (luminance.count() > 0 && !(luminance.mean() > 0))
-        stats.warn(Doubt::samples, "no sample carried light: the picture is black. If there is light in the scene, it "
-                                   "comes where paths from the eye don't find it: try mps");
+        stats.warn(Doubt::samples,
+                   scene.emitters().empty()
+                       ? "the picture is black: nothing in the scene emits light"
+                       : "no sample carried light: the picture is black. If light reaches what is seen, it comes where "
+                         "paths from the eye don't find it: try ipm or mps. Surfaces emit on their outside alone: "
+                         "'flip' turns them, 'two_sided' makes both sides emit");
     const bool no_extent = std::ranges::any_of(scene.emitters(), [](const auto& e) { return e->is_delta(); });
     if (no_extent && scene.traits().delta)
         stats.warn(Doubt::caustics, "light from emitters without extent that comes through specular surfaces is "
                                     "missing, or what is seen of it in others: paths from the eye can't find it. Use "
-                                    "mps");
+                                    "auto or ipm");
 }
 
 } // namespace keyhole

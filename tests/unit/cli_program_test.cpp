@@ -103,6 +103,36 @@ TEST_F(Program, BadInputExitsWithTwoAndOneLine) {
     }
 }
 
+TEST_F(Program, MistakesInCommandsSayWhatWasMeant) {
+    EXPECT_EQ(run("rendr scene.yaml"), 2);
+    EXPECT_THAT(read("err"), HasSubstr("found the command 'rendr', expected one of chart, diff"));
+    EXPECT_THAT(read("err"), HasSubstr("did you mean 'render'?"));
+    EXPECT_EQ(run("scene.yaml"), 2);
+    EXPECT_THAT(read("err"), HasSubstr("found the command 'scene.yaml'"));
+    EXPECT_EQ(run("render scene.yaml -D spp 4"), 2);
+    EXPECT_THAT(read("err"), HasSubstr("-D KEY=VALUE"));
+}
+
+TEST_F(Program, ARenderInTimeCanBeMadeAgainAndMerged) {
+    const std::string paths = "render scene.yaml -q --no-png --method path -D adaptive=false --spp 4 ";
+    ASSERT_EQ(run(paths + "--cpu-time 2 -o a.exr"), 0) << read("err");
+    ASSERT_EQ(run(paths + "-o b.exr"), 0) << read("err");
+    EXPECT_EQ(read_exr(scratch.path("a.exr")).layers.at("beauty").data,
+              read_exr(scratch.path("b.exr")).layers.at("beauty").data);
+    const std::string photons = "render scene.yaml -q --no-png --method ipm ";
+    ASSERT_EQ(run(photons + "--cpu-time 0.6 -o c.exr"), 0) << read("err");
+    ASSERT_EQ(run(photons + "--cpu-time 0.9 --seed 2 -o d.exr"), 0) << read("err");
+    EXPECT_EQ(run("merge c.exr d.exr --no-png -o e.exr"), 0) << read("err");
+    EXPECT_TRUE(exists("e.exr"));
+}
+
+TEST_F(Program, APictureWithoutLightSaysWhy) {
+    scratch.write("dark.yaml", "film: {resolution: [8, 6]}\ncamera: {from: [0, 0, 3], to: [0, 0, 0], fov: 40}\n"
+                               "shapes: [{type: sphere, radius: 1, material: {type: diffuse}}]\n");
+    EXPECT_EQ(run("render dark.yaml --method path --spp 4 --no-png -o a.exr"), 0) << read("err");
+    EXPECT_THAT(read("err"), HasSubstr("nothing in the scene emits light"));
+}
+
 TEST_F(Program, WordsThatAreNotUtf8AreWarnedOf) {
     scratch.write("a.pbrt",
                   "Integrator \"path\" \"integer \xFFx\" 3 Camera \"perspective\" WorldBegin Shape \"sphere\"");

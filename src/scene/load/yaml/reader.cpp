@@ -3,6 +3,7 @@
 #include "scene/load/input.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -59,7 +60,8 @@ double read_number(const YamlNode& node, const NumberRange& range) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
     const bool whole = end == text.data() + text.size();
     if (error == std::errc::result_out_of_range && whole) fail_expected(node, in_words(range));
-    if (error != std::errc{} || !whole) fail_expected(node, range.what);
+    if (error == std::errc{} && !whole) fail_expected(node, fmt::format("{}: a number alone", range.what));
+    if (error != std::errc{}) fail_expected(node, range.what);
     if (!std::isfinite(x)) fail_expected(node, fmt::format("{} that is finite", range.what));
     if (!contains(range, x)) fail_expected(node, in_words(range));
     return x;
@@ -124,7 +126,8 @@ const std::vector<YamlNode::Entry>& read_names(const YamlNode& node, std::string
 
 MapReader::MapReader(const YamlNode& node, std::string_view what, const std::vector<std::string_view>& keys)
     : node_(node), what_(what) {
-    if (node.kind != YamlNode::Kind::map) fail_expected(node, fmt::format("a map that describes {}", what));
+    if (node.kind != YamlNode::Kind::map)
+        fail_expected(node, fmt::format("a map that describes {}, with keys of {}", what, fmt::join(keys, ", ")));
     for (const auto& [key, value] : node.entries)
         if (std::find(keys.begin(), keys.end(), key->text) == keys.end())
             fail(*key, fmt::format("found the unknown key '{}' in {}, {}", key->text, what,

@@ -154,6 +154,16 @@ void reject_binary(const std::string& text, const std::string& file) {
     }
 }
 
+/// What a person may have done to a line that yaml-cpp stumbles at: its words don't tell.
+std::string hint_at_line(const std::string& text, int line) {
+    std::istringstream lines(text);
+    std::string at;
+    for (int i = 0; i <= line && std::getline(lines, at); ++i)
+        if (at.find_first_not_of(" \t") > at.find('\t'))
+            return fmt::format("spaces: line {} is indented by a tab", i + 1);
+    return "valid YAML, indented as the lines around it";
+}
+
 } // namespace
 
 YamlPtr parse_yaml(const std::string& text, const std::string& file) {
@@ -166,7 +176,7 @@ YamlPtr parse_yaml(const std::string& text, const std::string& file) {
         }
     } catch (const YAML::Exception& e) {
         throw InputError({file, e.mark.line + 1, e.mark.column + 1},
-                         fmt::format("found broken YAML ({}), expected valid YAML", e.msg));
+                         fmt::format("found broken YAML ({}), expected {}", e.msg, hint_at_line(text, e.mark.line)));
     }
     if (!builder.root()) throw InputError({file, 1, 1}, "found an empty file, expected a scene");
     return builder.root();
