@@ -200,6 +200,7 @@ std::vector<Mistake> mistakes() {
         // Emission and emitters.
         in_emission("@5",
                     "expected a map that describes an emission, with keys of radiance, power, two_sided, texture"),
+        {"film: {resolution: [4, 4]}\n@lights: []\n", "did you mean 'emitters'?"},
         in_emission("{power: @60W}", "found the value '60W', expected an amount of light: a number alone"),
         in_emission("@{two_sided: true}", "neither of 'radiance' and 'power'"),
         in_emission("@{radiance: 1, power: 1}", "both of 'radiance' and 'power'"),

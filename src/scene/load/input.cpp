@@ -5,9 +5,12 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <string_view>
+#include <utility>
 
 namespace keyhole {
 namespace {
@@ -29,6 +32,38 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     return row.back();
 }
 
+/// What other programs call it, and what it is called here.
+constexpr auto kOtherWords = std::to_array<std::pair<std::string_view, std::string_view>>({
+    {"lights", "emitters"},
+    {"lamps", "emitters"},
+    {"objects", "shapes"},
+    {"meshes", "shapes"},
+    {"settings", "render"},
+    {"integrator", "render"},
+    {"position", "from"},
+    {"origin", "from"},
+    {"eye", "from"},
+    {"look_at", "to"},
+    {"lookat", "to"},
+    {"target", "to"},
+    {"sun", "distant"},
+    {"directional", "distant"},
+    {"sky", "environment"},
+    {"envmap", "environment"},
+    {"color", "reflectance"},
+    {"albedo", "reflectance"},
+    {"base_color", "reflectance"},
+    {"metal", "conductor"},
+    {"mirror", "conductor"},
+    {"lambertian", "diffuse"},
+    {"quad", "rectangle"},
+    {"cube", "box"},
+    {"samples", "spp"},
+    {"strength", "radiance"},
+    {"intensity", "radiance"},
+    {"center", "position"},
+});
+
 } // namespace
 
 std::string expected_one_of(std::string_view word, const std::vector<std::string_view>& choices) {
@@ -47,6 +82,8 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string_vi
         if (word.size() > 2 * choice.size() + 2) continue; // can't be near; spares the work for long junk
         if (const std::size_t d = edit_distance(word, choice); d < least) least = d, best = choice;
     }
+    for (const auto& [other, ours] : kOtherWords)
+        if (best.empty() && other == word && std::ranges::find(choices, ours) != choices.end()) best = ours;
     return best.empty() ? "" : fmt::format("; did you mean '{}'?", best);
 }
 
