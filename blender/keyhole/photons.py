@@ -5,8 +5,8 @@ import struct
 import bpy
 import numpy as np
 
-HEADER = struct.Struct("<8sIIQqq4QQ")
-VERSION = 6
+HEADER = struct.Struct("<8sIIQqq4QQQ")
+VERSION = 7
 PHOTON = np.dtype([("position", "<f4", 3), ("power", "<u2", 3), ("direction", "<i2", 2), ("normal", "i1", 2)])
 BITS, BIAS = 13, 80  # of the shared exponent: see src/photonmap/quantised.h
 MARKS = 1 << 7  # the bits above that exponent: of a caustic photon, and of one that came from behind
@@ -19,7 +19,7 @@ def read(path):
         data = file.read()
     if len(data) < HEADER.size:
         raise ValueError("found no photon map")
-    magic, _, version, _, _, _, *counts, _ = HEADER.unpack_from(data)
+    magic, _, version, _, _, _, *counts, _, _ = HEADER.unpack_from(data)
     if magic != b"KHPHOTON" or version != VERSION:
         raise ValueError(f"found a photon map of version {version}, expected version {VERSION}")
     photons = np.frombuffer(data, PHOTON, sum(counts), HEADER.size)

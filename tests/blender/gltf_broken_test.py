@@ -39,7 +39,7 @@ def broken_files_are_errors():
             document[keys[-1]] = value
         return change
     broken(lambda data: data[:len(data) // 2], "broken GLB")
-    broken(lambda data: data[:4] + b"\7" + data[5:], "No suitable reader")
+    broken(lambda data: data[:4] + b"\7" + data[5:], "found version 7 of GLB")
     broken(lambda data: data.replace(b'"version"', b'"version", '), "broken JSON")
     broken(lambda data: b"", "broken JSON")
     broken(put("asset", "version", value="3.0"), "version '3.0'", "json")

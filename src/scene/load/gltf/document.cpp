@@ -83,6 +83,8 @@ Document::Document(const std::string& path, Warnings& warnings) : path_(path), w
     std::string text = read_bytes(path);
     if (text.size() >= 20 && word_at(text, 0) == kMagic) {
         packed_ = true;
+        if (const std::uint32_t version = word_at(text, 4); version != kVersion)
+            fail(fmt::format("found version {} of GLB, expected {}", version, kVersion));
         const std::size_t json = word_at(text, 12);
         if (word_at(text, 16) != kJsonChunk || json > text.size() - 20) fail("found a broken GLB file");
         const std::size_t second = 20 + json;
