@@ -153,10 +153,8 @@ template <StageOneOf start> RenderResult render_primary(const RenderTask& task) 
         }
         pass = work.pass_of(*unit);
         const auto group = static_cast<std::uint64_t>(*unit % groups);
-        PrimaryChains chains(
-            started->choose_seeds(
-                chains_of_group(static_cast<std::size_t>(settings.chains), groups, *unit % groups).size(), group),
-            seed, settings.large_step_mis, group);
+        const Range own = chains_of_group(static_cast<std::size_t>(settings.chains), groups, *unit % groups);
+        PrimaryChains chains(started->choose_seeds(own.size(), group), seed, settings.large_step_mis, group);
         bool whole = !context.stopped();
         if (!whole && !work.is_first()) break;
         if (chains.size() > 0) {

@@ -9,12 +9,12 @@ namespace keyhole {
 namespace {
 
 /// Rays that all see something at 4 m in a cube of 4 m, each of radiance 1, but for what is added.
-class Findings {
+class Samples {
   public:
-    explicit Findings(int count = 4000) {
+    explicit Samples(int count = 4000) {
         for (int i = 0; i < count; ++i) all_.push_back({anywhere(4, Vec3(0)), 4, 1});
     }
-    Findings& add(int count, const Vec3& centre, float width, double radiance) {
+    Samples& add(int count, const Vec3& centre, float width, double radiance) {
         for (int i = 0; i < count; ++i) all_.push_back({anywhere(width, centre - Vec3(width / 2)), 4, radiance});
         return *this;
     }
@@ -31,17 +31,17 @@ class Findings {
 };
 
 TEST(BrightBalls, AreNoneWhereAllIsAlike) {
-    const BrightBalls found = Findings().balls();
+    const BrightBalls found = Samples().balls();
     EXPECT_TRUE(found.balls.empty());
     EXPECT_EQ(found.left, 1);
 }
 
 TEST(BrightBalls, AreNoneWhereWhatIsBrightIsFarAndWide) {
-    EXPECT_TRUE(Findings().add(12, Vec3(2), 4, 300).balls().balls.empty());
+    EXPECT_TRUE(Samples().add(12, Vec3(2), 4, 300).balls().balls.empty());
 }
 
 TEST(BrightBalls, HaveWhatBelongsTogetherInOne) {
-    const BrightBalls found = Findings().add(40, {2, 2.7f, 1}, 0.2f, 300).balls();
+    const BrightBalls found = Samples().add(40, {2, 2.7f, 1}, 0.2f, 300).balls();
     ASSERT_EQ(found.balls.size(), 1u);
     EXPECT_LT((found.balls[0].centre - Vec3(2, 2.7f, 1)).length(), 0.05f);
     EXPECT_GT(found.balls[0].radius, 0.1f);
@@ -52,7 +52,7 @@ TEST(BrightBalls, HaveWhatBelongsTogetherInOne) {
 }
 
 TEST(BrightBalls, ArePartedWhereWhatIsBrightStandsApart) {
-    const BrightBalls found = Findings().add(30, {1, 1, 1}, 0.2f, 300).add(30, {3, 1, 1}, 0.2f, 200).balls();
+    const BrightBalls found = Samples().add(30, {1, 1, 1}, 0.2f, 300).add(30, {3, 1, 1}, 0.2f, 200).balls();
     ASSERT_EQ(found.balls.size(), 2u);
     EXPECT_LT((found.balls[0].centre - Vec3(1)).length(), 0.1f) << "the brighter one comes first";
     EXPECT_LT((found.balls[1].centre - Vec3(3, 1, 1)).length(), 0.1f);
@@ -61,7 +61,7 @@ TEST(BrightBalls, ArePartedWhereWhatIsBrightStandsApart) {
 
 TEST(BrightBalls, LeaveOutRaysThatMeetSomethingBrightByThemselves) {
     const BrightBalls found =
-        Findings().add(30, {1, 1, 1}, 0.2f, 300).add(1, {3, 3, 1}, 0.1f, 300).add(1, {3, 1, 3}, 0.1f, 300).balls();
+        Samples().add(30, {1, 1, 1}, 0.2f, 300).add(1, {3, 3, 1}, 0.1f, 300).add(1, {3, 1, 3}, 0.1f, 300).balls();
     ASSERT_EQ(found.balls.size(), 1u);
     EXPECT_LT((found.balls[0].centre - Vec3(1)).length(), 0.1f);
     EXPECT_LT(found.balls[0].radius, 0.3f);
@@ -69,17 +69,17 @@ TEST(BrightBalls, LeaveOutRaysThatMeetSomethingBrightByThemselves) {
 }
 
 TEST(BrightBalls, AreWiderAroundFewerFindings) {
-    const BrightBalls few = Findings().add(5, {1, 1, 1}, 0.2f, 300).balls();
-    const BrightBalls many = Findings().add(500, {1, 1, 1}, 0.2f, 300).balls();
+    const BrightBalls few = Samples().add(5, {1, 1, 1}, 0.2f, 300).balls();
+    const BrightBalls many = Samples().add(500, {1, 1, 1}, 0.2f, 300).balls();
     ASSERT_EQ(few.balls.size(), 1u);
     ASSERT_EQ(many.balls.size(), 1u);
     EXPECT_TRUE((few.balls[0].centre - Vec3(1)).length() + 0.1f < few.balls[0].radius);
     EXPECT_LT(many.balls[0].radius, 0.2f);
-    EXPECT_TRUE(Findings().add(3, {1, 1, 1}, 0.2f, 300).balls().balls.empty()) << "three may be anywhere";
+    EXPECT_TRUE(Samples().add(3, {1, 1, 1}, 0.2f, 300).balls().balls.empty()) << "three may be anywhere";
 }
 
 TEST(BrightBalls, FillSomeDirectionsWhereAllWasFoundAtOnePlace) {
-    const BrightBalls found = Findings().add(30, {1, 1, 1}, 0, 300).balls();
+    const BrightBalls found = Samples().add(30, {1, 1, 1}, 0, 300).balls();
     ASSERT_EQ(found.balls.size(), 1u);
     EXPECT_GT(found.balls[0].radius, 0);
 }

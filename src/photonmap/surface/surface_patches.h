@@ -20,11 +20,11 @@ class SurfacePatches {
     /// Without a scene to send rays into: always exact, whatever that takes.
     explicit SurfacePatches(const std::vector<Shape>& shapes);
 
-    /// Area [m^2] of the surface inside the region of radius `r`, of surfaces that face the same way as the region.
-    /// Exact for triangles, and on a sphere for regions about a point of it; a sphere that is only near by is left out.
-    /// By rays it is known to about 4 % of the disc where an edge goes through the region, and exact away from edges.
-    /// Surfaces in contact (a box on a floor) both count, although photons reach only one; so the area is held to that
-    /// of the disc, pi r^2.
+    /// Area [m^2] of the surface inside the region of radius `r`, one side of it: which side is the outside doesn't
+    /// matter. Exact for triangles, and on a sphere for regions about a point of it; a sphere that is only near by is
+    /// left out. By rays it is known to about 4 % of the disc where an edge goes through the region, and exact away
+    /// from edges. Surfaces in contact (a box on a floor) both count, although photons reach only one; so the area is
+    /// held to that of the disc, pi r^2.
     double area(const SurfaceRegion& region, double r) const;
 
     /// Area [m^2] of what the region's middle sees of that surface (in_sight()), by rays; 0 where it sees nothing, as
