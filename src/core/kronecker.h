@@ -19,9 +19,9 @@ inline double kronecker(double shift, double i, double alpha) {
 }
 
 /// The first numbers of sample i come from Kronecker sequences, frac(shift + i alpha), with a random shift of the
-/// pixel's own: position in the pixel (Roberts' R2), lens, and the first choice of a light and a point on it. The
-/// others are random. Every number is uniform whatever i, so estimates stay unbiased; samples of a pixel share out the
-/// work.
+/// pixel's own: position in the pixel (Roberts' R2), lens, choice of a light and a point on it, and what the path does
+/// next. The others are random. Every number is uniform whatever i, so estimates stay unbiased; samples of a pixel
+/// share out the work.
 class LatticeSource final : public SampleSource {
   public:
     /// `pixel` and `sample` count within a purpose; `rest` is the sample's own stream.
@@ -34,14 +34,26 @@ class LatticeSource final : public SampleSource {
     }
 
   private:
-    // R2; square roots of primes, which are independent over the rationals.
-    static constexpr std::array<double, 7> kAlpha{kR2[0],
-                                                  kR2[1],
-                                                  0.4142135623730950,
-                                                  0.7320508075688772,
-                                                  0.6180339887498949,
-                                                  0.6457513110645906,
-                                                  0.3166247903553998};
+    // R2; square roots of primes, which are independent over the rationals, without those close above an integer:
+    // multiples of such a fraction fill the interval late.
+    static constexpr std::array<double, 16> kAlpha{
+        kR2[0],
+        kR2[1],
+        0.4142135623730950, // 2
+        0.7320508075688772, // 3
+        0.6180339887498949, // 5, as the golden ratio
+        0.6457513110645906, // 7
+        0.3166247903553998, // 11
+        0.6055512754639892, // 13
+        0.3588989435406735, // 19
+        0.7958315233127191, // 23
+        0.3851648071345037, // 29
+        0.5677643628300215, // 31
+        0.4031242374328485, // 41
+        0.5574385243020004, // 43
+        0.8102496759066540, // 61
+        0.1853527718724504, // 67
+    };
     Rng shift_, rest_;
     double sample_;
     std::size_t dimension_ = 0;

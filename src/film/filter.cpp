@@ -12,6 +12,8 @@ PixelFilter::PixelFilter(const Settings& settings) : shape_(settings.filter), ra
     const double sigma = settings.filter_sigma > 0 ? settings.filter_sigma : radius_;
     scale_ = 1 / (sigma * std::numbers::sqrt2);
     mass_ = std::erf(radius_ * scale_);
+    for (std::size_t i = 0; i < quantiles_.size(); ++i)
+        quantiles_[i] = quantile(static_cast<double>(i) / static_cast<double>(quantiles_.size() - 1));
 }
 
 double PixelFilter::density_1d(double x) const {
@@ -27,15 +29,33 @@ double PixelFilter::sample_1d(double u) const {
     const double target = std::abs(2 * u - 1); // of the mass up to |x|
     if (shape_ == FilterShape::box) return std::copysign(target * radius_, u - 0.5);
     if (shape_ == FilterShape::triangle) return std::copysign((1 - std::sqrt(1 - target)) * radius_, u - 0.5);
+    // From between the two known quantiles around it; seldom more than a step. Back at the lower one it rises to the
+    // root, as the distribution function is concave.
+    const double place = target * static_cast<double>(quantiles_.size() - 1);
+    const auto i = std::min(static_cast<std::size_t>(place), quantiles_.size() - 2);
+    double x = std::lerp(quantiles_[i], quantiles_[i + 1], place - static_cast<double>(i));
+    for (int step = 0; step < 60; ++step) {
+        const double move = newton_step(x, target);
+        x = std::clamp(x + move, quantiles_[i], quantiles_[i + 1]);
+        if (!(std::abs(move) > 1e-5 / scale_)) break; // its square is what is left
+    }
+    return std::copysign(x, u - 0.5);
+}
+
+double PixelFilter::newton_step(double x, double mass) const {
+    return (mass - std::erf(x * scale_) / mass_) / (2 * density_1d(x));
+}
+
+double PixelFilter::quantile(double mass) const {
     // The distribution function is concave on [0, radius], so that Newton's method rises from 0 to the root and never
     // passes it but by rounding.
     double x = 0;
     for (int step = 0; step < 60; ++step) {
-        const double move = (target - std::erf(x * scale_) / mass_) / (2 * density_1d(x));
-        if (!(move > 1e-9 * radius_)) break;
+        const double move = newton_step(x, mass);
+        if (!(move > 1e-12 * radius_)) break;
         x = std::min(x + move, radius_);
     }
-    return std::copysign(x, u - 0.5);
+    return x;
 }
 
 Vec2 PixelFilter::sample_offset(double u0, double u1) const {

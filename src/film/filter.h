@@ -4,6 +4,8 @@
 #include "core/settings.h"
 #include "core/vec.h"
 
+#include <array>
+
 namespace keyhole {
 
 /// A separable filter that is nowhere negative and integrates to 1: a box, a triangle, or a Gaussian cut off at its
@@ -33,10 +35,14 @@ class PixelFilter {
 
   private:
     double sample_1d(double u) const;
+    /// Of a Gaussian: what Newton's method adds to `x`, and what it ends at, to have `mass` of it up to that distance.
+    double newton_step(double x, double mass) const;
+    double quantile(double mass) const;
 
     FilterShape shape_;
     double radius_;
-    double scale_ = 0, mass_ = 1; // of a Gaussian: 1 / (sqrt(2) sigma), and its share within the radius
+    double scale_ = 0, mass_ = 1;         // of a Gaussian: 1 / (sqrt(2) sigma), and its share within the radius
+    std::array<double, 257> quantiles_{}; // of a Gaussian: distances of masses that are evenly spaced
 };
 
 } // namespace keyhole

@@ -6,6 +6,8 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
+#include <utility>
 
 using namespace keyhole;
 
@@ -113,6 +115,18 @@ TEST(PixelFilter, HasTheShapeOfItsKind) {
     EXPECT_NEAR(make(FilterShape::triangle, 2).density({1, 0}) / make(FilterShape::triangle, 2).density({0, 0}), 0.5,
                 1e-6);
     EXPECT_NEAR(make(FilterShape::box).density({0.4f, -0.3f}), 1, 1e-6);
+}
+
+/// Also in the tail of one that is narrow beside its radius, where the distribution function is all but flat.
+TEST(PixelFilter, DrawsWhatItsDistributionSays) {
+    for (const auto& [radius, sigma] : {std::pair{1.0, 1.0}, {2.0, 0.5}, {2.0, 0.1}}) {
+        const PixelFilter filter = make(FilterShape::gaussian, radius, sigma);
+        for (const double u : {0.5001, 0.7, 0.99, 0.999, 0.9999, 0.999999}) {
+            const double x = filter.sample_offset(u, 0.5).x, root2 = std::numbers::sqrt2;
+            EXPECT_NEAR(std::erf(x / sigma / root2) / std::erf(radius / sigma / root2), 2 * u - 1, 1e-7)
+                << "radius " << radius << ", sigma " << sigma << ", u " << u;
+        }
+    }
 }
 
 /// A splat's weights over all pixels average to 1 over the film: splatting neither makes nor loses light.
