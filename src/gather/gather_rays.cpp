@@ -2,6 +2,7 @@
 
 #include "gather/direct_irradiance.h"
 #include "gather/direct_light.h"
+#include "gather/photon_reflection.h"
 #include "photonmap/confirmation.h"
 #include "photonmap/few_photons.h"
 #include "photonmap/surface/density_in_sight.h"
@@ -11,16 +12,6 @@
 
 namespace keyhole {
 namespace {
-
-/// The weight of photons in radiance that the finite part at `v` scatters towards `back`. In a pane of ground glass
-/// what arrived at one face from outside lies so near to what arrives at the other one from inside, on the same side of
-/// both, that only the sides of their surfaces tell them apart.
-auto reflection(const Vertex& v, const Vec3& back) {
-    return [&v, back, through = v.bsdf.traits().through](const Photon& photon) {
-        if (through && photon.behind() != (photon.normal().decode().dot(v.point.ng) < 0)) return Rgb(0.0);
-        return scatter(v.point, v.bsdf, Event::finite, photon.direction(), back).value;
-    };
-}
 
 /// The lookup of light that comes to `v` on the side of `normal`.
 PhotonQuery query_at(const Vertex& v, const Vec3& normal, float radius, const LookupOptions& options) {
@@ -259,7 +250,7 @@ Rgb GatherRays::caustic(const Vertex& v, const Vec3& normal, const Vec3& back, d
     const Surroundings around = surroundings.around(query.region, piloted);
     if (!(around.area > 0)) return Rgb(0.0);
     const PhotonMap& photons = maps_.caustic->main_photons();
-    const auto reflected = reflection(v, back);
+    const PhotonReflection reflected(v, back);
     const double area = around.area * p;
     if (!around.partly_occluded) return estimate_density(photons, query.region, r, area, reflected).value;
     const auto all = [&](const Photon& photon) { return luminance(reflected(photon) * photon.power()); };
@@ -285,8 +276,8 @@ double GatherRays::unconfirmed_caustic(const Vertex& v, const Vec3& back) const 
     if (maps_.caustic == nullptr) return 0;
     const PhotonQuery query = query_at(v, facing(v.point.ng, back), options_.caustic_radius, options_);
     const float r = piloted_radius(maps_.caustic->pilots(), query);
-    return unconfirmed_share(*maps_.caustic, query.region, r, [reflection = reflection(v, back)](const Photon& p) {
-        return luminance(reflection(p) * p.power());
+    return unconfirmed_share(*maps_.caustic, query.region, r, [reflected = PhotonReflection(v, back)](const Photon& p) {
+        return luminance(reflected(p) * p.power());
     });
 }
 
@@ -294,7 +285,7 @@ Rgb GatherRays::global(const Vertex& v, const Vec3& back) const {
     if (maps_.global == nullptr) return Rgb(0.0);
     return on_each_side(v, back, [&](const Vec3& normal) {
         const PhotonQuery query = query_at(v, normal, options_.max_radius, options_);
-        const DensityEstimate e = estimate_density(*maps_.global, query, maps_.patches, reflection(v, back));
+        const DensityEstimate e = estimate_density(*maps_.global, query, maps_.patches, PhotonReflection(v, back));
         return e.value / share_in_reach(maps_.coverage, query.region, e.radius);
     });
 }
@@ -313,7 +304,7 @@ double GatherRays::area_near(std::uint32_t place, const SurfaceRegion& region) c
 
 double GatherRays::variance_of_photons(const Vertex& v, const Vec3& back) const {
     if (maps_.global == nullptr) return 0;
-    const auto reflected = reflection(v, back);
+    const PhotonReflection reflected(v, back);
     return on_each_side(v, back, [&](const Vec3& normal) {
         double sum2 = 0;
         const auto place = place_at(v, normal);
@@ -344,7 +335,7 @@ Rgb GatherRays::photons(Asked asked, std::uint32_t place, const Vertex& v, const
         const auto light = [&](const Photon& p) { return weight(p) * p.power(); };
         return sum_over_few(map, {query.region, r, kPhotonsOfLobe}, power, light, source) / area;
     };
-    const auto reflected = reflection(v, back);
+    const PhotonReflection reflected(v, back);
     if (!may_be_partly_occluded(place, query.region)) return few(reflected);
     return few(weight_in_sight(scene_, query.region, r, reflected));
 }

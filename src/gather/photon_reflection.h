@@ -1,0 +1,42 @@
+// What a surface scatters of the light that a photon near it brought.
+#pragma once
+
+#include "photonmap/photon.h"
+#include "sampling/paths/path.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace keyhole {
+
+/// Least cosine at which a photon is taken to have arrived: its normal is known to half a degree.
+constexpr double kLeastArrival = 0.05;
+
+/// The weight of photons in radiance that the finite part at `v` scatters towards the unit direction `back` [1/sr]: the
+/// BSDF, and with shading normals what they make of the cosine (Veach 1997, 5.3). The flux of a photon has the cosine
+/// of the surface that it fell on. Where `v` is on another facet of a smooth mesh, that of `v` may be next to nothing
+/// for a photon that fell on its own nearly upright, and the weight would be a speck.
+///
+/// In a pane of ground glass what arrived at one face from outside lies so near to what arrives at the other one from
+/// inside, on the same side of both, that only the sides of their surfaces tell them apart.
+class PhotonReflection {
+  public:
+    PhotonReflection(const Vertex& v, const Vec3& back) : v_(v), back_(back), through_(v.bsdf.traits().through) {}
+
+    Rgb operator()(const Photon& photon) const {
+        const Vec3 normal = photon.normal().decode(), w = photon.direction();
+        if (through_ && photon.behind() != (normal.dot(v_.point.ng) < 0)) return Rgb(0.0);
+        const Rgb f = v_.bsdf.finite(w, back_).value;
+        const Vec3 shading = v_.bsdf.shading_normal();
+        if (shading == v_.point.ng || shading == -v_.point.ng) return f;
+        const double arrival = std::max(kLeastArrival, std::abs(static_cast<double>(normal.dot(w))));
+        return f * (std::abs(static_cast<double>(shading.dot(w))) / arrival);
+    }
+
+  private:
+    const Vertex& v_;
+    Vec3 back_;
+    bool through_;
+};
+
+} // namespace keyhole
