@@ -18,10 +18,23 @@ CameraParameters cropped(CameraParameters camera, const ImageWindow& film, const
 
 CameraParameters orthographic(CameraParameters camera, double size) {
     const double distance = kOrthographicDistance * size;
-    camera.origin += camera.forward * camera.near - camera.forward * static_cast<float>(distance);
+    camera.origin -= camera.forward * static_cast<float>(distance);
     camera.near = static_cast<float>(distance);
     camera.fov_degrees = static_cast<float>(std::atan(0.5 / kOrthographicDistance) * 360 / kPi);
-    camera.lens_radius = 0;
+    // The cone through a point in focus is as wide as before.
+    const double focus = camera.focus_distance;
+    camera.lens_radius = static_cast<float>(camera.lens_radius * (distance + focus) / focus);
+    camera.focus_distance = static_cast<float>(distance + focus);
+    return camera;
+}
+
+CameraParameters at_its_plane(CameraParameters camera) {
+    if (!(camera.near > 0)) return camera;
+    const float focus = camera.focus_distance - camera.near;
+    camera.lens_radius *= focus / camera.focus_distance;
+    camera.focus_distance = focus;
+    camera.origin += camera.forward * camera.near;
+    camera.near = 0;
     return camera;
 }
 
@@ -42,7 +55,10 @@ SurfacePoint Camera::eye(double u0, double u1) const {
     e.offset = parameters_.near;
     if (has_lens()) {
         const Vec2 d = uniform_disc(u0, u1) * parameters_.lens_radius;
-        e.p += parameters_.right * d.x + parameters_.up * d.y;
+        const Vec3 across = parameters_.right * d.x + parameters_.up * d.y;
+        e.p += across;
+        // Rays aslant have farther to go to the plane before which nothing is seen.
+        e.offset *= std::hypot(1.0f, across.length() / parameters_.focus_distance);
     }
     return e;
 }

@@ -51,8 +51,13 @@ constexpr double kOrthographicDistance = 1000;
 
 /// The camera in the place of an orthographic one whose plane goes through the origin of `camera` and sees `size`
 /// metres along the film's shorter side: a pinhole so far behind the plane that lines of sight are parallel within
-/// 0.0005, and that sees nothing before the plane. Depths of as much as `size` change lengths by a thousandth.
+/// 0.0005, and that sees nothing before the plane. Depths of as much as `size` change lengths by a thousandth. Lens and
+/// focus distance of `camera` are meant in its plane and from there: at a distance d, things that are f = focus
+/// distance away in focus, a point is a disc of radius |1 - d / f| times that of the lens.
 CameraParameters orthographic(CameraParameters camera, double size);
+
+/// What orthographic() was given for such a camera; others as they are.
+CameraParameters at_its_plane(CameraParameters camera);
 
 /// Pixels of a film: columns [x0, x1) and rows [y0, y1), from the top.
 struct CropWindow {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/vec.h"
+#include "scene/emitters/emission_profile.h"
 #include "scene/material.h"
 #include "scene/medium.h"
 
@@ -31,9 +32,10 @@ struct Sphere {
 
 /// What a surface emits, for shapes that are area lights.
 struct SurfaceEmission {
-    Rgb radiance{0.0};      ///< W/(m^2 sr), the same in all directions
+    Rgb radiance{0.0};      ///< W/(m^2 sr), along the normal
     bool two_sided = false; ///< otherwise on the outside only
     ColorTexture picture{}; ///< factor on the radiance, not negative; null: 1
+    EmissionProfile profile{};
 };
 
 /// Geometry with its material and, for area lights, its emission.

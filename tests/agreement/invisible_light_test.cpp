@@ -22,15 +22,20 @@ Settings base() {
     return s;
 }
 
-void expect_same_as_by_path(Scene& scene, const std::vector<const char*>& methods) {
+void expect_same_as_by_path(Scene& scene, const std::vector<const char*>& methods, std::int64_t spp = 16) {
     Settings path = base();
     path.method = &methods::path;
-    path.spp = 16;
+    path.spp = spp;
     test::expect_same_light(scene, path, test::by_methods(base(), methods), 8);
 }
 
 TEST(InvisibleLamp_Light, IsTheSameByEveryMethod) {
     expect_same_as_by_path(*test::invisible_lamp_box(), {"bdpt", "mlt", "pssmlt", "mmlt", "rjmlt", "pm", "ipm", "mps"});
+}
+
+TEST(NarrowBeams_Light, IsTheSameByEveryMethod) {
+    expect_same_as_by_path(*test::narrow_beams_box(), {"bdpt", "mlt", "pssmlt", "mmlt", "rjmlt", "pm", "ipm", "mps"},
+                           200);
 }
 
 /// Were the lamp seen it would be a dot as bright as the whole picture, but only where sub-paths are joined to the eye.

@@ -75,8 +75,16 @@ def orthographic_upright_with_shift():
     data, output = set_up().data, bpy.context.scene.render
     output.resolution_x, output.resolution_y = 48, 64
     data.type, data.ortho_scale, data.shift_x, data.shift_y = "ORTHO", 4, 0.1, -0.2
-    data.dof.use_dof = True
-    return agree(says=["Camera: depth of field"])
+    return agree()
+
+
+@test
+def orthographic_depth_of_field():
+    camera = set_up()
+    camera.data.type, camera.data.ortho_scale = "ORTHO", 5
+    camera.data.dof.use_dof, camera.data.dof.aperture_fstop = True, 2
+    camera.data.dof.focus_object = bpy.data.objects["Sphere.001"]
+    return agree()
 
 
 @test

@@ -1,6 +1,7 @@
 // Maps from the unit square, and the rays of camera and area lights, against the densities they claim.
 #include "scene/camera.h"
 #include "scene/emitters/emitters.h"
+#include "scene/geometry.h"
 #include "scene/shape.h"
 #include "scene/warp.h"
 #include "support/chi_squared.h"
@@ -10,7 +11,7 @@
 namespace keyhole::test {
 namespace {
 
-constexpr int kTests = 12;
+constexpr int kTests = 14;
 
 void expect_directions(const DirectionSampler& sample, const DirectionDensity& density, std::uint64_t stream,
                        const Frame& frame = {}) {
@@ -113,6 +114,24 @@ TEST(AreaEmitter_Directions, FollowTheirDensity) {
         const auto sample = [&](SampleSource& s) -> std::optional<Vec3> { return emitter->sample_ray(point, s).w; };
         expect_directions(
             sample, [&](const Vec3& w) { return emitter->ray_pdf(point, w); }, two_sided ? 9 : 10, Frame(point.ng));
+    }
+}
+
+TEST(AreaEmitter_Directions, FollowTheirProfile) {
+    for (const EmissionProfile& profile : {EmissionProfile::grid(110), EmissionProfile::cone(20, 70)}) {
+        Shape shape = area_light(two_triangles(), false);
+        shape.emission->profile = profile;
+        const auto emitter = make_area_emitter(shape, 0);
+        Rng rng(2, StreamPurpose::test, 0);
+        const SurfacePoint point = emitter->sample_point(rng).point;
+        expect_directions([&](SampleSource& s) -> std::optional<Vec3> { return emitter->sample_ray(point, s).w; },
+                          [&](const Vec3& w) { return emitter->ray_pdf(point, w); }, 12, Frame(point.ng));
+        // Proportional to what is emitted: every light path starts with the same power.
+        for (int i = 0; i < 100; ++i) {
+            const EmitterRay ray = emitter->sample_ray(point, rng);
+            EXPECT_NEAR(luminance(emitter->radiance(point, ray.w)) * point.abs_cos(ray.w) / ray.pdf,
+                        emitter->power() / surface_area(shape), 1e-3 * emitter->power());
+        }
     }
 }
 

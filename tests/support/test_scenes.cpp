@@ -40,6 +40,11 @@ SceneMaker& SceneMaker::alpha(double opacity) {
     return *this;
 }
 
+SceneMaker& SceneMaker::profile(const EmissionProfile& profile) {
+    d_.shapes.back().emission->profile = profile;
+    return *this;
+}
+
 SceneMaker& SceneMaker::media(std::shared_ptr<const Medium> inside, std::shared_ptr<const Medium> outside) {
     d_.shapes.back().inside = std::move(inside);
     d_.shapes.back().outside = std::move(outside);
@@ -71,7 +76,9 @@ SceneMaker& SceneMaker::camera(const Vec3& from, const Vec3& to, float fov, floa
     return *this;
 }
 
-SceneMaker& SceneMaker::orthographic(double size) {
+SceneMaker& SceneMaker::orthographic(double size, float lens_radius, float focus) {
+    d_.camera.lens_radius = lens_radius;
+    d_.camera.focus_distance = focus;
     d_.camera = keyhole::orthographic(d_.camera, size);
     return *this;
 }
@@ -121,12 +128,12 @@ std::unique_ptr<Scene> mirror_glass_box(float lens_radius) {
     return m.build();
 }
 
-std::unique_ptr<Scene> parallel_sight_box() {
+std::unique_ptr<Scene> parallel_sight_box(float lens_radius) {
     SceneMaker m = box_shell(make_mirror(Rgb(0.9)));
     add_light(m);
     m.sphere({-0.45f, 0.4f, -0.4f}, 0.4f, make_mirror(Rgb(0.9)));
     m.sphere({0.35f, 0.4f, 0.5f}, 0.4f, make_glass(1.5));
-    return m.orthographic(1.8).build();
+    return m.orthographic(1.8, lens_radius, 2).build();
 }
 
 std::unique_ptr<Scene> hazy_box() {
@@ -168,6 +175,19 @@ std::unique_ptr<Scene> invisible_lamp_box() {
     SceneMaker m = box_shell(make_diffuse(Rgb(0.2, 0.4, 0.7)));
     m.rectangle({-0.4f, 1.1f, -0.6f}, {0.8f, 0, 0}, {0, 0.2f, 0.6f}, make_diffuse(Rgb(0.5)), Rgb(6.0, 5.0, 4.0), true);
     m.alpha(0).sphere({-0.45f, 0.4f, -0.4f}, 0.4f, make_diffuse(Rgb(0.5)));
+    return m.build();
+}
+
+std::unique_ptr<Scene> narrow_beams_box() {
+    SceneMaker m = box_shell(make_diffuse(Rgb(0.2, 0.4, 0.7)));
+    m.rectangle({-0.6f, 1.95f, -0.6f}, {0.4f, 0, 0}, {0, 0, 0.4f}, make_diffuse(Rgb(0.5)), Rgb(20.0))
+        .profile(EmissionProfile::grid(70));
+    m.rectangle({0.4f, 1.2f, -0.4f}, {0, 0.3f, -0.2f}, {0, 0.1f, 0.3f}, make_diffuse(Rgb(0.5)), Rgb(9.0, 7.0, 5.0))
+        .profile(EmissionProfile::cone(25, 40))
+        .alpha(0);
+    m.rectangle({-0.9f, 0.1f, 0.5f}, {0.3f, 0, 0}, {0, 0.5f, 0}, make_diffuse(Rgb(0.5)), Rgb(2.0), true)
+        .profile(EmissionProfile::cone(0, 60));
+    m.sphere({-0.45f, 0.4f, -0.4f}, 0.4f, make_mirror(Rgb(0.9)));
     return m.build();
 }
 

@@ -19,6 +19,8 @@ class SceneMaker {
     SceneMaker& room(const Vec3& lower, const Vec3& upper, const MaterialPtr& m, const Rgb& radiance = Rgb(0.0));
     /// The opacity of the last shape.
     SceneMaker& alpha(double opacity);
+    /// How the light of the last shape spreads about its normal.
+    SceneMaker& profile(const EmissionProfile& profile);
     /// The media inside and outside of the last shape.
     SceneMaker& media(std::shared_ptr<const Medium> inside, std::shared_ptr<const Medium> outside = nullptr);
     /// A box of `inside` without a surface, in vacuum.
@@ -26,7 +28,7 @@ class SceneMaker {
     SceneMaker& emitter(std::unique_ptr<Emitter> e);
     SceneMaker& camera(const Vec3& from, const Vec3& to, float fov, float lens_radius = 0, float focus = 1);
     /// Makes the camera see along parallels, `size` metres of the film's shorter side.
-    SceneMaker& orthographic(double size);
+    SceneMaker& orthographic(double size, float lens_radius = 0, float focus = 1);
     SceneMaker& window(int width, int height, float margin = 0);
     std::unique_ptr<Scene> build();
 
@@ -41,13 +43,17 @@ std::unique_ptr<Scene> diffuse_box();
 std::unique_ptr<Scene> mirror_glass_box(float lens_radius = 0);
 
 /// mirror_glass_box() seen along parallels from a plane within it.
-std::unique_ptr<Scene> parallel_sight_box();
+std::unique_ptr<Scene> parallel_sight_box(float lens_radius = 0);
 
 /// diffuse_box() lit by a point light.
 std::unique_ptr<Scene> point_light_box();
 
 /// The shell of diffuse_box() with a diffuse ball, lit by a large lamp in plain view that no ray can hit.
 std::unique_ptr<Scene> invisible_lamp_box();
+
+/// The shell of diffuse_box() with a mirror ball, lit by a lamp behind a grid, a spot that has an extent and is not
+/// seen, and a lamp that shines to either side within an angle.
+std::unique_ptr<Scene> narrow_beams_box();
 
 /// diffuse_box() with a pane of glass across it, between its light at the rear and the eye.
 std::unique_ptr<Scene> glass_wall_box();

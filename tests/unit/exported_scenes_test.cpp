@@ -195,6 +195,25 @@ TEST_F(ExportedScene, CamerasMaySeeAlongParallels) {
     EXPECT_LT((*part - Vec2(10, 15)).length(), 0.02f);
 }
 
+/// At the distance d a point is seen through a disc of |1 - d / f| times the radius of the lens.
+TEST_F(ExportedScene, ParallelSightMayHaveALens) {
+    const Scene scene(load("type: diffuse", "", ", orthographic: 4, lens_radius: 0.1, focus_distance: 2").description);
+    for (const float d : {0.5f, 2.0f, 3.0f}) {
+        float radius = 0, least = 1e9f;
+        for (const double u : {0.0, 0.25, 0.5, 0.75}) {
+            const SurfacePoint eye = scene.camera().eye(1 - 1e-9, u);
+            const Vec3 w = scene.camera().ray_direction(eye, {0.5f, 0.5f});
+            const Vec3 start = eye.p + w * eye.offset;
+            EXPECT_NEAR(start.z, 4, 1e-2f) << "nothing is seen before the plane";
+            const Vec3 at = start + w * ((4 - d - start.z) / w.z);
+            radius = std::max(radius, std::hypot(at.x, at.y));
+            least = std::min(least, std::hypot(at.x, at.y));
+        }
+        EXPECT_NEAR(radius, 0.1f * std::abs(1 - d / 2), 2e-3f) << d;
+        EXPECT_NEAR(least, radius, 4e-3f) << d;
+    }
+}
+
 TEST_F(ExportedScene, ParallelSightBeginsAtItsPlane) {
     // A wall behind the plane of the camera, at z = 4, and one before it.
     for (const float z : {5.0f, 3.0f}) {

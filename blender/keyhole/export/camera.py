@@ -36,7 +36,8 @@ def depth_of_field(thing, forward, messages):
         distance = (data.dof.focus_object.matrix_world.translation - eye).dot(forward)
     if data.dof.aperture_blades or data.dof.aperture_ratio != 1:
         messages.add(thing.name, "the shape of the aperture is not exported: it is round")
-    return {"lens_radius": data.lens / 2000 / data.dof.aperture_fstop, "focus_distance": abs(distance)}
+    length = 1 if data.type == "ORTHO" else data.lens / 1000  # what the f-number divides, as Cycles has it [m]
+    return {"lens_radius": length / 2 / data.dof.aperture_fstop, "focus_distance": abs(distance)}
 
 
 def export(scene, messages):
@@ -70,8 +71,6 @@ def export(scene, messages):
         view["orthographic"] = data.ortho_scale * shorter / side
     else:
         view["fov"] = math.degrees(2 * math.atan(size / 2 / data.lens * shorter / side))
-    if data.dof.use_dof and data.type == "ORTHO":
-        messages.add(thing.name, "depth of field of an orthographic camera is not exported: all is in focus")
-    elif data.dof.use_dof:
+    if data.dof.use_dof:
         view.update(depth_of_field(thing, forward, messages))
     return film, view

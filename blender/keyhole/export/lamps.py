@@ -7,6 +7,7 @@ from mathutils import Vector
 
 CORNERS = 64  # of a disc
 SHARPEST_EDGE = 1e-3  # degrees
+NARROWEST_SPREAD = 1  # degrees
 
 
 def colour(thing, messages):
@@ -31,8 +32,15 @@ def scaled(rgb, factor):
     return [x * factor for x in rgb]
 
 
-def glowing(shape, radiance):
-    return dict(shape, alpha=0, emission={"radiance": radiance})
+def glowing(shape, radiance, **profile):
+    return dict(shape, alpha=0, emission={"radiance": radiance, **profile})
+
+
+def brighter_by_spread(spread):
+    """Cycles keeps the power of a lamp whose slats leave light within an angle: radiance along the normal grows."""
+    half = spread / 2
+    lost = (half - math.sin(half) * math.cos(half)) / math.tan(half)
+    return 1 / (math.sin(half) ** 2 - lost)
 
 
 def area(thing, matrix, rgb, shapes, messages):
@@ -41,16 +49,18 @@ def area(thing, matrix, rgb, shapes, messages):
     width = light.size
     height = light.size_y if light.shape in {"RECTANGLE", "ELLIPSE"} else light.size
     u, v = matrix.to_3x3() @ Vector((width, 0, 0)), matrix.to_3x3() @ Vector((0, height, 0))
+    profile = {}
     if light.spread < math.pi - 1e-4:
-        messages.add(thing.name, "the spread of an area lamp is not exported: it is 180 degrees")
+        profile = {"spread": max(math.degrees(light.spread), NARROWEST_SPREAD)}
+        rgb = scaled(rgb, brighter_by_spread(math.radians(profile["spread"])))
     centre, surface = matrix.translation, u.cross(v).length
     if surface == 0:
         messages.add(thing.name, "an area lamp without area is not exported")
         return []
     if light.shape in {"SQUARE", "RECTANGLE"}:
         shape = {"type": "rectangle", "corner": list(centre - (u + v) / 2), "u": list(v), "v": list(u)}
-        return [glowing(shape, scaled(rgb, 1 / (4 * surface)))]
-    return [glowing(disc(centre, u / 2, v / 2, shapes), scaled(rgb, 1 / (math.pi * surface)))]
+        return [glowing(shape, scaled(rgb, 1 / (4 * surface)), **profile)]
+    return [glowing(disc(centre, u / 2, v / 2, shapes), scaled(rgb, 1 / (math.pi * surface)), **profile)]
 
 
 def disc(centre, u, v, shapes):
@@ -66,17 +76,22 @@ def ball(matrix, radius, rgb):
     return glowing(shape, scaled(rgb, 1 / (4 * math.pi ** 2 * radius ** 2)))
 
 
-def spot(thing, matrix, rgb, messages):
-    """Fades by the same smooth step of the cosine as Cycles'; that dims by the cosine besides, here by its mean."""
+def spot(thing, matrix, rgb, shapes):
+    """Fades by the same smooth step of the cosine as Cycles', which dims by the cosine besides. So does a disc across
+    its axis, that of a spot with a radius; one without is dimmed by the mean. Returns emitters without a shape."""
     light = thing.data
-    if light.shadow_soft_size > 0:
-        messages.add(thing.name, "the radius of a spot lamp is not exported: its shadows are sharp")
     edge = math.cos(light.spot_size / 2)
     inner = math.acos(edge + (1 - edge) * light.spot_blend)
     half, mean_cosine = light.spot_size / 2, (1 + edge) / 2
-    return {"type": "spot", "position": list(matrix.translation), "direction": forward(matrix),
-            "angle": math.degrees(half), "falloff": max(math.degrees(half - inner), SHARPEST_EDGE),
-            "intensity": scaled(rgb, mean_cosine / (4 * math.pi))}
+    cone = {"angle": math.degrees(half), "falloff": max(math.degrees(half - inner), SHARPEST_EDGE)}
+    radius = light.shadow_soft_size
+    if radius > 0:
+        axes = matrix.to_3x3().normalized()
+        shape = disc(matrix.translation, axes @ Vector((radius, 0, 0)), axes @ Vector((0, radius, 0)), shapes)
+        shapes.top.append(glowing(shape, scaled(rgb, 1 / (4 * math.pi ** 2 * radius ** 2)), **cone))
+        return []
+    return [{"type": "spot", "position": list(matrix.translation), "direction": forward(matrix), **cone,
+             "intensity": scaled(rgb, mean_cosine / (4 * math.pi))}]
 
 
 def forward(matrix):
@@ -96,7 +111,7 @@ def export(thing, matrix, shapes, messages):
         return [{"type": "point", "position": list(matrix.translation),
                  "intensity": scaled(rgb, 1 / (4 * math.pi))}]
     elif light.type == "SPOT":
-        return [spot(thing, matrix, rgb, messages)]
+        return spot(thing, matrix, rgb, shapes)
     elif light.type == "SUN":
         return [{"type": "distant", "direction": forward(matrix), "irradiance": rgb,
                  "angle": min(math.degrees(light.angle), 90)}]

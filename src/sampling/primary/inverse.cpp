@@ -110,7 +110,8 @@ std::optional<std::array<double, 4>> EmitterInverse::point(const SurfacePoint& p
 }
 
 std::array<double, 2> EmitterInverse::ray(const SurfacePoint& point, const Vec3& w) const {
-    return invert_hemisphere(Frame(point.ng).to_local(w));
+    const auto [sine2, around] = invert_hemisphere(Frame(point.ng).to_local(w));
+    return {std::min(scene_->shapes()[point.shape].emission->profile.share_within(sine2), kBelowOne), around};
 }
 
 } // namespace keyhole

@@ -58,11 +58,14 @@ class AreaEmitter final : public Emitter {
         luminance_ = mean_luminance();
         bounds_.intensity = luminance_ * area_;
         if (shape.emission->two_sided) bounds_.spread = kPi;
+        bounds_.reach = profile().reach();
     }
 
     Site site() const override { return Site::surface; }
     bool is_delta() const override { return invisible_; }
-    double power() const override { return luminance_ * area_ * kPi * (shape_.emission->two_sided ? 2 : 1); }
+    double power() const override {
+        return luminance_ * area_ * profile().projected_solid_angle() * (shape_.emission->two_sided ? 2 : 1);
+    }
 
     EmitterPoint sample_point(SampleSource& source) const override {
         const auto [u0, u1, u2] = source.take<3>();
@@ -78,24 +81,28 @@ class AreaEmitter final : public Emitter {
             back = u0 >= 1;
             if (back) u0 -= 1;
         }
-        const Vec3 local = cosine_hemisphere(u0, u1);
+        const Vec3 local = cosine_hemisphere(profile().sine2_of_share(u0), u1);
         const Vec3 w = Frame(point.ng).to_world(back ? -local : local);
         return {point, w, ray_pdf(point, w)};
     }
     double ray_pdf(const SurfacePoint& point, const Vec3& w) const override {
-        const double c = point.ng.dot(w);
-        if (shape_.emission->two_sided) return std::abs(c) * kInvPi / 2;
-        return c > 0 ? c * kInvPi : 0.0;
+        const double c = point.ng.dot(w), size = std::abs(c);
+        if (!shape_.emission->two_sided && c <= 0) return 0;
+        return size * profile().value(size) /
+               (profile().projected_solid_angle() * (shape_.emission->two_sided ? 2 : 1));
     }
     Rgb radiance(const SurfacePoint& point, const Vec3& w) const override {
-        const bool lit = shape_.emission->two_sided || point.ng.dot(w) > 0;
+        const double c = point.ng.dot(w);
+        const bool lit = shape_.emission->two_sided || c > 0;
         if (shape_.alpha && !invisible_ && !is_opaque(shape_.alpha, point)) return Rgb(0.0);
-        return lit ? emitted(point) : Rgb(0.0);
+        return lit ? emitted(point) * profile().value(std::abs(c)) : Rgb(0.0);
     }
     std::optional<EmitterBounds> bounds() const override { return bounds_; }
     const char* kind() const override { return invisible_ ? "invisible area" : "area"; }
 
   private:
+    const EmissionProfile& profile() const { return shape_.emission->profile; }
+
     /// Uniform by area.
     SurfacePoint place(double u0, double u1, double u2) const {
         SurfacePoint s;
@@ -110,6 +117,7 @@ class AreaEmitter final : public Emitter {
         return s;
     }
 
+    /// Along the normal.
     Rgb emitted(const SurfacePoint& point) const {
         const SurfaceEmission& emission = *shape_.emission;
         return emission.picture == nullptr ? emission.radiance : emission.radiance * emission.picture->value(point);
@@ -145,6 +153,19 @@ ColorTexture read_picture_of_light(Properties& p) {
     return p.make_at(file, [&] { return image_texture<Rgb>(path, {}); });
 }
 
+/// Lambertian where nothing else is said.
+EmissionProfile read_profile(Properties& p) {
+    const Key spread{"spread", ""}, angle{"angle", ""}, falloff{"falloff", ""};
+    if (!p.has(angle)) {
+        if (p.has(falloff)) p.fail_at(falloff, "found 'falloff' without 'angle'");
+        return EmissionProfile::grid(p.number(spread, {"an angle across the light", 1, 180}, 180));
+    }
+    if (p.has(spread)) p.fail_at(spread, "found 'spread' beside 'angle', expected one of them");
+    const double edge = p.number(angle, {"an angle from the normal", 0.5, 90}, 90);
+    const double fades = p.number(falloff, {"an angle up to 'angle'", 0, edge}, std::min(5.0, edge));
+    return EmissionProfile::cone(edge - fades, edge);
+}
+
 } // namespace
 
 std::unique_ptr<Emitter> make_area_emitter(const Shape& shape, std::uint32_t index) {
@@ -153,6 +174,7 @@ std::unique_ptr<Emitter> make_area_emitter(const Shape& shape, std::uint32_t ind
 
 AreaLight read_area_light(Properties& p) {
     AreaLight light;
+    light.profile = read_profile(p);
     light.two_sided = p.boolean({"two_sided", "twosided"}, false);
     light.picture = read_picture_of_light(p);
     light.radiance = p.light({"radiance", "L"}, {"power", ""}, 1);
@@ -166,10 +188,10 @@ AreaLight read_area_light(Properties& p) {
 
 std::unique_ptr<SurfaceEmission> emission_of(const AreaLight& light, double area) {
     const int sides = light.two_sided ? 2 : 1;
-    // A Lambertian emitter of radiance L sends out pi L from each unit of area of each side.
-    const Rgb radiance = light.power > 0 ? light.radiance * light.power / (kPi * area * sides) : light.radiance;
+    const double per_radiance = light.profile.projected_solid_angle() * area * sides;
+    const Rgb radiance = light.power > 0 ? light.radiance * (light.power / per_radiance) : light.radiance;
     if (is_black(radiance)) return nullptr;
-    return std::make_unique<SurfaceEmission>(SurfaceEmission{radiance, light.two_sided, light.picture});
+    return std::make_unique<SurfaceEmission>(SurfaceEmission{radiance, light.two_sided, light.picture, light.profile});
 }
 
 } // namespace keyhole

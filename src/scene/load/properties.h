@@ -195,6 +195,7 @@ struct AreaLight {
     bool two_sided = false;
     double power = 0;       ///< [W], factor on that colour; 0: radiance says it all
     ColorTexture picture{}; ///< factor on the radiance; null: 1
+    EmissionProfile profile{};
 };
 AreaLight read_area_light(Properties& p);
 /// Of a shape with that area; null where nothing is emitted.

@@ -127,7 +127,6 @@ void read_camera(Parameters& p, const Transform& camera_to_world, View& view) {
     camera.shift = window.middle / (2 * window.half);
     camera.lens_radius = static_cast<float>(p.number("lensradius", 0, {0, 1e12}) * scale);
     camera.focus_distance = static_cast<float>(p.number("focaldistance", 1e6, kPositive) * scale);
-    if (parallel && camera.lens_radius > 0) p.warn("orthographic lens", "everything is in focus");
     if (parallel) camera = orthographic(camera, 2 * window.half * scale);
     const double open = p.number("shutteropen", 0), close = p.number("shutterclose", 1);
     if (!(close > open)) p.fail(fmt::format("found the shutter open from {} to {}, expected some time", open, close));

@@ -50,12 +50,10 @@ void CameraReader::read_camera(const YamlNode& section) {
     }
     if (const YamlNode* fov = map.find("fov")) fov_ = read_number(*fov, kFov);
     if (const YamlNode* size = map.find("orthographic")) {
-        for (const char* key : {"fov", "lens_radius"})
-            if (const YamlNode* other = map.find(key))
-                fail(*other, fmt::format("found '{}' beside 'orthographic', expected one of them", key));
+        if (const YamlNode* fov = map.find("fov"))
+            fail(*fov, "found 'fov' beside 'orthographic', expected one of them");
         orthographic_ = read_number(*size, {"a length", 1e-9, 1e9});
         fov_.reset();
-        lens_radius_.reset();
     } else if (fov_ && map.find("fov") != nullptr) {
         orthographic_.reset();
     }
@@ -95,8 +93,7 @@ CameraParameters CameraReader::uncropped(const YamlNode& scene) const {
     CameraParameters camera = base_.value_or(CameraParameters{});
     std::optional<double> size = orthographic_;
     if (!size && !fov_ && camera.near > 0) size = static_cast<double>(camera.near) / kOrthographicDistance;
-    camera.origin += camera.forward * camera.near;
-    camera.near = 0;
+    camera = at_its_plane(camera);
     const auto finished = [&] { return size ? orthographic(camera, *size) : camera; };
     if (fov_) camera.fov_degrees = static_cast<float>(*fov_);
     if (lens_radius_) camera.lens_radius = static_cast<float>(*lens_radius_);

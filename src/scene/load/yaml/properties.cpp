@@ -187,7 +187,7 @@ EmitterPtr read_emitter(const YamlNode& node) {
 }
 
 std::unique_ptr<SurfaceEmission> read_emission(const YamlNode& node, double area) {
-    YamlProperties p(node, "an emission", {"radiance", "power", "two_sided", "texture"});
+    YamlProperties p(node, "an emission", {"radiance", "power", "two_sided", "texture", "spread", "angle", "falloff"});
     return emission_of(read_area_light(p), area);
 }
 
