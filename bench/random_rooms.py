@@ -8,7 +8,7 @@ Room N is made from the number N alone: its size, its windows (none, bare, with 
 from 101 on also with a curtain or frosted glass),
 its lamps (on the ceiling, spots, behind a shade, in a glass bulb, shining at the ceiling, in the next room with the door ajar;
 from 101 on also in a globe, in frosted glass, a screen, a chandelier), its
-furniture and what it is made of (paint, wood under varnish, plastic, metal, glass, mirrors). Two long renders by `bdpt` are the
+furniture (from 1001 on also smooth meshes, fine and coarse ones, and uneven surfaces) and what it is made of (paint, wood under varnish, plastic, metal, glass, mirrors). Two long renders by `bdpt` are the
 reference of each: with the sun behind glass they lack what mirrors show of it. Errors are trimmed squared relative ones free of the
 references' noise (`keyhole diff`, cross_trim). The last columns: the brightness of the picture by `ipm` over that of the references,
 and what the room has.
@@ -21,6 +21,7 @@ import os
 import pathlib
 import random
 import statistics
+import struct
 
 from common import diff, render_for
 
@@ -31,7 +32,7 @@ class Room:
     """One random interior. x: across, y: up, z: towards the eye's wall. Metres."""
 
     def __init__(self, number):
-        self.rng, self.more = random.Random(number), number > 100
+        self.rng, self.more, self.meshes = random.Random(number), number > 100, number > 1000
         self.shapes, self.emitters, self.told = [], [], []
         self.size = (self.rng.uniform(3, 7), self.rng.uniform(2.4, 3.4), self.rng.uniform(3.5, 9))
 
@@ -49,6 +50,8 @@ class Room:
 
     def material(self):
         """A random one of those that furniture has, in place."""
+        if self.meshes and self.rng.random() < 0.4:
+            return self.uneven()
         kind = self.pick("diffuse", "diffuse", "varnish", "plastic", "gloss", "metal", "rough metal")
         bright = self.colour(0.1, 0.75)
         return {"diffuse": f"{{type: diffuse, reflectance: {bright}}}",
@@ -57,6 +60,32 @@ class Room:
                 "gloss": f"{{type: principled, base_color: {bright}, roughness: {self.pick(0.2, 0.5)}, clearcoat: {self.pick(0, 1)}}}",
                 "metal": f"{{type: conductor, reflectance: {self.colour(0.6, 0.95)}, roughness: {self.pick(0, 0.02)}}}",
                 "rough metal": f"{{type: conductor, reflectance: {self.colour(0.5, 0.9)}, roughness: {self.pick(0.1, 0.3)}}}"}[kind]
+
+    def uneven(self):
+        """Bumps, and the parameters of `principled` that the others leave alone."""
+        noise = f"{{type: fbm, octaves: 4, transform: {{scale: {self.pick(0.02, 0.1)}}}}}"
+        bump = f", bump: {{type: scale, texture: {noise}, factor: {self.pick(0.002, 0.01)}}}" if self.rng.random() < 0.6 else ""
+        kind = self.pick("diffuse", "principled", "principled", "conductor", "coated_diffuse")
+        rest = {"diffuse": f"reflectance: {self.colour(0.2, 0.8)}",
+                "conductor": f"reflectance: {self.colour(0.5, 0.9)}, roughness: {self.pick(0.1, 0.3, 0.5)}",
+                "coated_diffuse": f"reflectance: {self.colour(0.2, 0.8)}, roughness: {self.pick(0.05, 0.3)}",
+                "principled": f"base_color: {self.colour(0.2, 0.9)}, roughness: {self.pick(0.1, 0.25, 0.5, 0.8)}, "
+                              f"metallic: {self.pick(0, 0.5, 1)}, anisotropy: {self.pick(0, 0.6)}, sheen: {self.pick(0, 1)}"}[kind]
+        return f"{{type: {kind}, {rest}{bump}}}"
+
+    def mesh(self, base, size):
+        """On `base`, at most `size` wide and high."""
+        name = self.pick("armchair_cushions", "apple", "bowl", "cushion", "egg", "foliage", "jar", "kettle", "lamp_base", "pan", "vase")
+        low, high = bounds(ROOT / f"scenes/meshes/{name}.ply")
+        scale = size / max(b - a for a, b in zip(low, high))
+        middle = [(low[0] + high[0]) / 2, low[1], (low[2] + high[2]) / 2]
+        steps = [{"translate": [-x for x in middle]}, {"scale": scale}, {"rotate": [self.rng.uniform(0, 360), 0, 1, 0]}, {"translate": base}]
+        self.shape(f"type: mesh, file: {ROOT}/scenes/meshes/{name}.ply, material: {self.material()}, transform: {json.dumps(steps)}")
+
+    def coarse(self, base, size):
+        """A ball of few facets with smooth normals."""
+        self.shape(f"type: mesh, file: coarse_ball.ply, material: {self.material()}, "
+                   f"transform: [{{scale: {size / 2}}}, {{translate: {[base[0], base[1] + size / 2, base[2]]}}}]")
 
     def walls(self, openings):
         """Six slabs 0.2 m thick. openings: {"left" | "back": (low u, low y, high u, high y)}, u along the wall."""
@@ -203,6 +232,12 @@ class Room:
                 r = self.rng.uniform(0.05, 0.18)
                 centre = [x + self.rng.uniform(0.2, 0.8) * wide, tall + r + 0.001, z + self.rng.uniform(0.2, 0.8) * deep]
                 self.shape(f"type: sphere, center: {centre}, radius: {r}, material: {self.pick(self.material(), '{type: glass}')}")
+            if self.meshes:
+                self.pick(self.mesh, self.coarse)([x + wide / 2, tall + 0.001, z + deep / 2], self.rng.uniform(0.2, 0.5))
+        if self.meshes:
+            for _ in range(3):
+                place = [self.rng.uniform(0.4, w - 0.4), 0.001, self.rng.uniform(0.4, d - 1.5)]
+                self.pick(self.mesh, self.coarse)(place, self.rng.uniform(0.3, 0.8))
         if self.rng.random() < 0.4:
             self.told.append("mirror")
             self.shape(f"type: rectangle, corner: {[w - 0.02, 0.8, d * 0.3]}, u: [0, 0, 1.2], v: [0, 1.2, 0], material: {{type: mirror}}")
@@ -235,6 +270,30 @@ class Room:
         return "\n".join([*head, *emitters, "shapes:", *self.shapes]) + "\n"
 
 
+def bounds(file):
+    """Lowest and highest coordinates of a binary PLY whose vertices are floats, positions first."""
+    data = file.read_bytes()
+    head, _, body = data.partition(b"end_header\n")
+    vertices, _, rest = head.partition(b"element face")
+    count, width = int(vertices.split(b"element vertex ")[1].split()[0]), vertices.count(b"property float")
+    points = [struct.unpack_from("<3f", body, 4 * width * i) for i in range(count)]
+    return [min(p) for p in zip(*points)], [max(p) for p in zip(*points)]
+
+
+def write_coarse_ball(file, across=8, down=5):
+    """A unit ball of 8 x 5 facets with its own normals."""
+    points = [(math.sin(math.pi * j / down) * math.cos(2 * math.pi * i / across), math.cos(math.pi * j / down),
+               math.sin(math.pi * j / down) * math.sin(2 * math.pi * i / across)) for j in range(down + 1) for i in range(across)]
+    faces = []
+    for j in range(down):
+        for i in range(across):
+            a, b, k = j * across + i, j * across + (i + 1) % across, across
+            faces += [f"3 {a} {b} {b + k}"] * (j > 0) + [f"3 {a} {b + k} {a + k}"] * (j < down - 1)
+    head = ["ply", "format ascii 1.0", f"element vertex {len(points)}", *(f"property float {c}" for c in ("x", "y", "z", "nx", "ny", "nz")),
+            f"element face {len(faces)}", "property list uchar int vertex_indices", "end_header"]
+    file.write_text("\n".join([*head, *(" ".join(f"{c:.6f}" for c in 2 * p) for p in points), *faces]) + "\n")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--keyhole", default=str(ROOT / "build/keyhole"))
@@ -249,6 +308,7 @@ def main():
     args = parser.parse_args()
     out = pathlib.Path(args.out)
     out.mkdir(parents=True, exist_ok=True)
+    write_coarse_ball(out / "coarse_ball.ply")
     first, _, last = args.rooms.partition("-")
     rooms = list(range(int(first), int(last or first) + 1)) if "," not in args.rooms else [int(n) for n in args.rooms.split(",")]
     times, methods = [float(t) for t in args.times.split(",")], args.methods.split(",")

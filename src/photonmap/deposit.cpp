@@ -1,6 +1,7 @@
 #include "photonmap/deposit.h"
 
 #include "photonmap/power/camera_subpath.h"
+#include "sampling/paths/measure.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -62,8 +63,6 @@ void PathDepositor::deposit(const Path& path, double weight) {
                 recent_.share =
                     options_.weights->of_chains(options_.weights->visible(*options_.scene, at.kind, path, at.vertex));
             if (options_.observer != nullptr) recent_.watch(path);
-            if (at.kind == PhotonKind::caustic && one_way())
-                recent_.seen = path.x[i].value * (path.x[i].pdf_from_eye * options_.set.weight_at(path.image));
         }
     }
     recent_.weight += weight;
@@ -110,8 +109,26 @@ Rgb PathDepositor::power_of(const Pending& pending, bool global, double given, d
 }
 
 Rgb PathDepositor::caustic_power(const Pending& pending) const {
-    const Rgb power = marginal_power(pending.flux, pending.seen);
-    return is_black(power) ? marginal_power(pending.flux, importance(pending, *options_.caustic).value) : power;
+    if (!options_.scene->camera().has_lens()) {
+        Rgb e = straight_importance(pending);
+        if (options_.scene->traits().delta) e += importance(pending, *options_.caustic, Ways::specular).value;
+        const Rgb power = marginal_power(pending.flux, e);
+        if (!is_black(power)) return power;
+    }
+    return marginal_power(pending.flux, importance(pending, *options_.caustic).value);
+}
+
+Rgb PathDepositor::straight_importance(const Pending& pending) const {
+    const Scene& scene = *options_.scene;
+    const Vertex& d1 = pending.vertex;
+    const SurfacePoint eye = scene.camera().eye(0.5, 0.5);
+    const Vec3 to_eye = direction(d1.point, eye);
+    const auto image = scene.camera().image_point(eye, -to_eye);
+    if (!image || !scene.visible(d1.point, eye)) return Rgb(0.0);
+    const double density = solid_angle_to_area(scene.camera().direction_pdf(-to_eye), eye, d1.point);
+    const Rgb value =
+        scatter(d1.point, d1.bsdf, Event::finite, pending.to_light, to_eye).value * scene.transmittance(d1.point, eye);
+    return value * (density * options_.set.weight_at(*image));
 }
 
 Rgb PathDepositor::global_power(const Pending& pending, double given, double weight) {

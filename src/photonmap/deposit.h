@@ -14,8 +14,8 @@
 namespace keyhole {
 
 /// What the power of photons is computed from. The caustic map's photons are `marginal` under every rule: from d1 there
-/// is one edge to the eye and nothing to draw. With a pinhole camera and no specular surfaces d1 has one camera
-/// sub-path only: its density is E, and no map is asked.
+/// is one edge to the eye and nothing to draw. With a pinhole camera what is seen straight is known exactly, and the
+/// map is asked for the ways by specular vertices alone: at d1 there may be few importons, or a narrow strip of them.
 struct DepositOptions {
     const ImportanceMap* global = nullptr;  ///< at d2; null under `reciprocal`
     const ImportanceMap* caustic = nullptr; ///< at d1
@@ -65,16 +65,12 @@ class PathDepositor {
     const Tally& tally() const { return tally_; }
 
   private:
-    /// Whether the eye has but one way to each place that it sees.
-    bool one_way() const { return !options_.scene->traits().delta && !options_.scene->camera().has_lens(); }
-
     /// A stored sub-path that may still gain weight.
     struct Pending {
         PhotonKind kind = PhotonKind::none;
         Vertex vertex;
         Vec3 to_light;
         Rgb flux;             ///< f_map up to its scale, which cancels
-        Rgb seen{0.0};        ///< E where the eye has but this way here; else 0
         int scatterings = 0;  ///< of the stored sub-path, its end included
         bool caustic = false; ///< see Photon
         double share = 1;     ///< of chains, in photons here
@@ -93,9 +89,12 @@ class PathDepositor {
     Rgb power_of(const Pending& pending, bool global, double given, double weight);
     Rgb global_power(const Pending& pending, double given, double weight);
     Rgb caustic_power(const Pending& pending) const;
-    static ImportanceMap::Importance importance(const Pending& pending, const ImportanceMap& map) {
-        return map.importance(pending.vertex.point, pending.vertex.bsdf, pending.to_light);
+    static ImportanceMap::Importance importance(const Pending& pending, const ImportanceMap& map,
+                                                Ways ways = Ways::all) {
+        return map.importance(pending.vertex.point, pending.vertex.bsdf, pending.to_light, ways);
     }
+    /// E of the straight edge from d1 to a pinhole; 0 where it is hidden.
+    Rgb straight_importance(const Pending& pending) const;
     Rgb by_drawing(const Pending& pending, double given);
     Rgb to_the_letter(const Pending& pending, double given, double weight);
 

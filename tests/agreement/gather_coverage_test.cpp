@@ -1,10 +1,13 @@
 // Light that gather rays hardly find, stored where it is seen: the picture is that of bidirectional path tracing.
+#include "core/statistics.h"
 #include "methods/method.h"
+#include "methods/render.h"
 #include "support/agreement.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <iostream>
 
 namespace keyhole {
@@ -35,6 +38,36 @@ TEST(Reach_AgreesWithBidirectionalTracing, BlockByBlock) {
         EXPECT_EQ(d.rejected, 0) << d.report << "mean brightness ratio " << d.ratio;
         EXPECT_NEAR(d.ratio, 1, 0.08) << method;
     }
+}
+
+/// What is seen through a slit is a strip, narrower than the importons around a place lie apart. Whether there is a
+/// mirror somewhere, so that the eye may have other ways there, must not matter.
+TEST(LightSeenThroughASlit_Brightness, IsTheSameWithAMirrorThatNobodySees) {
+    Settings s;
+    s.method = &method_named("mps");
+    s.plan = Plan::all;
+    s.spp = 4;
+    s.cache_rays = 4; // the other layers don't count
+    s.brightness_samples = 30'000;
+    s.importons = 5'000;
+    s.mutations = 30'000;
+    s.photons = 20'000;
+    RunningStats without, with;
+    for (const bool mirror : {false, true}) {
+        const auto scene = test::two_rooms(0.03f, false, mirror);
+        for (s.seed = 1; s.seed <= 3; ++s.seed) {
+            const Image picture = render(*scene, s, {}).picture.layers.at("caustic");
+            double sum = 0;
+            for (int y = 0; y < picture.height; ++y)
+                for (int x = 0; x < picture.width; ++x) sum += picture.at(x, y)[1];
+            (mirror ? with : without).add(sum);
+        }
+    }
+    const double ratio = with.mean() / without.mean();
+    const double error = std::hypot(with.standard_error() / with.mean(), without.standard_error() / without.mean());
+    std::cout << "with a mirror " << ratio << " +- " << error << "\n";
+    EXPECT_NEAR(ratio, 1, 0.03 + 3 * error);
+    EXPECT_LT(error, 0.2) << "too noisy to mean anything";
 }
 
 } // namespace

@@ -256,7 +256,7 @@ void add_leaf(SceneMaker& m, float a, float b, float z, const std::shared_ptr<co
 
 } // namespace
 
-std::unique_ptr<Scene> two_rooms(float slit, bool thin) {
+std::unique_ptr<Scene> two_rooms(float slit, bool thin, bool mirror_outside) {
     const auto white = make_diffuse(Rgb(0.75));
     SceneMaker m;
     m.room({-2, 0, -4}, {2, 2.5f, 4}, white);
@@ -270,6 +270,7 @@ std::unique_ptr<Scene> two_rooms(float slit, bool thin) {
             .rectangle({b, 0, -0.1f}, {0, 2.5f, 0}, {0, 0, 0.1f}, white);
     }
     m.rectangle({-1.6f, 2.45f, -2.6f}, {0.8f, 0, 0}, {0, 0, 0.8f}, make_diffuse(Rgb(0.0)), Rgb(200.0));
+    if (mirror_outside) m.sphere({0, -3, 0}, 1, make_mirror(Rgb(0.9)));
     m.camera({-1.5f, 1.4f, 3.7f}, {0.7f, 1, 0}, 58).window(64, 48);
     return m.build();
 }

@@ -67,7 +67,7 @@ std::unique_ptr<Scene> varnished_furnace(double rho);
 
 /// Two diffuse rooms joined by a slit of the given width [m]; the light is in the far one. `thin`: what parts them is a
 /// plane, in which an opening lies as well.
-std::unique_ptr<Scene> two_rooms(float slit, bool thin = false);
+std::unique_ptr<Scene> two_rooms(float slit, bool thin = false, bool mirror_outside = false);
 
 /// mirror_glass_box() with a ball of green glass, and a block of haze that has no surface.
 std::unique_ptr<Scene> hazy_box();

@@ -14,12 +14,12 @@ void trace_importons(const Scene& scene, const Vec2& image, const ImportanceTrac
                      Importons& out) {
     const double weight = options.weight != nullptr ? (*options.weight)(image) : 1.0;
     const double share = weight / static_cast<double>(options.samples);
-    trace_eye_path_head(
-        scene, image, options.max_scatterings, source,
-        [&](const Vertex& v, const Vec3& to_eye, const Rgb& throughput, int finite) {
-            if (finite == 1 || options.at_d1)
-                (finite == 0 ? out.first : out.second).emplace_back(v.point.p, v.point.ng, to_eye, throughput * share);
-        });
+    trace_eye_path_head(scene, image, options.max_scatterings, source,
+                        [&](const Vertex& v, const Vec3& to_eye, const Rgb& throughput, const EyePast& past) {
+                            if (past.finite == 1 || options.at_d1)
+                                (past.finite == 0 ? out.first : out.second)
+                                    .emplace_back(v.point.p, v.point.ng, to_eye, throughput * share, past.specular);
+                        });
 }
 
 void append(std::vector<Photon>& from, std::vector<Photon>& to) {

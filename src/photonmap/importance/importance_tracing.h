@@ -22,7 +22,7 @@ struct ImportanceTracing {
 
 /// Importons, the adjoint of photons: `power` is RGB throughput from a window of density 1, over the number of eye
 /// paths, so that a sum over importons is an integral over camera sub-paths, times the weight of its pixel; `direction`
-/// leads towards the camera sub-path.
+/// leads towards the camera sub-path; `caustic` are those that specular vertices brought.
 struct Importons {
     std::vector<Photon> first;  ///< at d1
     std::vector<Photon> second; ///< at d2

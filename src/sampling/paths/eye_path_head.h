@@ -5,27 +5,36 @@
 
 namespace keyhole {
 
+/// What lies between the eye and a vertex.
+struct EyePast {
+    int finite = 0;        ///< non-specular vertices
+    bool specular = false; ///< whether any is specular
+};
+
 /// The hooks of trace_eye_path_head().
 template <class Visit> struct EyePathHead : WalkHooks {
     const Visit& visit;
     LastTwoVertices vertices{};
-    int finite = 0;
+    EyePast past{};
 
     Vertex& place() { return vertices.place(); }
     bool arrive(Vertex& v, const WalkRay& ray) const {
         if (v.point.site != Site::surface) return false;
-        if (v.bsdf.traits().finite) visit(v, -ray.w, ray.throughput, finite);
+        if (v.bsdf.traits().finite) visit(v, -ray.w, ray.throughput, past);
         return true;
     }
     bool leave(const Vertex& v, const Continuation& /*next*/, const WalkRay& /*ray*/) {
-        finite += v.specular() ? 0 : 1;
-        return finite < 2;
+        if (v.specular())
+            past.specular = true;
+        else
+            ++past.finite;
+        return past.finite < 2;
     }
 };
 
 /// Traces a path from window point `image` as far as d2, its second non-specular vertex, with at most `max_scatterings`
-/// vertices, and tells visit(vertex, to_eye, throughput, finite) of each vertex on a surface that could be d1 or d2:
-/// `finite` is the number of non-specular ones before it, `throughput` the RGB importance that arrives there (window
+/// vertices, and tells visit(vertex, to_eye, throughput, past) of each vertex on a surface that could be d1 or d2:
+/// `past` is the EyePast before it, `throughput` the RGB importance that arrives there (window
 /// density 1).
 template <class Visit>
 void trace_eye_path_head(const Scene& scene, const Vec2& image, int max_scatterings, SampleSource& source,

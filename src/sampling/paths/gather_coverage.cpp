@@ -38,8 +38,8 @@ std::vector<Place> trace_places(const Scene& scene, int max_scatterings, std::in
         for (std::int64_t i = range.begin; i < range.end; ++i) {
             Rng rng(kSeed, StreamPurpose::coverage, static_cast<std::uint64_t>(i));
             trace_eye_path_head(scene, lattice_image_point(kSeed, StreamPurpose::coverage, i), max_scatterings, rng,
-                                [&](const Vertex& v, const Vec3& to_eye, const Rgb&, int finite) {
-                                    if (finite != 1) return;
+                                [&](const Vertex& v, const Vec3& to_eye, const Rgb&, const EyePast& past) {
+                                    if (past.finite != 1) return;
                                     std::vector<Place>& part = parts[static_cast<std::size_t>(b)];
                                     part.push_back({v.point.p, facing(v.point.ng, to_eye)});
                                     // What lights a lampshade from inside is asked for from outside.
