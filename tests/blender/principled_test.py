@@ -26,7 +26,7 @@ SETTINGS = {
     "without_specular": setting(Specular=0.0),
     "rough": setting(0.05, Roughness=1.0),
     "glossy": setting(Roughness=0.25),
-    "metal": setting(0.08, Metallic=1.0, Roughness=0.4),
+    "metal": setting(0.09, Metallic=1.0, Roughness=0.4),
     "metal_multiple": setting(Metallic=1.0, Roughness=0.4, distribution="MULTI_GGX"),
     "half_metal": setting(Metallic=0.5),
     "specular_tint": setting(0.05, Specular=1.0, Specular_Tint=1.0),
