@@ -274,7 +274,7 @@ def bounds(file):
     """Lowest and highest coordinates of a binary PLY whose vertices are floats, positions first."""
     data = file.read_bytes()
     head, _, body = data.partition(b"end_header\n")
-    vertices, _, rest = head.partition(b"element face")
+    vertices = head.partition(b"element face")[0]
     count, width = int(vertices.split(b"element vertex ")[1].split()[0]), vertices.count(b"property float")
     points = [struct.unpack_from("<3f", body, 4 * width * i) for i in range(count)]
     return [min(p) for p in zip(*points)], [max(p) for p in zip(*points)]

@@ -39,8 +39,7 @@ def glowing(shape, radiance, **profile):
 def brighter_by_spread(spread):
     """Cycles keeps the power of a lamp whose slats leave light within an angle: radiance along the normal grows."""
     half = spread / 2
-    lost = (half - math.sin(half) * math.cos(half)) / math.tan(half)
-    return 1 / (math.sin(half) ** 2 - lost)
+    return 1 / (1 - half / math.tan(half))
 
 
 def area(thing, matrix, rgb, shapes, messages):
