@@ -6,8 +6,6 @@
 namespace keyhole {
 namespace {
 
-constexpr double kDegree = kPi / 180;
-
 double squared_sine(double angle) {
     const double s = std::sin(angle);
     return s * s;
@@ -16,25 +14,20 @@ double squared_sine(double angle) {
 } // namespace
 
 EmissionProfile EmissionProfile::grid(double spread_degrees) {
-    return spread_degrees < 180 ? EmissionProfile(Kind::grid, 0, spread_degrees / 2 * kDegree) : EmissionProfile();
+    return spread_degrees < 180 ? EmissionProfile(Kind::grid, 0, spread_degrees * kPi / 360) : EmissionProfile();
 }
 
 EmissionProfile EmissionProfile::cone(double full_degrees, double edge_degrees) {
-    return {Kind::cone, full_degrees * kDegree, edge_degrees * kDegree};
+    return {Kind::cone, full_degrees * kPi / 180, edge_degrees * kPi / 180};
 }
 
 EmissionProfile::EmissionProfile(Kind kind, double inner, double reach)
     : kind_(kind), tangent_(std::tan(reach)), cos_full_(std::cos(inner)), cos_edge_(std::cos(reach)), reach_(reach),
       projected_(power_within(squared_sine(reach))) {}
 
-double EmissionProfile::value(double cosine) const {
-    if (kind_ == Kind::lambertian) return 1;
+double EmissionProfile::through_grid(double cosine) const {
     if (cosine <= cos_edge_) return 0;
-    if (kind_ == Kind::grid)
-        return std::max(0.0, 1 - std::sqrt(std::max(0.0, 1 - cosine * cosine)) / (cosine * tangent_));
-    if (cosine >= cos_full_) return 1;
-    const double t = (cosine - cos_edge_) / (cos_full_ - cos_edge_);
-    return t * t * (3 - 2 * t);
+    return std::max(0.0, 1 - std::sqrt(std::max(0.0, 1 - cosine * cosine)) / (cosine * tangent_));
 }
 
 double EmissionProfile::power_within(double sine2) const {

@@ -5,6 +5,14 @@
 
 namespace keyhole {
 
+/// How a spot fades: 1 from the cosine `full` on, smoothstep of it down to 0 at `edge`.
+inline double spot_falloff(double cosine, double full, double edge) {
+    if (cosine >= full) return 1;
+    if (cosine <= edge) return 0;
+    const double t = (cosine - edge) / (full - edge);
+    return t * t * (3 - 2 * t);
+}
+
 /// Radiance by the angle from the normal, over that along it. Immutable.
 class EmissionProfile {
   public:
@@ -17,7 +25,10 @@ class EmissionProfile {
     static EmissionProfile cone(double full_degrees, double edge_degrees);
 
     /// For the cosine of an angle below 90 degrees.
-    double value(double cosine) const;
+    double value(double cosine) const {
+        if (kind_ == Kind::lambertian) return 1;
+        return kind_ == Kind::grid ? through_grid(cosine) : spot_falloff(cosine, cos_full_, cos_edge_);
+    }
     /// Integral of value() times the cosine over the directions of one side [sr]: pi of a Lambertian surface.
     double projected_solid_angle() const { return projected_; }
     /// Share of the power that leaves within an angle with that sine squared.
@@ -31,6 +42,7 @@ class EmissionProfile {
     enum class Kind { lambertian, grid, cone };
     EmissionProfile(Kind kind, double inner, double reach);
 
+    double through_grid(double cosine) const;
     /// Power within an angle, over radiance along the normal and area.
     double power_within(double sine2) const;
 

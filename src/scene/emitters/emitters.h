@@ -14,8 +14,7 @@
 namespace keyhole {
 
 /// Emission from the surface of `shape`, whose `emission` is set; points are uniform by area, directions follow the
-/// power. Of an invisible
-/// light no ray finds any. `shape` must outlive the emitter; `index` is its place in the scene.
+/// power. Of an invisible light no ray finds any. `shape` must outlive the emitter; `index` is its place in the scene.
 /// @throws InputError for a shape without area.
 std::unique_ptr<Emitter> make_area_emitter(const Shape& shape, std::uint32_t index);
 

@@ -1,6 +1,7 @@
 #include "scene/emitters/emitters.h"
 
 #include "scene/emitters/at_a_point.h"
+#include "scene/emitters/emission_profile.h"
 
 #include "core/error.h"
 #include "scene/load/properties.h"
@@ -56,13 +57,7 @@ class SpotEmitter final : public EmitterAtAPoint {
     const char* kind() const override { return "spot"; }
 
   private:
-    double falloff(const Vec3& w) const {
-        const double cosine = parameters_.axis.dot(w);
-        if (cosine >= cos_full_) return 1;
-        if (cosine <= cos_edge_) return 0;
-        const double t = (cosine - cos_edge_) / (cos_full_ - cos_edge_);
-        return t * t * (3 - 2 * t);
-    }
+    double falloff(const Vec3& w) const { return spot_falloff(parameters_.axis.dot(w), cos_full_, cos_edge_); }
 
     SpotParameters parameters_;
     Frame frame_;
