@@ -72,6 +72,9 @@ namespace methods {
 /// Names of the methods that `is` holds for, separated by commas.
 std::string names_of(bool Method::*is);
 
+/// Whether the settings ask for what methods that keep photons alone can do.
+bool asks_for_photons(const Settings& settings);
+
 /// The method that the settings name, without render()'s care for renders that are stopped before they have a picture.
 /// @throws Interrupted, and InputError as render()
 RenderResult render_by_method(const RenderTask& task);

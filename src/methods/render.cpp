@@ -14,10 +14,9 @@ namespace keyhole {
 
 namespace {
 
-/// Photons that are saved, read or weighed by pixels leave no choice but that between samplers of photons.
+/// Photons that are asked for or read leave no choice but that between samplers of photons.
 bool may_choose(const Settings& s) {
-    return s.method == &methods::automatic && s.save_map.empty() && s.load_map.empty() && !s.equalise &&
-           s.plan != Plan::all;
+    return s.method == &methods::automatic && s.load_map.empty() && !asks_for_photons(s);
 }
 
 /// By trials of a known amount of work. @param choice receives the choice in words.

@@ -31,6 +31,8 @@ std::string names_of(bool Method::*is) {
     return fmt::format("{}", fmt::join(names, ", "));
 }
 
+bool asks_for_photons(const Settings& s) { return !s.save_map.empty() || s.equalise || s.plan == Plan::all; }
+
 RenderResult render_by_method(const RenderTask& task) {
     const Method& method = *task.settings.method;
     RenderResult result = method.render(task);

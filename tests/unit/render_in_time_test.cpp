@@ -5,12 +5,16 @@
 #include "methods/choice/experience.h"
 #include "methods/choice/render_in_time.h"
 #include "methods/method.h"
+#include "scene/emitters/emitters.h"
 #include "support/sanitizers.h"
+#include "support/scratch_directory.h"
 #include "support/test_scenes.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 
 namespace keyhole {
 namespace {
@@ -85,6 +89,46 @@ TEST_P(RenderInTime, IsAsBrightAsTheScene) {
     EXPECT_EQ(scene->camera().window().width, window.width);
     EXPECT_EQ(result.settings.seed, s.seed);
     EXPECT_TRUE(std::ranges::any_of(result.stats.stages, [](const auto& s) { return s.stage == &stages::trials; }));
+}
+
+/// A ball under an even sky: photons are no match for paths.
+std::unique_ptr<Scene> ball_outdoors() {
+    test::SceneMaker m;
+    return m.rectangle({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}, make_diffuse(Rgb(0.3)))
+        .sphere({0, 0.5f, 0}, 0.5f, make_diffuse(Rgb(0.5)))
+        .emitter(make_constant_environment(Rgb(1.0)))
+        .camera({0, 1, 3}, {0, 0.5f, 0}, 45)
+        .window(32, 24)
+        .build();
+}
+
+RenderResult render_by_auto(Scene& scene, const Settings& s, double seconds) {
+    StopToken stop;
+    stop.set_cpu_limit(cpu_seconds() + seconds);
+    RunContext context;
+    context.stop = &stop;
+    return render_in_time(scene, s, {}, context);
+}
+
+TEST(AutoInTime, ChoosesAMethodThatKeepsPhotonsWhereTheyAreToBeSaved) {
+    const auto scene = ball_outdoors();
+    EXPECT_FALSE(method_named(render_by_auto(*scene, {}, test::kSlowdown).stats.method).keeps_photons);
+    const ScratchDirectory directory;
+    Settings s;
+    s.save_map = directory.path("map.photons");
+    const RenderResult result = render_by_auto(*scene, s, 2 * test::kSlowdown);
+    EXPECT_TRUE(method_named(result.stats.method).keeps_photons) << result.stats.method;
+    EXPECT_TRUE(std::filesystem::exists(s.save_map));
+}
+
+TEST(AutoInTime, SaysWhenThereIsNoTimeForPhotonsThatWereToBeSaved) {
+    const auto scene = ball_outdoors();
+    const ScratchDirectory directory;
+    Settings s;
+    s.save_map = directory.path("map.photons");
+    const RenderResult result = render_by_auto(*scene, s, 0.001);
+    EXPECT_FALSE(std::filesystem::exists(s.save_map));
+    EXPECT_THAT(result.stats.warnings, testing::Contains(testing::HasSubstr("no photons were saved")));
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, RenderInTime, testing::Values("auto", "mps", "mlt", "pssmlt"),

@@ -290,7 +290,7 @@ std::vector<TriedMethod> try_methods(const TrialContext& c, double most) {
     std::vector<TriedMethod> tried;
     for (const Method* method : all_methods()) {
         const double part = method->trial.share * budget;
-        if (part == 0) continue;
+        if (part == 0 || (asks_for_photons(c.settings) && !method->keeps_photons)) continue;
         const double spent = start - c.context.stop->seconds_left();
         if (c.context.stopped() || spent + part > budget) break;
         if (method->keeps_photons && !plan(c, std::min(kPlan * start, most))) continue;

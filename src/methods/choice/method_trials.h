@@ -55,9 +55,9 @@ struct TrialContext {
 /// empty: then it is too slow for the time. The scene's window is what it was afterwards.
 std::optional<TrialCost> try_cost(const TrialContext& c, const Method& method, double seconds, double most);
 
-/// Trials of all methods that can show the scene, the cheapest first, for as long as a part of the time goes: at most
-/// 13 % of it, less where there is much, and `most` [s]. The best is first. Empty if there is time for none. No picture
-/// of a trial counts in the end, so that nothing that follows from them can bias what does.
+/// Trials of all methods that can do what the settings ask for, the cheapest first, for as long as a part of the time
+/// goes: at most 13 % of it, less where there is much, and `most` [s]. The best is first. Empty if there is time for
+/// none. No picture of a trial counts in the end, so that nothing that follows from them can bias what does.
 std::vector<TriedMethod> try_methods(const TrialContext& c, double most = std::numeric_limits<double>::infinity());
 
 /// The same for a render without a time: for the work that light tracing by importance would take with these settings.

@@ -311,7 +311,10 @@ RenderResult render_in_time(Scene& scene, const Settings& settings, const std::s
     set_window_margin(scene, settings);
     Settings s = settings;
     if (!given.contains("brightness_error")) s.brightness_error = 0; // stage one gets its part of the time, no more
-    return RenderInTime{scene, s, given, context, user_paths, share}.run();
+    RenderResult result = RenderInTime{scene, s, given, context, user_paths, share}.run();
+    if (!s.save_map.empty() && result.stats.photon_bytes == 0)
+        result.stats.warnings.emplace_back("no photons were saved: there was too little time for them");
+    return result;
 }
 
 } // namespace keyhole
