@@ -8,7 +8,6 @@
 #include "methods/photons/photon_report.h"
 #include "methods/photons/photon_sampler.h"
 #include "methods/photons/plan.h"
-#include "methods/photons/trials/sampler_trial.h"
 #include "methods/sample_report.h"
 #include "session/passes.h"
 #include "session/pixel_sampling.h"
@@ -20,22 +19,7 @@
 namespace keyhole {
 namespace {
 
-constexpr Stage kPlanning{"plan"}, kTrialOfSamplers{"trial of samplers"}, kPixelBrightness{"brightness of pixels"},
-    kReport{"error of photons and pixels"};
-
-/// What `auto` stands for in this scene where photons are asked for; says so.
-const Method& choose_method(const SamplerContext& c, RenderStats& stats, const RunContext& context) {
-    const StageClock clock(stats, kTrialOfSamplers);
-    const SamplerTrial trial = try_samplers(c, context);
-    const Method& method = trial.best();
-    const double better = std::min(trial.emission, trial.metropolis);
-    stats.remarks.push_back(
-        std::isfinite(better)
-            ? fmt::format("method {} chosen: for the same error ipm would need {:.2g} times the work, mps {:.2g} times",
-                          method.name, trial.emission / better, trial.metropolis / better)
-            : "method ipm chosen: no light that photon maps would hold was found in a trial");
-    return method;
-}
+constexpr Stage kPlanning{"plan"}, kPixelBrightness{"brightness of pixels"}, kReport{"error of photons and pixels"};
 
 /// Where no light is that photon maps would hold.
 class NoPhotons final : public PhotonSampler {
@@ -45,16 +29,10 @@ class NoPhotons final : public PhotonSampler {
     }
 };
 
-std::unique_ptr<PhotonSampler> make_sampler(const SamplerContext& c, const RenderPlan& plan, RenderStats& stats,
-                                            const RunContext& context) {
+std::unique_ptr<PhotonSampler> make_sampler(const SamplerContext& c, const RenderPlan& plan) {
     if (!c.settings.load_map.empty()) return make_file_sampler(c);
     if (!plan.photons) return std::make_unique<NoPhotons>();
-    SamplerContext unwatched = c;
-    unwatched.observer = nullptr;
-    const Method& method =
-        c.settings.method == &methods::automatic ? choose_method(unwatched, stats, context) : *c.settings.method;
-    stats.method = method.name;
-    return method.make_sampler(c);
+    return c.settings.method->make_sampler(c);
 }
 
 /// The weights of pixels, where the user asked for them and something can follow them.
@@ -204,7 +182,7 @@ RenderResult render_photons(const RenderTask& task) {
     c.weight = weight ? &*weight : nullptr;
     c.shares = &findings.shares;
     c.observer = observer;
-    const auto sampler = make_sampler(c, plan, stats, deciding);
+    const auto sampler = make_sampler(c, plan);
     Work work(settings, scene.camera().window(), AccumulationBuffer::Parts::film, share, settings.spp,
               Work::PassStart::costly);
     Passes passes(c, plan, *sampler, work, task, stats);

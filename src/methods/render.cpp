@@ -14,15 +14,17 @@ namespace keyhole {
 
 namespace {
 
-/// Photons that are asked for or read leave no choice but that between samplers of photons.
-bool may_choose(const Settings& s) {
-    return s.method == &methods::automatic && s.load_map.empty() && !asks_for_photons(s);
-}
+/// Photons that are read leave no choice.
+bool may_choose(const Settings& s) { return s.method == &methods::automatic && s.load_map.empty(); }
 
 /// By trials of a known amount of work. @param choice receives the choice in words.
 Settings choose(const TrialContext& c, std::string& choice) {
     const std::vector<TriedMethod> tried = try_methods_by_work(c);
-    if (tried.empty()) return c.settings;
+    if (tried.empty()) { // none is done with the window without leaving holes in it
+        Settings s = c.settings;
+        s.method = &methods::ipm;
+        return s;
+    }
     c.findings.forget_coverage();
     choice = describe_choice(tried);
     if (c.findings.plan && !c.findings.plan->photons)

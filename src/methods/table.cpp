@@ -31,7 +31,9 @@ std::string names_of(bool Method::*is) {
     return fmt::format("{}", fmt::join(names, ", "));
 }
 
-bool asks_for_photons(const Settings& s) { return !s.save_map.empty() || s.equalise || s.plan == Plan::all; }
+bool can_do(const Settings& s, const Method& method) {
+    return method.keeps_photons || (s.save_map.empty() && !s.equalise && s.plan != Plan::all);
+}
 
 RenderResult render_by_method(const RenderTask& task) {
     const Method& method = *task.settings.method;

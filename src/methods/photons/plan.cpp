@@ -3,10 +3,7 @@
 #include "core/percent.h"
 #include "methods/method.h"
 #include "methods/photons/find_coverage.h"
-#include "methods/photons/trials/sampler_trial.h"
-
-#include <algorithm>
-#include <cmath>
+#include "methods/photons/trials/light_trial.h"
 
 namespace keyhole {
 namespace {
@@ -19,9 +16,6 @@ PlanItem plan_photons(const SamplerContext& c, const SceneSurvey& survey, const 
     if (survey.stored() > 0)
         return {name, true, percent(survey.stored() / survey.total()) + " of the light that is seen would be in them"};
     // What paths from the eye meet by chance only may be easy to find from both ends, or from the light.
-    const SamplerTrial trial = try_samplers(c, run);
-    if (std::isfinite(std::min(trial.emission, trial.metropolis)))
-        return {name, true, "paths from the light find what paths from the eye didn't"};
     if (may_be_lit(c, run)) return {name, true, "light comes near what the eye sees, and may find a way there"};
     return {name, false, "no indirect light reaches the eye: neither paths from the eye nor from the light found any"};
 }

@@ -5,7 +5,6 @@
 #include "methods/photons/chain_importance.h"
 #include "methods/photons/learn_light_paths.h"
 #include "methods/photons/radii.h"
-#include "methods/photons/trials/trial_measures.h"
 #include "photonmap/importance/importance_tracing.h"
 #include "photonmap/power/technique_weights.h"
 #include "sampling/guidance/guided_light.h"
@@ -15,6 +14,7 @@
 #include "session/passes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <ranges>
@@ -22,6 +22,26 @@
 
 namespace keyhole {
 namespace {
+
+constexpr int kCellsOfTrial = 4; ///< along each axis
+constexpr std::size_t kPartsOfTrial = std::size_t{kCellsOfTrial} * kCellsOfTrial * kCellsOfTrial;
+using Shares = std::array<double, kPartsOfTrial>;
+
+/// The part that a point lies in: equal cells of the scene's bounding box.
+std::size_t part_of_scene(const Scene& scene, const Vec3& p) {
+    std::size_t index = 0;
+    for (int k = 0; k < 3; ++k) {
+        const float extent = scene.upper()[k] - scene.lower()[k];
+        const float x = extent > 0 ? (p[k] - scene.lower()[k]) / extent : 0.0f;
+        const int cell = std::clamp(static_cast<int>(x * kCellsOfTrial), 0, kCellsOfTrial - 1);
+        index = index * kCellsOfTrial + static_cast<std::size_t>(cell);
+    }
+    return index;
+}
+
+/// What a mutation does besides tracing rays, measuring paths in the main, costs as much as several rays of light
+/// tracing.
+constexpr double kMutationRay = 3;
 
 constexpr std::int64_t kImportons = 10'000, kSamples = 4096, kPaths = 8192, kLearning = 2048, kChains = 64;
 constexpr std::int64_t kStepsOfChain = 64;      // of a chain
