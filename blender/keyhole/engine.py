@@ -13,6 +13,7 @@ from .preferences import program
 from .process import Run
 
 POLL = 0.1  # seconds
+PAUSE = 100  # times as long as a picture takes to be shown before the next: the render needs the time
 
 
 class KeyholeEngine(bpy.types.RenderEngine):
@@ -66,7 +67,7 @@ class KeyholeEngine(bpy.types.RenderEngine):
 
     def follow(self, run, live, layer, seconds, shown):
         """Until the program has ended: progress, pictures, cancelling."""
-        start, told = time.monotonic(), None
+        start, told, next_picture = time.monotonic(), None, 0.0
         while run.running():
             if self.test_break():
                 run.cancel()
@@ -77,9 +78,10 @@ class KeyholeEngine(bpy.types.RenderEngine):
                 told = news
                 self.update_progress(share or 0)
                 self.update_stats("Keyhole", line)
-            picture = live.take()
-            if picture is not None:
+            begin = time.monotonic()
+            if begin >= next_picture and (picture := live.take()) is not None:
                 passes.put_picture(self, layer, picture, shown)
+                next_picture = begin + PAUSE * (time.monotonic() - begin)
             time.sleep(POLL)
 
     def finish(self, run, scene, layer, output, shown):
