@@ -59,4 +59,28 @@ class LatticeSource final : public SampleSource {
     std::size_t dimension_ = 0;
 };
 
+/// Numbers for several samples of emitters at one place, which share out the unit cube: those of sample j are those of
+/// sample 0, j steps of a Kronecker sequence on. They take four numbers of the source, however many samples there are.
+class SharedNumbers final : public SampleSource {
+  public:
+    explicit SharedNumbers(SampleSource& rest) : rest_(rest) { rest.fill(first_); }
+    void begin(std::uint32_t sample) {
+        sample_ = sample;
+        dimension_ = 0;
+    }
+    double next() override {
+        if (dimension_ == first_.size()) return rest_.next();
+        const std::size_t d = dimension_++;
+        return kronecker(first_[d], sample_, kAlpha[d]);
+    }
+
+  private:
+    // The choice of an emitter, of a part of it, and a point there.
+    static constexpr std::array<double, 4> kAlpha{0.4142135623730950, 0.7320508075688772, kR2[0], kR2[1]};
+    std::array<double, kAlpha.size()> first_{};
+    SampleSource& rest_;
+    std::uint32_t sample_ = 0;
+    std::size_t dimension_ = 0;
+};
+
 } // namespace keyhole

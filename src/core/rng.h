@@ -65,6 +65,7 @@ enum class StreamPurpose : std::uint64_t {
     masks,
     sampling_density,
     lobe_techniques,
+    each_emitter,
 };
 
 /// PCG32 (O'Neill 2014). One for each chain and each pixel, never for each thread, so that a picture does not

@@ -2,44 +2,12 @@
 
 #include "core/kronecker.h"
 
-#include <array>
-
 namespace keyhole {
-namespace {
-
-/// Numbers for samples that share out the unit cube: the first ones of sample j are those of sample 0, j steps of a
-/// Kronecker sequence on.
-class SharedNumbers final : public SampleSource {
-  public:
-    explicit SharedNumbers(SampleSource& rest) : rest_(rest) {
-        for (double& u : first_) u = rest.next();
-    }
-    void begin(int sample) {
-        sample_ = sample;
-        dimension_ = 0;
-    }
-    double next() override {
-        if (dimension_ == first_.size()) return rest_.next();
-        const std::size_t d = dimension_++;
-        return kronecker(first_[d], sample_, kAlpha[d]);
-    }
-
-  private:
-    // The choice of a light, and a point on it.
-    static constexpr std::array<double, 3> kAlpha{0.4142135623730950, kR2[0], kR2[1]};
-    std::array<double, kAlpha.size()> first_{};
-    SampleSource& rest_;
-    int sample_ = 0;
-    std::size_t dimension_ = 0;
-};
-
-} // namespace
-
 Rgb next_event(const Scene& scene, const Vertex& v, const Vec3& back, int samples, SampleSource& source) {
     SharedNumbers numbers(source);
     Rgb sum(0.0);
     for (int i = 0; i < samples; ++i) {
-        numbers.begin(i);
+        numbers.begin(static_cast<std::uint32_t>(i));
         const auto light = sample_direct_light(scene, v, back, numbers);
         if (light) sum += light->value * straight_transmittance(scene, v.point, light->x0.point);
     }

@@ -1,5 +1,6 @@
 #include "methods/learned_direct_light_scope.h"
 
+#include "methods/each_emitter.h"
 #include "methods/method.h"
 #include "sampling/guidance/learned/look_for_direct_light.h"
 #include "session/stage_clock.h"
@@ -44,16 +45,26 @@ DirectLightLearning learning(const Settings& settings, const ImageWindow& window
 LearnedDirectLightScope::LearnedDirectLightScope(Scene& scene, const Settings& settings, const RunContext& context)
     : scene_(scene) {
     scene.set_direct_light(nullptr);
-    if (!settings.method->asks_for_direct_light || !has_choice_of_direct_light(scene)) return;
+    scene.set_takes_each_emitter(false);
+    if (!settings.method->asks_for_direct_light || !(scene.emitters().size() > 1 || has_choice_of_direct_light(scene)))
+        return;
     const StageClock clock(own_, kLearning);
-    learned_ = learn_direct_light(scene, learning(settings, scene.camera().window(), context), context);
+    learn(settings, context);
+    if (!each_emitter_pays(scene, settings, context)) return;
+    scene.set_takes_each_emitter(true);
+    own_.remarks.emplace_back("direct light: paths have a sample of each emitter at what is seen first");
+}
+
+void LearnedDirectLightScope::learn(const Settings& settings, const RunContext& context) {
+    if (!has_choice_of_direct_light(scene_)) return;
+    learned_ = learn_direct_light(scene_, learning(settings, scene_.camera().window(), context), context);
     if (!learned_) return;
     own_.values["direct_light_second_moment"] = learned_->second_moment_ratio();
     own_.values["direct_light_bytes"] = static_cast<double>(learned_->bytes());
     own_.remarks.push_back(fmt::format("direct light: learned in {} cells, {:.2g} times fewer shadow rays for the same "
                                        "second moment",
                                        learned_->cells(), 1 / learned_->second_moment_ratio()));
-    scene.set_direct_light(learned_);
+    scene_.set_direct_light(learned_);
 }
 
 } // namespace keyhole

@@ -10,13 +10,17 @@
 namespace keyhole {
 
 /// While it lives, the scene draws points on emitters as has been learned, if there is a choice to be learned, the
-/// method that the settings name asks for direct light, and learning promises to pay.
+/// method that the settings name asks for direct light, and learning promises to pay; and paths have a sample of each
+/// emitter at what is seen first where that pays (each_emitter_pays()).
 class LearnedDirectLightScope {
   public:
     /// With a limit to the time a small share of it goes into learning, else of the samples of pixels.
     /// @throws Interrupted
     LearnedDirectLightScope(Scene& scene, const Settings& settings, const RunContext& context);
-    ~LearnedDirectLightScope() { scene_.set_direct_light(nullptr); }
+    ~LearnedDirectLightScope() {
+        scene_.set_direct_light(nullptr);
+        scene_.set_takes_each_emitter(false);
+    }
     LearnedDirectLightScope(const LearnedDirectLightScope&) = delete;
     LearnedDirectLightScope& operator=(const LearnedDirectLightScope&) = delete;
 
@@ -27,6 +31,8 @@ class LearnedDirectLightScope {
     void report(RenderStats& stats) const { stats.begin_with(own_); }
 
   private:
+    void learn(const Settings& settings, const RunContext& context);
+
     Scene& scene_;
     RenderStats own_;
     std::shared_ptr<const LearnedDirectLight> learned_;

@@ -11,6 +11,7 @@ namespace keyhole {
 /// Collects one path-traced sample. Paths of `elsewhere` are left out, and no walk goes on that could make only these.
 struct PixelSink {
     using LooksThroughGlass = std::true_type;
+    using TakesEachEmitter = std::true_type;
 
     const PathSet* elsewhere = nullptr; ///< what chains sample; null: nothing
     PixelSample pixel{};

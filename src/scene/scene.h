@@ -70,6 +70,10 @@ class Scene {
     const DirectLightSampler* direct_light() const { return direct_light_.get(); }
     /// Not while anybody renders.
     void set_direct_light(std::shared_ptr<const DirectLightSampler> sampler) { direct_light_ = std::move(sampler); }
+
+    /// Whether what is seen first has a sample of each emitter, and not of one that is chosen.
+    bool takes_each_emitter() const { return takes_each_emitter_; }
+    void set_takes_each_emitter(bool each) { takes_each_emitter_ = each; }
     const std::vector<Shape>& shapes() const { return shapes_; }
     /// Union of what the materials may do.
     const BsdfTraits& traits() const { return traits_; }
@@ -103,6 +107,7 @@ class Scene {
     EmitterDistribution emitter_distribution_;
     LightTree light_tree_;
     std::shared_ptr<const DirectLightSampler> direct_light_;
+    bool takes_each_emitter_ = false;
     std::vector<std::uint32_t> emitter_of_shape_;
     std::uint32_t environment_ = SurfacePoint::kNone; // index of the emitter that misses meet
     Camera camera_;

@@ -31,12 +31,24 @@ double light_tree_pdf(const Scene& scene, const SurfacePoint& at, const SurfaceP
 std::optional<DirectLight> sample_direct_light(const Scene& scene, const Vertex& v, const Vec3& back,
                                                SampleSource& source);
 
+/// Whether there are so few emitters that each of them can have a sample of its own: which one is chosen is most of the
+/// noise of what is seen first.
+bool has_few_emitters(const Scene& scene);
+
+/// Draws a point on the emitter as sample_direct_light() does where it has chosen that one. An emitter that would
+/// hardly be chosen is left out at random, and weighs more otherwise.
+std::optional<DirectLight> sample_light_of(const Scene& scene, std::uint32_t emitter, const Vertex& v, const Vec3& back,
+                                           SampleSource& source);
+/// Over the density of sample_direct_light(), that of sample_light_of(): the number of its samples that is expected.
+double light_of_each_over_one(const Scene& scene, const Vertex& v, std::uint32_t emitter);
+
 /// Density with which sample_direct_light() draws the emitter point `x0` for `v`, in the coordinates of x0. The chains'
 /// own choice goes by power alone: emitter_point_pdf().
 double direct_light_pdf(const Scene& scene, const Vertex& v, const SurfacePoint& x0);
 
 /// Radiance that `hit` emits back along `w`, weighted against sample_direct_light() at the finite vertex `v`, whose
-/// BSDF drew `w` with density `pdf` per solid angle.
-Rgb emission_with_mis(const Scene& scene, const Vertex& v, const Vertex& hit, const Vec3& w, double pdf);
+/// BSDF drew `w` with density `pdf` per solid angle; `of_each`: against sample_light_of().
+Rgb emission_with_mis(const Scene& scene, const Vertex& v, const Vertex& hit, const Vec3& w, double pdf,
+                      bool of_each = false);
 
 } // namespace keyhole

@@ -1,6 +1,7 @@
 // Path tracing with next-event estimation: the reference method, and stage one.
 #pragma once
 
+#include "core/kronecker.h"
 #include "sampling/paths/direct_light.h"
 #include "sampling/paths/measure.h"
 #include "sampling/paths/random_walk.h"
@@ -64,9 +65,12 @@ template <class Sink> struct PathTracing : WalkHooks {
     std::size_t last_finite = 0; ///< 0: there is none
     double pdf = 0;              ///< with which that drew the direction in which the walk went on
     StraightLight view{};        ///< from there on
+    bool of_each = kTakesEachEmitter && scene.takes_each_emitter();
 
     /// Whether emitters are sampled through clear glass, too. Sinks that want the vertices of the path must do without.
     static constexpr bool kLooksThroughGlass = requires { typename Sink::LooksThroughGlass; };
+    /// Whether the first surface may have a sample of each emitter.
+    static constexpr bool kTakesEachEmitter = requires { typename Sink::TakesEachEmitter; };
 
     Vertex& place() { return walk.emplace_back(); }
     int scatterings() const { return static_cast<int>(walk.size()) - 2; } // before the last vertex
@@ -102,13 +106,21 @@ template <class Sink> struct PathTracing : WalkHooks {
         walk.pop_back();
         const bool sampled =
             last_finite > 0 && (last_finite + 1 == walk.size() || (kLooksThroughGlass && is_straight(x0, ray.w)));
-        const Rgb emitted = sampled ? emission_with_mis(scene, walk[last_finite], x0, ray.w, pdf)
-                                    : scene.emitter(x0.point.emitter).radiance(x0.point, -ray.w);
+        const Rgb emitted =
+            sampled ? emission_with_mis(scene, walk[last_finite], x0, ray.w, pdf, last_finite == walk.d1 && of_each)
+                    : scene.emitter(x0.point.emitter).radiance(x0.point, -ray.w);
         if (!is_black(emitted)) sink.contribution(walk, x0, ray.throughput * emitted, walk.light_class(x0));
         walk.push_back(x0);
     }
     void add_direct_light(const Vertex& v, const WalkRay& ray) {
-        const auto light = sample_direct_light(scene, v, -ray.w, source);
+        if (walk.finite > 0 || !of_each) return add_light(v, ray, sample_direct_light(scene, v, -ray.w, source));
+        SharedNumbers numbers(source);
+        for (std::uint32_t i = 0; i < scene.emitters().size(); ++i) {
+            numbers.begin(i);
+            add_light(v, ray, sample_light_of(scene, i, v, -ray.w, numbers));
+        }
+    }
+    void add_light(const Vertex& v, const WalkRay& ray, const std::optional<DirectLight>& light) {
         if (!light) return;
         const int most_faces = kLooksThroughGlass ? max_scatterings - scatterings() - 1 : 0;
         const Rgb clear = straight_transmittance(scene, v.point, light->x0.point, most_faces);
@@ -127,7 +139,8 @@ template <class Sink> struct PathTracing : WalkHooks {
 ///     the walk.
 ///   sink.contribution(walk, x0, value, light_class): `value` is an estimate of radiance at the image point, MIS weight
 ///     included, by the path that joins the walk to emitter vertex x0; of a sink with a type LooksThroughGlass
-///     perhaps by way of vertices in clear glass that are left out.
+///     perhaps by way of vertices in clear glass that are left out. One with a type TakesEachEmitter is told of several
+///     emitters at the first surface that is not specular.
 template <class Sink>
 void trace_path(const Scene& scene, const Vec2& image, int max_scatterings, SampleSource& source, Sink& sink) {
     EyeWalk walk;

@@ -136,15 +136,38 @@ EmitterPoint LearnedDirectLight::sample(const SurfacePoint& at, SampleSource& so
         const double v = (u - cell.plain) / (1 - cell.plain);
         const auto above = std::ranges::upper_bound(cell.shares, v, {}, &Share::up_to);
         const Share& share = above != cell.shares.end() ? *above : cell.shares.back();
-        if (share.directions.empty()) {
-            drawn.point = point_of(share.emitter, scene_->emitter(share.emitter).sample_point(source).point);
-        } else {
-            const auto [u0, u1] = source.take<2>();
-            drawn.point = point_of(share.emitter, infinite_point(share.directions.sample(at.p, u0, u1)));
-        }
+        drawn.point = point_by_share(&share, at, share.emitter, source);
         drawn.pdf = pdf(cell, at, drawn.point, share.by_tree);
     }
     return drawn;
+}
+
+SurfacePoint LearnedDirectLight::point_by_share(const Share* share, const SurfacePoint& at, std::uint32_t emitter,
+                                                SampleSource& source) const {
+    if (share == nullptr || share->directions.empty())
+        return point_of(emitter, scene_->emitter(emitter).sample_point(source).point);
+    const auto [u0, u1] = source.take<2>();
+    return point_of(emitter, infinite_point(share->directions.sample(at.p, u0, u1)));
+}
+
+LearnedDirectLight::Chances LearnedDirectLight::chances_of(const Cell& cell, const SurfacePoint& at,
+                                                           std::uint32_t emitter) const {
+    const Share* share = cell.share_of(emitter);
+    return {cell.plain * by_tree(cell, at, emitter), share != nullptr ? (1 - cell.plain) * share->probability : 0};
+}
+
+double LearnedDirectLight::probability(const SurfacePoint& at, std::uint32_t emitter) const {
+    const Chances chances = chances_of(cell_of(at), at, emitter);
+    return chances.plain + chances.known;
+}
+
+EmitterPoint LearnedDirectLight::sample_of(const SurfacePoint& at, std::uint32_t emitter, double u,
+                                           SampleSource& source) const {
+    const Cell& cell = cell_of(at);
+    const Chances chances = chances_of(cell, at, emitter);
+    const bool plain = u * (chances.plain + chances.known) < chances.plain;
+    const SurfacePoint x0 = point_by_share(plain ? nullptr : cell.share_of(emitter), at, emitter, source);
+    return {x0, pdf(cell, at, x0, by_tree(cell, at, emitter))};
 }
 
 double LearnedDirectLight::by_tree(const Cell& cell, const SurfacePoint& at, std::uint32_t emitter) const {

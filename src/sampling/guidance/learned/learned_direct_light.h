@@ -44,6 +44,9 @@ class LearnedDirectLight final : public DirectLightSampler {
 
     EmitterPoint sample(const SurfacePoint& at, SampleSource& source) const override;
     double pdf(const SurfacePoint& at, const SurfacePoint& x0) const override;
+    double probability(const SurfacePoint& at, std::uint32_t emitter) const override;
+    EmitterPoint sample_of(const SurfacePoint& at, std::uint32_t emitter, double u,
+                           SampleSource& source) const override;
     /// The same for a sample that was found.
     double pdf(const FoundLight& found) const;
 
@@ -84,6 +87,14 @@ class LearnedDirectLight final : public DirectLightSampler {
     static const SurfacePoint& asked_for(const Cell& cell, const SurfacePoint& at) {
         return cell.plain < 1 ? cell.middle : at;
     }
+    /// Of an emitter's probability in a cell, what is by the light tree, and what is by its share.
+    struct Chances {
+        double plain, known;
+    };
+    Chances chances_of(const Cell& cell, const SurfacePoint& at, std::uint32_t emitter) const;
+    /// A point on an emitter as its share has it; null: there is none, and the emitter draws it.
+    SurfacePoint point_by_share(const Share* share, const SurfacePoint& at, std::uint32_t emitter,
+                                SampleSource& source) const;
     /// With which the light tree chooses an emitter in a cell.
     double by_tree(const Cell& cell, const SurfacePoint& at, std::uint32_t emitter) const;
     double pdf(const Cell& cell, const SurfacePoint& at, const SurfacePoint& x0, double by_tree) const;

@@ -1,0 +1,100 @@
+#include "methods/each_emitter.h"
+
+#include "core/kronecker.h"
+#include "core/shared_work.h"
+#include "methods/pixel_sink.h"
+#include "scene/ray_counter.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+namespace keyhole {
+namespace {
+
+constexpr std::int64_t kPlaces = 256; // of the picture
+constexpr int kSamples = 8;           // of each of two halves, as a pixel has them
+/// Renders shorter than this [s], or with fewer samples, have no time for a trial.
+constexpr double kLeastSeconds = 4, kLeastSamples = 32 * 4 * kSamples * kPlaces;
+/// What noise and work together have to come down to. The trial is a small one.
+constexpr double kPays = 0.75;
+/// Of places, those with the largest noise, which are left out: seldom samples of what is bright.
+constexpr double kTrimmed = 0.03;
+/// Of a square, the square of the picture's mean that is added: what is dark has little say.
+constexpr double kDark = 0.01;
+/// What a path costs besides its rays, in what it costs by rays.
+constexpr double kBesidesRays = 1;
+
+bool is_too_short(const Settings& settings, const ImageWindow& window, const RunContext& context) {
+    const double left = context.seconds_left();
+    if (std::isfinite(left)) return left < kLeastSeconds;
+    return window.size() * static_cast<double>(settings.spp) < kLeastSamples;
+}
+
+struct Trial {
+    std::array<std::vector<double>, 2> halves; ///< luminance of places
+    double rays = 0;
+};
+
+Trial try_emitters(Scene& scene, const Settings& settings, bool each, const RunContext& context) {
+    scene.set_takes_each_emitter(each);
+    Trial trial;
+    for (auto& half : trial.halves) half.assign(static_cast<std::size_t>(kPlaces), 0);
+    const ImageWindow& window = scene.camera().window();
+    const auto depth = static_cast<int>(settings.max_depth);
+    const auto seed = static_cast<std::uint64_t>(settings.seed);
+    const std::uint64_t before = rays_traced();
+    parallel_blocks(2 * kPlaces, 16, context, [&](std::int64_t i) {
+        const auto place = static_cast<double>(i / 2);
+        const Vec2 pixel(static_cast<float>(window.width * kronecker(0.5, place, kR2[0])),
+                         static_cast<float>(window.height * kronecker(0.5, place, kR2[1])));
+        const auto stream = static_cast<std::uint64_t>(i);
+        double sum = 0;
+        for (std::uint64_t n = 0; n < kSamples; ++n) {
+            LatticeSource source(Rng(seed, StreamPurpose::each_emitter, stream), n,
+                                 Rng(seed, StreamPurpose::each_emitter, ~(kSamples * stream + n)));
+            source.take<2>(); // the place in a pixel
+            PixelSink sink{};
+            trace_path(scene, window.to_window(pixel), depth, source, sink);
+            const double l = luminance(sink.pixel.direct + sink.pixel.indirect + sink.pixel.caustic);
+            if (std::isfinite(l)) sum += l / kSamples;
+        }
+        trial.halves[static_cast<std::size_t>(i % 2)][static_cast<std::size_t>(i / 2)] = sum;
+    });
+    trial.rays = static_cast<double>(rays_traced() - before);
+    return trial;
+}
+
+/// Of places, relative to their `picture`, whose mean is `typical`; the mean of most.
+double noise(const Trial& trial, const std::vector<double>& picture, double typical) {
+    std::vector<double> squares;
+    for (std::size_t i = 0; i < picture.size(); ++i) {
+        const double difference = trial.halves[0][i] - trial.halves[1][i];
+        squares.push_back(difference * difference / (picture[i] * picture[i] + kDark * typical * typical));
+    }
+    std::ranges::sort(squares);
+    const auto most = static_cast<std::ptrdiff_t>((1 - kTrimmed) * static_cast<double>(squares.size()));
+    return std::accumulate(squares.begin(), squares.begin() + most, 0.0);
+}
+
+} // namespace
+
+bool each_emitter_pays(Scene& scene, const Settings& settings, const RunContext& context) {
+    if (!has_few_emitters(scene) || is_too_short(settings, scene.camera().window(), context)) return false;
+    const bool before = scene.takes_each_emitter();
+    const Trial one = try_emitters(scene, settings, false, context),
+                each = try_emitters(scene, settings, true, context);
+    scene.set_takes_each_emitter(before);
+    std::vector<double> picture(static_cast<std::size_t>(kPlaces), 0);
+    for (const Trial* trial : {&one, &each})
+        for (const auto& half : trial->halves)
+            std::ranges::transform(picture, half, picture.begin(), [](double sum, double l) { return sum + l / 4; });
+    const double typical = std::accumulate(picture.begin(), picture.end(), 0.0) / static_cast<double>(kPlaces);
+    if (!(typical > 0)) return false;
+    const double work = (kBesidesRays + each.rays / one.rays) / (kBesidesRays + 1);
+    return work * noise(each, picture, typical) < kPays * noise(one, picture, typical);
+}
+
+} // namespace keyhole
