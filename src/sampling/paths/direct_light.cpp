@@ -6,7 +6,7 @@ namespace keyhole {
 namespace {
 
 /// Emitters that have a sample each.
-constexpr std::size_t kFewEmitters = 4;
+constexpr std::size_t kMostOfEach = 4;
 /// An emitter has its sample for sure where its probability is above that of equal chances divided by this.
 constexpr double kSurelySampled = 2;
 
@@ -58,7 +58,7 @@ std::optional<DirectLight> sample_direct_light(const Scene& scene, const Vertex&
 }
 
 bool has_few_emitters(const Scene& scene) {
-    return scene.emitters().size() > 1 && scene.emitters().size() <= kFewEmitters &&
+    return scene.emitters().size() > 1 && scene.emitters().size() <= kMostOfEach &&
            !scene.emitter_distribution().empty();
 }
 
