@@ -1,6 +1,6 @@
 #include "methods/photons/trials/light_trial.h"
 
-#include "core/parallel.h"
+#include "core/shared_work.h"
 #include "methods/photons/radii.h"
 #include "photonmap/importance/importance_guide.h"
 #include "photonmap/importance/importance_tracing.h"
