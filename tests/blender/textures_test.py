@@ -20,13 +20,13 @@ def picture(size=256, packed=False, space="sRGB"):
     return image
 
 
-def textured(setup, kind="ShaderNodeTexImage", socket="Color", shader="ShaderNodeBsdfDiffuse"):
+def textured(setup, kind="ShaderNodeTexImage", socket="Color", shader="ShaderNodeBsdfDiffuse", within=0.03):
     nodes = Nodes("Textured")
     bsdf = nodes.add(shader, True)
     texture = nodes.add(kind, bsdf.inputs[socket])
     setup(nodes, texture)
     scene_with(nodes.material, on_floor=True)
-    return agree()
+    return agree(within)
 
 
 @test
@@ -48,7 +48,7 @@ def mapping_node():
         mapping = nodes.add("ShaderNodeMapping", texture.inputs["Vector"], Location=(0.1, 0.3, 0), Scale=(2, 3, 1),
                             Rotation=(0, 0, 0.5))
         nodes.tree.links.new(nodes.add("ShaderNodeTexCoord").outputs["UV"], mapping.inputs["Vector"])
-    return textured(setup)
+    return textured(setup, within=0.035)  # edges of sRGB pixels, seen large: 2.9 % is no noise
 
 
 @test
