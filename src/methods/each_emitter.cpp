@@ -15,9 +15,9 @@ namespace keyhole {
 namespace {
 
 constexpr std::int64_t kPlaces = 256; // of the picture
-constexpr int kSamples = 8;           // of each of two halves, as a pixel has them
+constexpr std::int64_t kSamples = 8;  // of each of two halves, as a pixel has them
 /// Renders shorter than this [s], or with fewer samples, have no time for a trial.
-constexpr double kLeastSeconds = 4, kLeastSamples = 32 * 4 * kSamples * kPlaces;
+constexpr double kLeastSeconds = 4, kLeastSamples = 32.0 * 4 * kSamples * kPlaces;
 /// What noise and work together have to come down to. The trial is a small one.
 constexpr double kPays = 0.75;
 /// Of places, those with the largest noise, which are left out: seldom samples of what is bright.
@@ -47,21 +47,23 @@ Trial try_emitters(Scene& scene, const Settings& settings, bool each, const RunC
     const auto seed = static_cast<std::uint64_t>(settings.seed);
     const std::uint64_t before = rays_traced();
     parallel_blocks(2 * kPlaces, 16, context, [&](std::int64_t i) {
-        const auto place = static_cast<double>(i / 2);
+        const std::int64_t number = i / 2;
+        const auto place = static_cast<double>(number);
         const Vec2 pixel(static_cast<float>(window.width * kronecker(0.5, place, kR2[0])),
                          static_cast<float>(window.height * kronecker(0.5, place, kR2[1])));
         const auto stream = static_cast<std::uint64_t>(i);
         double sum = 0;
-        for (std::uint64_t n = 0; n < kSamples; ++n) {
-            LatticeSource source(Rng(seed, StreamPurpose::each_emitter, stream), n,
-                                 Rng(seed, StreamPurpose::each_emitter, ~(kSamples * stream + n)));
+        for (std::uint64_t n = 0; n < static_cast<std::uint64_t>(kSamples); ++n) {
+            LatticeSource source(
+                Rng(seed, StreamPurpose::each_emitter, stream), n,
+                Rng(seed, StreamPurpose::each_emitter, ~(static_cast<std::uint64_t>(kSamples) * stream + n)));
             source.take<2>(); // the place in a pixel
             PixelSink sink{};
             trace_path(scene, window.to_window(pixel), depth, source, sink);
             const double l = luminance(sink.pixel.direct + sink.pixel.indirect + sink.pixel.caustic);
-            if (std::isfinite(l)) sum += l / kSamples;
+            if (std::isfinite(l)) sum += l / static_cast<double>(kSamples);
         }
-        trial.halves[static_cast<std::size_t>(i % 2)][static_cast<std::size_t>(i / 2)] = sum;
+        trial.halves[static_cast<std::size_t>(i % 2)][static_cast<std::size_t>(number)] = sum;
     });
     trial.rays = static_cast<double>(rays_traced() - before);
     return trial;
