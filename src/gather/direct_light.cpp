@@ -3,6 +3,7 @@
 #include "core/kronecker.h"
 
 namespace keyhole {
+
 Rgb next_event(const Scene& scene, const Vertex& v, const Vec3& back, int samples, SampleSource& source) {
     SharedNumbers numbers(source);
     Rgb sum(0.0);

@@ -33,6 +33,19 @@ bool is_too_short(const Settings& settings, const ImageWindow& window, const Run
     return window.size() * static_cast<double>(settings.spp) < kLeastSamples;
 }
 
+/// Puts the scene's way of taking emitters back.
+class Restore {
+  public:
+    explicit Restore(Scene& scene) : scene_(scene), before_(scene.takes_each_emitter()) {}
+    ~Restore() { scene_.set_takes_each_emitter(before_); }
+    Restore(const Restore&) = delete;
+    Restore& operator=(const Restore&) = delete;
+
+  private:
+    Scene& scene_;
+    bool before_;
+};
+
 struct Trial {
     std::array<std::vector<double>, 2> halves; ///< luminance of places
     double rays = 0;
@@ -69,7 +82,7 @@ Trial try_emitters(Scene& scene, const Settings& settings, bool each, const RunC
     return trial;
 }
 
-/// Of places, relative to their `picture`, whose mean is `typical`; the mean of most.
+/// Of places, relative to their `picture`, whose mean is `typical`; the sum of most.
 double noise(const Trial& trial, const std::vector<double>& picture, double typical) {
     std::vector<double> squares;
     for (std::size_t i = 0; i < picture.size(); ++i) {
@@ -85,10 +98,9 @@ double noise(const Trial& trial, const std::vector<double>& picture, double typi
 
 bool each_emitter_pays(Scene& scene, const Settings& settings, const RunContext& context) {
     if (!has_few_emitters(scene) || is_too_short(settings, scene.camera().window(), context)) return false;
-    const bool before = scene.takes_each_emitter();
+    const Restore restore(scene);
     const Trial one = try_emitters(scene, settings, false, context),
                 each = try_emitters(scene, settings, true, context);
-    scene.set_takes_each_emitter(before);
     std::vector<double> picture(static_cast<std::size_t>(kPlaces), 0);
     for (const Trial* trial : {&one, &each})
         for (const auto& half : trial->halves)

@@ -3,6 +3,7 @@
 #include "methods/each_emitter.h"
 #include "methods/method.h"
 #include "sampling/guidance/learned/look_for_direct_light.h"
+#include "sampling/paths/direct_light.h"
 #include "session/stage_clock.h"
 
 #include <fmt/format.h>
@@ -42,15 +43,20 @@ DirectLightLearning learning(const Settings& settings, const ImageWindow& window
 
 } // namespace
 
-LearnedDirectLightScope::LearnedDirectLightScope(Scene& scene, const Settings& settings, const RunContext& context)
-    : scene_(scene) {
+LearnedDirectLightScope::LearnedDirectLightScope(Scene& scene) : scene_(scene) {
     scene.set_direct_light(nullptr);
     scene.set_takes_each_emitter(false);
-    if (!settings.method->asks_for_direct_light || !(scene.emitters().size() > 1 || has_choice_of_direct_light(scene)))
-        return;
+}
+
+LearnedDirectLightScope::LearnedDirectLightScope(Scene& scene, const Settings& settings, const RunContext& context)
+    : LearnedDirectLightScope(scene) {
+    // Methods with photon maps trace no such paths; what `auto` stands for may.
+    const bool traces_paths = settings.method == &methods::automatic || !settings.method->keeps_photons;
+    const bool may_take_each = traces_paths && has_few_emitters(scene);
+    if (!settings.method->asks_for_direct_light || !(may_take_each || has_choice_of_direct_light(scene))) return;
     const StageClock clock(own_, kLearning);
     learn(settings, context);
-    if (!each_emitter_pays(scene, settings, context)) return;
+    if (!may_take_each || !each_emitter_pays(scene, settings, context)) return;
     scene.set_takes_each_emitter(true);
     own_.remarks.emplace_back("direct light: paths have a sample of each emitter at what is seen first");
 }

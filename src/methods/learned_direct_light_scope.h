@@ -31,6 +31,8 @@ class LearnedDirectLightScope {
     void report(RenderStats& stats) const { stats.begin_with(own_); }
 
   private:
+    /// Nothing is learned. Once this is done the destructor clears the scene, whatever is thrown later.
+    explicit LearnedDirectLightScope(Scene& scene);
     void learn(const Settings& settings, const RunContext& context);
 
     Scene& scene_;

@@ -1,4 +1,5 @@
 // A sample of each emitter at what is seen first: the same light as by one that is chosen, and where it pays.
+#include "core/shared_work.h"
 #include "core/statistics.h"
 #include "methods/each_emitter.h"
 #include "methods/method.h"
@@ -139,6 +140,19 @@ TEST(EachEmitter, PaysWhereTheChoiceIsTheNoise) {
     s.spp = 256;
     EXPECT_FALSE(each_emitter_pays(*test::diffuse_box(), s, {})) << "one lamp";
     EXPECT_FALSE(each_emitter_pays(*lamps(make_black()), s, {})) << "nothing is seen";
+}
+
+TEST(EachEmitter, TrialLeavesTheSceneAsItWasWhereItIsStopped) {
+    const auto scene = lamps_over_metal();
+    scene->set_takes_each_emitter(true);
+    Settings s;
+    s.spp = 1024;
+    StopToken stop;
+    stop.request();
+    RunContext context;
+    context.stop = &stop;
+    EXPECT_THROW(each_emitter_pays(*scene, s, context), Interrupted);
+    EXPECT_TRUE(scene->takes_each_emitter());
 }
 
 } // namespace

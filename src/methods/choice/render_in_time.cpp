@@ -312,7 +312,7 @@ RenderResult render_in_time(Scene& scene, const Settings& settings, const std::s
     Settings s = settings;
     if (!given.contains("brightness_error")) s.brightness_error = 0; // stage one gets its part of the time, no more
     RenderResult result = RenderInTime{scene, s, given, context, user_paths, share}.run();
-    if (!s.save_map.empty() && result.stats.photon_bytes == 0)
+    if (!s.save_map.empty() && !method_named(result.stats.method).keeps_photons)
         result.stats.warnings.emplace_back("no photons were saved: there was too little time for them");
     return result;
 }

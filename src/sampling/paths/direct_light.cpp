@@ -20,6 +20,11 @@ double expected_samples(const Scene& scene, double probability) {
     return std::min(1.0, kSurelySampled * static_cast<double>(scene.emitters().size()) * probability);
 }
 
+/// Over the density of sample_direct_light(), that of sample_light_of().
+double density_of_each_over_one(const Scene& scene, double probability) {
+    return probability > 0 ? expected_samples(scene, probability) / probability : 0;
+}
+
 /// What `v` scatters of the light of an emitter point that was drawn for it.
 std::optional<DirectLight> scattered(const Scene& scene, const EmitterPoint& drawn, const Vertex& v, const Vec3& back) {
     const auto& [light, light_pdf] = drawn;
@@ -75,13 +80,8 @@ std::optional<DirectLight> sample_light_of(const Scene& scene, std::uint32_t emi
         drawn.point.emitter = emitter;
         drawn.pdf *= probability;
     }
-    drawn.pdf *= expected / probability;
+    drawn.pdf *= density_of_each_over_one(scene, probability);
     return scattered(scene, drawn, v, back);
-}
-
-double light_of_each_over_one(const Scene& scene, const Vertex& v, std::uint32_t emitter) {
-    const double probability = emitter_probability(scene, v.point, emitter);
-    return probability > 0 ? expected_samples(scene, probability) / probability : 0;
 }
 
 double direct_light_pdf(const Scene& scene, const Vertex& v, const SurfacePoint& x0) {
@@ -95,7 +95,7 @@ Rgb emission_with_mis(const Scene& scene, const Vertex& v, const Vertex& hit, co
     const Rgb emitted = scene.emitter(hit.point.emitter).radiance(hit.point, -w);
     if (is_black(emitted)) return emitted;
     double by_light = direct_light_pdf(scene, v, hit.point);
-    if (of_each) by_light *= light_of_each_over_one(scene, v, hit.point.emitter);
+    if (of_each) by_light *= density_of_each_over_one(scene, emitter_probability(scene, v.point, hit.point.emitter));
     return emitted * mis_power(solid_angle_to_area(pdf, v.point, hit.point), by_light);
 }
 

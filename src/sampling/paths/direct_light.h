@@ -39,8 +39,6 @@ bool has_few_emitters(const Scene& scene);
 /// hardly be chosen is left out at random, and weighs more otherwise.
 std::optional<DirectLight> sample_light_of(const Scene& scene, std::uint32_t emitter, const Vertex& v, const Vec3& back,
                                            SampleSource& source);
-/// Over the density of sample_direct_light(), that of sample_light_of(): the number of its samples that is expected.
-double light_of_each_over_one(const Scene& scene, const Vertex& v, std::uint32_t emitter);
 
 /// Density with which sample_direct_light() draws the emitter point `x0` for `v`, in the coordinates of x0. The chains'
 /// own choice goes by power alone: emitter_point_pdf().

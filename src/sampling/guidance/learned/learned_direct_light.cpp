@@ -150,24 +150,19 @@ SurfacePoint LearnedDirectLight::point_by_share(const Share* share, const Surfac
     return point_of(emitter, infinite_point(share->directions.sample(at.p, u0, u1)));
 }
 
-LearnedDirectLight::Chances LearnedDirectLight::chances_of(const Cell& cell, const SurfacePoint& at,
-                                                           std::uint32_t emitter) const {
-    const Share* share = cell.share_of(emitter);
-    return {cell.plain * by_tree(cell, at, emitter), share != nullptr ? (1 - cell.plain) * share->probability : 0};
-}
-
 double LearnedDirectLight::probability(const SurfacePoint& at, std::uint32_t emitter) const {
-    const Chances chances = chances_of(cell_of(at), at, emitter);
-    return chances.plain + chances.known;
+    const Cell& cell = cell_of(at);
+    return probability(cell, cell.share_of(emitter), by_tree(cell, at, emitter));
 }
 
 EmitterPoint LearnedDirectLight::sample_of(const SurfacePoint& at, std::uint32_t emitter, double u,
                                            SampleSource& source) const {
     const Cell& cell = cell_of(at);
-    const Chances chances = chances_of(cell, at, emitter);
-    const bool plain = u * (chances.plain + chances.known) < chances.plain;
-    const SurfacePoint x0 = point_by_share(plain ? nullptr : cell.share_of(emitter), at, emitter, source);
-    return {x0, pdf(cell, at, x0, by_tree(cell, at, emitter))};
+    const Share* share = cell.share_of(emitter);
+    const double tree = by_tree(cell, at, emitter);
+    const bool plain = u * probability(cell, share, tree) < cell.plain * tree;
+    const SurfacePoint x0 = point_by_share(plain ? nullptr : share, at, emitter, source);
+    return {x0, pdf(cell, at, x0, tree)};
 }
 
 double LearnedDirectLight::by_tree(const Cell& cell, const SurfacePoint& at, std::uint32_t emitter) const {
@@ -198,7 +193,7 @@ std::vector<EmitterChance> LearnedDirectLight::chances(const SurfacePoint& at, i
     const Cell& cell = cell_of(at);
     std::vector<EmitterChance> list;
     for (const Share& share : cell.shares) {
-        EmitterChance chance{share.emitter, cell.plain * share.by_tree + (1 - cell.plain) * share.probability};
+        EmitterChance chance{share.emitter, probability(cell, &share, share.by_tree)};
         for (int i = 0; i < directions && !share.directions.empty(); ++i)
             chance.towards.push_back(share.directions.sample(at.p, (i + 0.5) / directions, kronecker(0.5, i, kR2[1])));
         list.push_back(std::move(chance));

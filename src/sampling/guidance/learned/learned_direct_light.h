@@ -87,11 +87,10 @@ class LearnedDirectLight final : public DirectLightSampler {
     static const SurfacePoint& asked_for(const Cell& cell, const SurfacePoint& at) {
         return cell.plain < 1 ? cell.middle : at;
     }
-    /// Of an emitter's probability in a cell, what is by the light tree, and what is by its share.
-    struct Chances {
-        double plain, known;
-    };
-    Chances chances_of(const Cell& cell, const SurfacePoint& at, std::uint32_t emitter) const;
+    /// Of an emitter that has `share` in the cell, or none, where the light tree chooses it with `by_tree`.
+    static double probability(const Cell& cell, const Share* share, double by_tree) {
+        return cell.plain * by_tree + (share != nullptr ? (1 - cell.plain) * share->probability : 0);
+    }
     /// A point on an emitter as its share has it; null: there is none, and the emitter draws it.
     SurfacePoint point_by_share(const Share* share, const SurfacePoint& at, std::uint32_t emitter,
                                 SampleSource& source) const;
