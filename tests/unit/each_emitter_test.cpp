@@ -82,6 +82,24 @@ TEST(EachEmitter, BringsTheLightOfOneThatIsChosen) {
     EXPECT_GT(worst(one, each, 1.05), test::most_errors(kAcross * kDown)) << "a twentieth has to show";
 }
 
+/// A sun that no ray sees: the lamp, which has all of the light, is chosen once in a hundred times and more.
+std::unique_ptr<Scene> lamp_beside_a_hidden_sun() {
+    test::SceneMaker m;
+    return m.room({-1, 0, -1}, {1, 2, 3}, make_diffuse(Rgb(0.6)))
+        .rectangle({-0.3f, 1.99f, 0}, {0.6f, 0, 0}, {0, 0, 0.6f}, make_black(), Rgb(3.0))
+        .emitter(make_distant_emitter({0, -1, 0}, Rgb(30.0)))
+        .camera({0, 1, 2.9f}, {0, 0.6f, 0}, 60)
+        .window(32, 24)
+        .build();
+}
+
+TEST(EachEmitter, BringsItWhereItWouldHardlyBeChosen) {
+    const auto scene = lamp_beside_a_hidden_sun();
+    const auto one = blocks(*scene, false, 300'000, 6), each = blocks(*scene, true, 300'000, 7);
+    EXPECT_LT(worst(one, each), test::most_errors(kAcross * kDown));
+    EXPECT_GT(worst(one, each, 1.3), test::most_errors(kAcross * kDown)) << "three tenths have to show";
+}
+
 TEST(EachEmitter, BringsItWhereDirectLightWasLearned) {
     const auto scene = room_with_sky_and_sun();
     scene->set_direct_light(learn_direct_light(*scene, {.paths = 16'384}, {}));
