@@ -24,12 +24,20 @@ constexpr double kLamps = 0.1;
 constexpr double kRareSamples = 0.05;
 // Of the brightness that another method finds in most of the picture, what shows that a method finds its light.
 constexpr double kFindsLight = 0.5;
-constexpr double kStandardErrors = 2; // that two means differ by before light is missing
+// Standard errors of both that two means differ by before light is missing: there are many parts to differ in.
+constexpr double kStandardErrors = 3;
+constexpr double kMedianOfNormal = 0.6745; // of the amounts of normal deviates, over their standard deviation
 
 using Values = std::vector<double>;
 
 double mean(const Values& v) {
     return v.empty() ? 0 : std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size());
+}
+
+double median(Values v) {
+    const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
+    std::ranges::nth_element(v, middle);
+    return *middle;
 }
 
 Values without_largest(Values v, double share) {
@@ -133,10 +141,16 @@ struct Parts {
         for (double& v : squares.values) v *= v;
         const int across = std::max(1, d.width / kParts), down = std::max(1, d.height / kParts);
         const Grid of_pixels = squares.blocks(across, down), of_parts = part_means(d);
-        // By pixels, or, where neighbours err alike, by the parts themselves.
+        // By pixels, or, where neighbours err alike, by the parts themselves: two renders may agree by chance in one of
+        // them, but hardly in half of them.
+        Values relative;
         for (std::size_t i = 0; i < errors.values.size(); ++i)
-            errors.values[i] =
-                std::sqrt(std::max(of_pixels.values[i] / (across * down), of_parts.values[i] * of_parts.values[i]) / 4);
+            relative.push_back(means.values[i] > 0 ? std::abs(of_parts.values[i]) / means.values[i] : 0);
+        const double typical = median(relative) / kMedianOfNormal;
+        for (std::size_t i = 0; i < errors.values.size(); ++i) {
+            const double common = std::max(std::abs(of_parts.values[i]), typical * means.values[i]);
+            errors.values[i] = std::sqrt(std::max(of_pixels.values[i] / (across * down), common * common) / 4);
+        }
     }
     static Grid part_means(const Grid& g) {
         return g.blocks(std::max(1, g.width / kParts), std::max(1, g.height / kParts));
