@@ -1,6 +1,7 @@
 // Scenes where methods fail: every method is right there, or says that it isn't. docs/failures.md has the matrix.
 #include "core/error.h"
 #include "core/statistics.h"
+#include "methods/method.h"
 #include "methods/render.h"
 #include "scene/load/load.h"
 #include "scene/load/yaml/user_path_file.h"
@@ -29,8 +30,6 @@ constexpr Case kCases[] = {
     {"scale_small", 0.6654},   {"scale_large", 0.6654}, {"inside_glass", 1.746}, {"no_light", 0, 0},
     {"unseen_light", 0, 0},    {"black", 0.2388},       {"all_mirror", 0.2761},  {"one_pixel", 0.632}};
 
-constexpr const char* kMethods[] = {"mps", "ipm", "pm", "pss", "path", "bdpt", "mlt", "pssmlt", "mmlt", "rjmlt"};
-
 double mean_luminance(const Picture& picture) {
     const Image& beauty = picture.layers.at("beauty");
     double sum = 0;
@@ -58,7 +57,8 @@ class FailureGallery : public testing::TestWithParam<Case> {};
 TEST_P(FailureGallery, EveryMethodIsRightOrSaysThatItIsNot) {
     const Case& c = GetParam();
     std::string line = fmt::format("| {} |", c.scene);
-    for (const char* method : kMethods) {
+    for (const Method* each : all_methods()) {
+        const std::string_view method = each->name;
         const RenderResult result = make(c, {fmt::format("method={}", method)});
         const double mean = mean_luminance(result.picture);
         ASSERT_TRUE(std::isfinite(mean)) << method;

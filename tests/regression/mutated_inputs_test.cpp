@@ -4,9 +4,11 @@
 #include "cli/program.h"
 #include "core/settings.h"
 #include "film/files/exr.h"
+#include "methods/method.h"
 #include "support/mutation.h"
 #include "support/scratch_directory.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -108,8 +110,6 @@ class Inputs {
             kind = "scenes";
             scene(dice);
         }
-        constexpr std::array<const char*, 9> kMethods{"mps", "ipm",    "pm",   "path", "bdpt",
-                                                      "mlt", "pssmlt", "mmlt", "rjmlt"};
         std::vector<std::string> arguments{"keyhole",
                                            "render",
                                            scratch_.path(scene_),
@@ -123,9 +123,9 @@ class Inputs {
                                            "--resolution",
                                            "8x6"};
         for (const std::string& setting :
-             {std::string("method=") + kMethods[dice.below(kMethods.size())], std::string("spp=1"),
-              std::string("passes=1"), std::string("mutations=300"), std::string("light_paths=300"),
-              std::string("chains=10"), std::string("brightness_samples=1000"), std::string("importons=1000"),
+             {fmt::format("method={}", dice.of(all_methods())->name), std::string("spp=1"), std::string("passes=1"),
+              std::string("mutations=300"), std::string("light_paths=300"), std::string("chains=10"),
+              std::string("brightness_samples=1000"), std::string("importons=1000"),
               std::string("photon_memory=512KiB"), std::string("cache_rays=16")})
             arguments.insert(arguments.end(), {"-D", setting});
         arguments.insert(arguments.end(), more.begin(), more.end());
