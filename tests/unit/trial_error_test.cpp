@@ -53,23 +53,36 @@ TEST(TrialErrors, MissLightThatTwoRendersAgreeNotToFind) {
     EXPECT_GT(e[1].missing, 0.1) << "half of the picture lacks two thirds of its light";
 }
 
-/// Chains err alike in large parts of a picture, and two renders agree in one of them by chance: that the part is
-/// brighter there tells nothing of what others miss.
-TEST(TrialErrors, MissNothingWhereOneMethodAgreesWithItselfByChance) {
+/// Two renders that err alike in each of the large parts of a picture, by a relative standard deviation of 0.05.
+TrialPictures wrong_by_parts(std::uint64_t seed) {
+    TrialPictures m = halves(0, 0, 1, seed);
+    Rng rng(seed, StreamPurpose::test, 1);
+    for (Image* image : {&m.first, &m.second})
+        for (int part = 0; part < kTrialParts; ++part) {
+            const auto brighter = static_cast<float>(1 + 0.05 * normal(rng));
+            for (int y = 0; y < kHeight / 4; ++y)
+                for (int x = 0; x < kWidth / 4; ++x)
+                    *image->at(part % 4 * kWidth / 4 + x, part / 4 * kHeight / 4 + y) *= brighter;
+        }
+    return m;
+}
+
+/// Of the first of two methods, the mean over many trials.
+double mean_missing(double found) {
+    constexpr int kTrials = 100;
     double missing = 0;
-    for (std::uint64_t seed = 0; seed < 100; ++seed) {
-        std::vector<TrialPictures> methods{halves(0.1, 0, 1, seed), halves(0, 0, 1, seed)};
-        Rng rng(seed, StreamPurpose::test, 1);
-        for (Image* image : {&methods[1].first, &methods[1].second})
-            for (int part = 0; part < kTrialParts; ++part) {
-                const auto brighter = static_cast<float>(1 + 0.05 * normal(rng));
-                for (int y = 0; y < kHeight / 4; ++y)
-                    for (int x = 0; x < kWidth / 4; ++x)
-                        *image->at(part % 4 * kWidth / 4 + x, part / 4 * kHeight / 4 + y) *= brighter;
-            }
+    for (std::uint64_t seed = 0; seed < kTrials; ++seed) {
+        const std::vector<TrialPictures> methods{halves(0.1, 0, found, seed), wrong_by_parts(seed)};
         missing += trial_errors(methods)[0].missing;
     }
-    EXPECT_LT(missing / 100, 5e-7);
+    return missing / kTrials;
+}
+
+/// Chains err alike in large parts of a picture, and two renders agree in one of them by chance: that the part is
+/// brighter there tells nothing of what others miss. What is missing shows all the same.
+TEST(TrialErrors, MissNothingWhereOneMethodAgreesWithItselfByChance) {
+    EXPECT_LT(mean_missing(1), 5e-7);
+    EXPECT_GT(mean_missing(0.7), 0.01) << "half of the picture lacks three tenths of its light";
 }
 
 /// Both renders of the one are black but for a few samples, and so agree: errors are not relative to that.

@@ -146,9 +146,9 @@ struct Parts {
         Values relative;
         for (std::size_t i = 0; i < errors.values.size(); ++i)
             relative.push_back(means.values[i] > 0 ? std::abs(of_parts.values[i]) / means.values[i] : 0);
-        const double typical = median(relative) / kMedianOfNormal;
+        const double usual = median(relative) / kMedianOfNormal;
         for (std::size_t i = 0; i < errors.values.size(); ++i) {
-            const double common = std::max(std::abs(of_parts.values[i]), typical * means.values[i]);
+            const double common = std::max(std::abs(of_parts.values[i]), usual * means.values[i]);
             errors.values[i] = std::sqrt(std::max(of_pixels.values[i] / (across * down), common * common) / 4);
         }
     }
