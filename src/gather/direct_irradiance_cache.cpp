@@ -58,10 +58,9 @@ DirectIrradianceCache::Entry DirectIrradianceCache::at(const Scene& scene, std::
     return site;
 }
 
-std::optional<Rgb> DirectIrradianceCache::direct(std::uint32_t i, const Vec3& position, float farthest) const {
+std::optional<Rgb> DirectIrradianceCache::direct(std::uint32_t i, const Vec3& position) const {
     const Entry& site = entries_[i];
-    const float reach = std::min(site.reach, farthest);
-    if ((places_[i].position() - position).length2() > reach * reach) return std::nullopt;
+    if ((places_[i].position() - position).length2() > site.reach * site.reach) return std::nullopt;
     return site.direct.decode();
 }
 

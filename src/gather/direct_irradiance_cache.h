@@ -20,8 +20,8 @@ class DirectIrradianceCache {
                           const RunContext& context);
 
     /// Irradiance that emitters bring to `position`, near place i [W/m^2]; none where it may change too fast for
-    /// another place's, or `farthest` [m] and more away from it.
-    std::optional<Rgb> direct(std::uint32_t i, const Vec3& position, float farthest) const;
+    /// another place's.
+    std::optional<Rgb> direct(std::uint32_t i, const Vec3& position) const;
 
     std::size_t bytes() const { return entries_.capacity() * sizeof(Entry); }
     /// Of it, for one place [bytes].

@@ -105,14 +105,14 @@ GatherRays::Arrival GatherRays::trace(const Vertex& from, const Vec3& w, double 
     return walk.arrival;
 }
 
-bool GatherRays::goes_on(const Leg& leg, const std::optional<std::uint32_t>& place, const Vec3& position) const {
+bool GatherRays::goes_on(const Leg& leg, const std::optional<std::uint32_t>& place, const SurfaceRegion& here) const {
     // Where the gather coverage ends, light from beyond it would be lost.
     if (leg.traced_on == kMostTracedOn || maps_.coverage != nullptr) return false;
     // That no photon came near doesn't mean that no light does.
     if (!place) return true;
     // Farther away than its estimate looks, the place is one of other surfaces, as beside a frame on which no photon
     // lies: they may have a hundred times the light.
-    const bool near = maps_.irradiance->is_near(*place, position);
+    const bool near = maps_.irradiance->is_near(*place, here);
     // The estimate is a mean over its radius. Seen from nearer than that, as in corners, or on a surface that is finer,
     // the mean is not good enough.
     const bool seen_from_near = leg.distance < maps_.irradiance->radius(*place);
@@ -130,11 +130,12 @@ Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSou
         const Rgb direct = direct_light(scene_, v, back, 1, source);
         return direct + global(v, back);
     }
-    const auto known = maps_.irradiance->irradiance(v.point, facing(v.point.ng, back));
+    const SurfaceRegion here{v.point.p, facing(v.point.ng, back)};
+    const auto known = maps_.irradiance->irradiance(v.point, here.normal);
     // Photons may be near, but none that this place sees: those of the other side of a wall.
     const auto place = known.known ? std::optional(known.place) : std::nullopt;
     if (!v.bsdf.traits().diffuse) return lobe(v, back, place, leg, source);
-    const bool on = goes_on(leg, place, v.point.p);
+    const bool on = goes_on(leg, place, here);
     const Rgb f = v.bsdf.diffuse_reflectance(back);
     Rgb sum = f * direct(place, v, back, source);
     if (on)
@@ -154,11 +155,10 @@ Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSou
 
 Rgb GatherRays::direct(const std::optional<std::uint32_t>& place, const Vertex& v, const Vec3& back,
                        SampleSource& source) const {
-    if (place && !is_fine(*place)) {
-        const float farthest = kInTheSameLight * maps_.irradiance->radius(*place);
-        if (const auto near = maps_.direct->direct(*place, v.point.p, farthest)) return *near;
-    }
-    return direct_irradiance(scene_, v.point, v.bsdf, facing(v.point.ng, back), 1, source).irradiance;
+    const Vec3 normal = facing(v.point.ng, back);
+    if (place && !is_fine(*place) && maps_.irradiance->is_near(*place, {v.point.p, normal}, kInTheSameLight))
+        if (const auto near = maps_.direct->direct(*place, v.point.p)) return *near;
+    return direct_irradiance(scene_, v.point, v.bsdf, normal, 1, source).irradiance;
 }
 
 Vertex GatherRays::widened(const Vertex& v, const Bsdf& part) const {
@@ -225,9 +225,10 @@ Rgb GatherRays::traced_on(const Vertex& v, const Vec3& back, const std::optional
             next->weight * trace(v, next->w, next->pdf, {0, leg.scatterings + 1, leg.traced_on + 1}, source).indirect;
     if (!place) return sum;
     // Light that specular vertices alone brought here is found by no ray.
-    const bool known = maps_.irradiance->is_near(*place, v.point.p);
+    const Vec3 normal = facing(v.point.ng, back);
+    const bool known = maps_.irradiance->is_near(*place, {v.point.p, normal});
     if (known ? maps_.irradiance->has_caustics(*place) : scene_.traits().delta)
-        sum += photons(Asked::caustics, *place, v, facing(v.point.ng, back), back, source);
+        sum += photons(Asked::caustics, *place, v, normal, back, source);
     return sum;
 }
 
@@ -293,7 +294,7 @@ Rgb GatherRays::global(const Vertex& v, const Vec3& back) const {
 bool GatherRays::may_be_partly_occluded(std::uint32_t place, const SurfaceRegion& region) const {
     const IrradianceMap& map = *maps_.irradiance;
     return map.obstructed(place) ||
-           (!map.is_near(place, region.position, kKnown) && maps_.patches->obstructed(region, map.radius(place)));
+           (!map.is_near(place, region, kKnown) && maps_.patches->obstructed(region, map.radius(place)));
 }
 
 double GatherRays::area_near(std::uint32_t place, const SurfaceRegion& region) const {

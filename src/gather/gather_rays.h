@@ -80,9 +80,9 @@ class GatherRays {
     struct Leg;
     struct Walk;
     Arrival trace(const Vertex& from, const Vec3& w, double pdf, const Leg& start, SampleSource& source) const;
-    /// Whether what the estimate at the place of `position`, if it has one, says of that isn't good enough for a ray
-    /// from `leg.distance` away, so that it has to be traced on.
-    bool goes_on(const Leg& leg, const std::optional<std::uint32_t>& place, const Vec3& position) const;
+    /// Whether what the estimate at the place of the middle of a region, if it has one, says of that isn't good enough
+    /// for a ray from `leg.distance` away, so that it has to be traced on.
+    bool goes_on(const Leg& leg, const std::optional<std::uint32_t>& place, const SurfaceRegion& here) const;
     /// Whether the surface around a place is finer than the estimate there.
     bool is_fine(std::uint32_t place) const;
     /// Radiance towards `back` that `v` reflects by its finite part.

@@ -117,6 +117,63 @@ TEST(GatherRays, DontTakeDirectLightToTheShadowBesideIt) {
     EXPECT_LT(seen_at(0.57f), 0.01 * seen_at(0.48f));
 }
 
+/// Beside a slab lies the floor, lower by less than lookups reach, and in the shadow of a roof. Photons, and with them
+/// places of the map, are on the slab alone.
+class Slab {
+  public:
+    explicit Slab(double radiance) : scene_(make_scene(radiance)), patches_(*scene_) {
+        const Rectangle lit{{0, kHeight, 0}, {0, 0, 1}, {0.45f, 0, 0}};
+        throw_photons(lit, 20'000, rng_, photons_.main_photons);
+        throw_photons(lit, 150, rng_, photons_.pilots); // so few that estimates look as far as they may
+    }
+
+    /// Mean of what rays from straight above find at `x` [W/(m^2 sr)].
+    double seen_at(float x) {
+        const MappedGather gather(*scene_, patches_, photons_, lookups());
+        RunningStats found;
+        for (float z = 0.3f; z < 0.7f; z += 0.02f) found.add(luminance(below(gather, {x, 0.25f, z}, rng_).indirect));
+        return found.mean();
+    }
+
+  private:
+    static constexpr float kHeight = 0.03f; // [m]
+
+    /// `radiance`: of a lamp [W/(m^2 sr)].
+    static std::unique_ptr<Scene> make_scene(double radiance) {
+        SceneDescription d;
+        const Rectangle floor{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}};
+        const Rectangle slab{{0, kHeight, 0}, {0, 0, 1}, {0.45f, 0, 0}};
+        const Rectangle roof{{0.36f, 0.5f, -1}, {0.6f, 0, 0}, {0, 0, 3}}; // its shadow begins at 0.47 m
+        const Rectangle lamp{{0.245f, 1, 0.495f}, {0.01f, 0, 0}, {0, 0, 0.01f}};
+        for (const Rectangle& r : {floor, slab, roof, lamp}) {
+            d.shapes.push_back(shape_of(r));
+            d.shapes.back().material = make_diffuse(Rgb(0.5));
+        }
+        d.shapes[2].material = make_diffuse(Rgb(0.0));
+        d.shapes.back().emission =
+            std::make_unique<SurfaceEmission>(SurfaceEmission{.radiance = Rgb(radiance), .two_sided = true});
+        return std::make_unique<Scene>(std::move(d));
+    }
+
+    std::unique_ptr<Scene> scene_;
+    SurfacePatches patches_;
+    PhotonSet photons_;
+    Rng rng_ = make_rng(8);
+};
+
+TEST(GatherRays, TakeNothingFromASlabBesideThemThatIsHigher) {
+    Slab slab(0);
+    ASSERT_GT(slab.seen_at(0.4f), 0);
+    // A ray that is traced on for the last time takes what it finds.
+    EXPECT_LT(slab.seen_at(0.48f), 0.05 * slab.seen_at(0.4f));
+}
+
+TEST(GatherRays, DontTakeDirectLightFromASlabThatIsHigher) {
+    Slab slab(1e11);
+    ASSERT_GT(slab.seen_at(0.4f), 100 * Slab(0).seen_at(0.4f)) << "direct light is the lesser part";
+    EXPECT_LT(slab.seen_at(0.48f), 0.01 * slab.seen_at(0.4f));
+}
+
 /// From nearer than the estimate looks rays are traced on, and the estimate doesn't count: but no ray that is traced on
 /// finds the light that came here by way of a mirror alone.
 TEST(GatherRays, KeepCausticsWhereTheyAreTracedOn) {

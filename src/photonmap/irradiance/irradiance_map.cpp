@@ -107,7 +107,7 @@ IrradianceMap::Answer IrradianceMap::answer(std::uint32_t place, const SurfaceRe
         const float lift = kLift * (p.position() - region.position).length();
         return in_sight(*scene_, region, lift, p.position());
     };
-    if (may_be_hidden(place, region.position) && !visible(pilots_[place])) {
+    if (may_be_hidden(place, region) && !visible(pilots_[place])) {
         int hidden = 0;
         const auto accept = [&](const Photon& p) {
             const auto i = static_cast<std::uint32_t>(&p - pilots_.photons().data());
@@ -123,15 +123,15 @@ IrradianceMap::Answer IrradianceMap::answer(std::uint32_t place, const SurfaceRe
     return {estimates_[place].irradiance(), true, place};
 }
 
-bool IrradianceMap::may_be_hidden(std::uint32_t place, const Vec3& position) const {
+bool IrradianceMap::may_be_hidden(std::uint32_t place, const SurfaceRegion& region) const {
     if (scene_ == nullptr) return false;
     const Estimate& e = estimates_[place];
-    const float distance2 = (pilots_[place].position() - position).length2();
+    const float d2 = region.distance2(pilots_[place].position());
     float reach2 = e.radius() * e.radius();
     // Nothing is known of what stands beyond the region of the estimate.
-    if (distance2 > reach2) return true;
+    if (d2 > reach2) return true;
     for (unsigned levels = e.obstructed(); levels != 0; levels >>= 1, reach2 /= 4)
-        if (distance2 > reach2 / 4) return (levels & 1) != 0;
+        if (d2 > reach2 / 4) return (levels & 1) != 0;
     return false;
 }
 

@@ -57,10 +57,11 @@ class IrradianceMap {
     /// Whether its light lies on one side of it, as in a crevice whose mouth it reaches: there the estimate is too
     /// bright.
     bool is_one_sided(std::uint32_t i) const { return estimates_[i].is_one_sided(); }
-    /// Whether a position is within that radius of it, times `share`.
-    bool is_near(std::uint32_t i, const Vec3& position, float share = 1) const {
+    /// Whether the middle of a region is within that radius of it, times `share`, as the region measures: the outer
+    /// face of a wall is not near what stands before the inner one.
+    bool is_near(std::uint32_t i, const SurfaceRegion& region, float share = 1) const {
         const float reach = share * radius(i);
-        return (pilots_[i].position() - position).length2() <= reach * reach;
+        return region.distance2(pilots_[i].position()) <= reach * reach;
     }
     /// Whether something may stand there that hides photons in that radius from each other.
     bool obstructed(std::uint32_t i) const { return (estimates_[i].obstructed() & 1) != 0; }
@@ -105,8 +106,8 @@ class IrradianceMap {
     /// The estimate at `place`, or another one where something hides that from the region's middle.
     Answer answer(std::uint32_t place, const SurfaceRegion& region) const;
     SurfaceLookupGrid::Found place_for_cell(const Vec3& middle, const Vec3& normal) const;
-    /// Whether something may stand between place and position.
-    bool may_be_hidden(std::uint32_t place, const Vec3& position) const;
+    /// Whether something may stand between a place and the middle of a region.
+    bool may_be_hidden(std::uint32_t place, const SurfaceRegion& region) const;
     struct Count {
         double photons = 0, effective = 0;
         Count& operator+=(const Count& o) {
