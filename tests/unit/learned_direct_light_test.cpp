@@ -322,5 +322,72 @@ TEST(LearnedDirectLight, FallsBackOnTheLightTreeWhereNothingWasFound) {
     }
 }
 
+/// Lamps 2 m above a street, 4 m apart, each of which shines on the piece below it alone, and two finds of each of the
+/// first `known`.
+class Street {
+  public:
+    static constexpr int kLamps = 64;
+
+    explicit Street(int known) {
+        test::SceneMaker m;
+        for (int i = 0; i < kLamps; ++i)
+            m.rectangle({4.0f * static_cast<float>(i), 2, 0}, {0.1f, 0, 0}, {0, 0, 0.1f}, make_diffuse(Rgb(0.0)),
+                        Rgb(5));
+        scene = m.camera({0, 1, 5}, {0, 0, 0}, 60).window(32, 24).build();
+        Rng rng(12, StreamPurpose::test, 0);
+        for (int i = 0; i < 2 * known; ++i) {
+            const auto lamp = static_cast<std::uint32_t>(i / 2);
+            const SurfacePoint at = below(i / 2, static_cast<float>(i % 2));
+            SurfacePoint x0 = scene->emitter(lamp).sample_point(rng).point;
+            x0.emitter = lamp;
+            points.push_back(x0);
+            const Vec3 w = direction(at, x0);
+            const double choice = scene->light_tree().probability(at, lamp);
+            const double point_pdf = scene->emitter(lamp).point_pdf(x0);
+            found.push_back({.at = {at.p, at.ng},
+                             .emitter = lamp,
+                             .infinite = false,
+                             .towards = w,
+                             .value = 5 * geometry_term(at, x0, w),
+                             .choice = choice,
+                             .point_pdf = point_pdf,
+                             .density = choice * point_pdf});
+        }
+    }
+    static SurfacePoint below(int lamp, float z = 0.5f) {
+        return white_vertex({4.0f * static_cast<float>(lamp), 0, z}, {0, 1, 0}).point;
+    }
+    double by_tree(int at, std::uint32_t lamp) const { return scene->light_tree().probability(below(at), lamp); }
+
+    std::unique_ptr<Scene> scene;
+    std::vector<FoundLight> found;
+    std::vector<SurfacePoint> points; ///< on the lamps, by find
+};
+
+/// With finds along all of the street there is one cell for all lamps, whose middle is far from most.
+TEST(LearnedDirectLight, AsksTheLightTreeForEachPlaceWhereThatPays) {
+    const Street street(Street::kLamps);
+    const LearnedDirectLight learned(*street.scene, street.found);
+    ASSERT_LE(learned.cells(), 2u);
+    for (const int lamp : {0, 20, 63})
+        EXPECT_GT(learned.probability(Street::below(lamp), static_cast<std::uint32_t>(lamp)),
+                  0.3 * street.by_tree(lamp, static_cast<std::uint32_t>(lamp)));
+    for (std::size_t i = 0; i < street.found.size(); ++i) {
+        const SurfacePoint at = Street::below(static_cast<int>(i / 2), static_cast<float>(i % 2));
+        EXPECT_DOUBLE_EQ(learned.pdf(street.found[i]), learned.pdf(at, street.points[i]));
+    }
+}
+
+TEST(LearnedDirectLight, KnowsNothingFarBeyondItsFinds) {
+    Street street(4);
+    const std::vector<FoundLight> few = street.found;
+    while (street.found.size() < 512) street.found.insert(street.found.end(), few.begin(), few.end());
+    const LearnedDirectLight learned(*street.scene, street.found);
+    EXPECT_GT(learned.probability(Street::below(2), 2), 0.01);
+    EXPECT_FALSE(learned.chances(Street::below(1), 0).empty());
+    for (const std::uint32_t lamp : {3, 59, 60})
+        EXPECT_EQ(learned.probability(Street::below(60), lamp), street.by_tree(60, lamp));
+}
+
 } // namespace
 } // namespace keyhole

@@ -15,6 +15,11 @@ namespace {
 constexpr std::size_t kLeastFound = 128;
 /// Shares of the light tree that a cell chooses among.
 constexpr std::array<double, 6> kPlainShares{0.1, 0.2, 0.35, 0.5, 0.75, 1};
+/// Second moment over that of asking the light tree for the middle of the cell, below which it is asked for each place.
+constexpr double kWorthAPlace = 0.8;
+/// How far beyond its finds a cell knows anything, over the diagonal of the box around them. Cells fill all of space,
+/// and a ray through two doors may end ten rooms away, at the light of a lamp that nobody found.
+constexpr float kBeyond = 1;
 
 SurfacePoint point_of(std::uint32_t emitter, SurfacePoint point) {
     point.emitter = emitter;
@@ -34,7 +39,19 @@ SurfacePoint middle_of(std::span<const FoundLight* const> found) {
     return point;
 }
 
+Imath::Box3f known_around(std::span<const FoundLight* const> found) {
+    Imath::Box3f box;
+    for (const FoundLight* f : found) box.extendBy(f->at.p);
+    const Vec3 beyond(kBeyond * box.size().length());
+    return {box.min - beyond, box.max + beyond};
+}
+
 } // namespace
+
+const LearnedDirectLight::Cell& LearnedDirectLight::cell_of(const SurfaceCells::Place& at) const {
+    const Cell& cell = cells_[tree_.cell_of(at)];
+    return cell.known.intersects(at.p) ? cell : unknown_;
+}
 
 const LearnedDirectLight::Share* LearnedDirectLight::Cell::share_of(std::uint32_t emitter) const {
     const auto at = std::ranges::lower_bound(shares, emitter, {}, &Share::emitter);
@@ -86,23 +103,29 @@ LearnedDirectLight::Cell LearnedDirectLight::make_cell(std::span<const FoundLigh
     if (found.size() < kLeastFound) return cell;
     std::vector<const FoundLight*> some, others;
     for (std::size_t i = 0; i < found.size(); ++i) (i % 2 == 0 ? some : others).push_back(found[i]);
-    std::array<double, kPlainShares.size()> moments{};
+    std::array<double, kPlainShares.size()> by_middle{}, by_place{};
     Cell whole;
     whole.shares = make_shares(found);
     cell.middle = middle_of(found);
+    cell.known = known_around(found);
     for (Share& share : whole.shares) share.by_tree = scene_->light_tree().probability(cell.middle, share.emitter);
     for (const auto& [learned, held_out] : {std::pair{&some, &others}, std::pair{&others, &some}}) {
         cell.shares = make_shares(*learned, &whole);
         for (const FoundLight* f : *held_out) {
-            const double by_tree = whole.share_of(f->emitter)->by_tree * f->point_pdf, by_shares = cell.pdf(*f);
-            for (std::size_t k = 0; k < moments.size(); ++k)
-                moments[k] +=
-                    f->value * f->value / f->density / (kPlainShares[k] * by_tree + (1 - kPlainShares[k]) * by_shares);
+            const double middle = whole.share_of(f->emitter)->by_tree * f->point_pdf, place = f->choice * f->point_pdf;
+            const double by_shares = cell.pdf(*f), value2 = f->value * f->value / f->density;
+            for (std::size_t k = 0; k < kPlainShares.size(); ++k) {
+                by_middle[k] += value2 / (kPlainShares[k] * middle + (1 - kPlainShares[k]) * by_shares);
+                by_place[k] += value2 / (kPlainShares[k] * place + (1 - kPlainShares[k]) * by_shares);
+            }
         }
     }
+    cell.at_place = *std::ranges::min_element(by_place) < kWorthAPlace * *std::ranges::min_element(by_middle);
+    const auto& moments = cell.at_place ? by_place : by_middle;
     const auto best = static_cast<std::size_t>(std::ranges::min_element(moments) - moments.begin());
     cell.plain = kPlainShares[best];
-    cell.ratio = moments[best] / moments.back();
+    cell.ratio = moments[best] / by_place.back();
+    if (cell.plain == 1) cell.at_place = true;
     cell.shares = cell.plain < 1 ? std::move(whole.shares) : std::vector<Share>{};
     return cell;
 }
@@ -130,14 +153,13 @@ EmitterPoint LearnedDirectLight::sample(const SurfacePoint& at, SampleSource& so
     if (u < cell.plain) {
         const auto [emitter, by_tree] = scene_->light_tree().sample(asked_for(cell, at), u / cell.plain);
         drawn.point = point_of(emitter, scene_->emitter(emitter).sample_point(source).point);
-        const Share* share = cell.share_of(emitter);
-        drawn.pdf = pdf(cell, at, drawn.point, share != nullptr ? share->by_tree : by_tree);
+        drawn.pdf = pdf(cell, at, drawn.point, by_tree);
     } else {
         const double v = (u - cell.plain) / (1 - cell.plain);
         const auto above = std::ranges::upper_bound(cell.shares, v, {}, &Share::up_to);
         const Share& share = above != cell.shares.end() ? *above : cell.shares.back();
         drawn.point = point_by_share(&share, at, share.emitter, source);
-        drawn.pdf = pdf(cell, at, drawn.point, share.by_tree);
+        drawn.pdf = pdf(cell, at, drawn.point, by_tree(cell, at, &share, share.emitter));
     }
     return drawn;
 }
@@ -152,21 +174,23 @@ SurfacePoint LearnedDirectLight::point_by_share(const Share* share, const Surfac
 
 double LearnedDirectLight::probability(const SurfacePoint& at, std::uint32_t emitter) const {
     const Cell& cell = cell_of(at);
-    return probability(cell, cell.share_of(emitter), by_tree(cell, at, emitter));
+    const Share* share = cell.share_of(emitter);
+    return probability(cell, share, by_tree(cell, at, share, emitter));
 }
 
 EmitterPoint LearnedDirectLight::sample_of(const SurfacePoint& at, std::uint32_t emitter, double u,
                                            SampleSource& source) const {
     const Cell& cell = cell_of(at);
     const Share* share = cell.share_of(emitter);
-    const double tree = by_tree(cell, at, emitter);
+    const double tree = by_tree(cell, at, share, emitter);
     const bool plain = u * probability(cell, share, tree) < cell.plain * tree;
     const SurfacePoint x0 = point_by_share(plain ? nullptr : share, at, emitter, source);
     return {x0, pdf(cell, at, x0, tree)};
 }
 
-double LearnedDirectLight::by_tree(const Cell& cell, const SurfacePoint& at, std::uint32_t emitter) const {
-    if (const Share* share = cell.share_of(emitter)) return share->by_tree;
+double LearnedDirectLight::by_tree(const Cell& cell, const SurfacePoint& at, const Share* share,
+                                   std::uint32_t emitter) const {
+    if (share != nullptr && !cell.at_place) return share->by_tree;
     return scene_->light_tree().probability(asked_for(cell, at), emitter);
 }
 
@@ -180,20 +204,20 @@ double LearnedDirectLight::pdf(const Cell& cell, const SurfacePoint& at, const S
 
 double LearnedDirectLight::pdf(const SurfacePoint& at, const SurfacePoint& x0) const {
     const Cell& cell = cell_of(at);
-    return pdf(cell, at, x0, by_tree(cell, at, x0.emitter));
+    return pdf(cell, at, x0, by_tree(cell, at, cell.share_of(x0.emitter), x0.emitter));
 }
 
 double LearnedDirectLight::pdf(const FoundLight& f) const {
-    const Cell& cell = cells_[tree_.cell_of(f.at)];
-    if (cell.plain == 1) return f.choice * f.point_pdf;
-    return cell.plain * by_tree(cell, cell.middle, f.emitter) * f.point_pdf + (1 - cell.plain) * cell.pdf(f);
+    const Cell& cell = cell_of(f.at);
+    const double tree = cell.at_place ? f.choice : by_tree(cell, cell.middle, cell.share_of(f.emitter), f.emitter);
+    return cell.plain * tree * f.point_pdf + (1 - cell.plain) * cell.pdf(f);
 }
 
 std::vector<EmitterChance> LearnedDirectLight::chances(const SurfacePoint& at, int directions) const {
     const Cell& cell = cell_of(at);
     std::vector<EmitterChance> list;
     for (const Share& share : cell.shares) {
-        EmitterChance chance{share.emitter, probability(cell, &share, share.by_tree)};
+        EmitterChance chance{share.emitter, probability(cell, &share, by_tree(cell, at, &share, share.emitter))};
         for (int i = 0; i < directions && !share.directions.empty(); ++i)
             chance.towards.push_back(share.directions.sample(at.p, (i + 0.5) / directions, kronecker(0.5, i, kR2[1])));
         list.push_back(std::move(chance));

@@ -6,6 +6,8 @@
 #include "sampling/guidance/learned/surface_cells.h"
 #include "scene/scene.h"
 
+#include <Imath/ImathBox.h>
+
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -64,12 +66,14 @@ class LearnedDirectLight final : public DirectLightSampler {
         std::uint32_t emitter;
         double probability = 0;
         double up_to = 0;                ///< sum of the probabilities so far
-        double by_tree = 0;              ///< probability that the light tree has for the cell
+        double by_tree = 0;              ///< probability that the light tree has for the middle of the cell
         DirectionHistogram directions{}; ///< to an environment; empty: by the emitter
     };
     struct Cell {
-        double plain = 1;          ///< share of samples by the light tree
-        SurfacePoint middle;       ///< what the light tree is asked for, where that is not all: cheaper than each place
+        double plain = 1;     ///< share of samples by the light tree
+        bool at_place = true; ///< whether the light tree is asked for each place; else for `middle`, which is cheaper
+        SurfacePoint middle;
+        Imath::Box3f known{};      ///< around what was found; beyond it nothing is known
         std::vector<Share> shares; ///< of the others; by emitter
         double ratio = 1;          ///< of second moments
         std::size_t count = 0;     ///< of samples that it was made from
@@ -82,10 +86,11 @@ class LearnedDirectLight final : public DirectLightSampler {
     /// `like`: planes of the histograms are those that these have.
     static std::vector<Share> make_shares(std::span<const FoundLight* const> found, const Cell* like = nullptr);
     Cell make_cell(std::span<const FoundLight* const> found) const;
-    const Cell& cell_of(const SurfacePoint& at) const { return cells_[tree_.cell_of({at.p, at.ng})]; }
+    const Cell& cell_of(const SurfaceCells::Place& at) const;
+    const Cell& cell_of(const SurfacePoint& at) const { return cell_of(SurfaceCells::Place{at.p, at.ng}); }
     /// What the light tree is asked for.
     static const SurfacePoint& asked_for(const Cell& cell, const SurfacePoint& at) {
-        return cell.plain < 1 ? cell.middle : at;
+        return cell.at_place ? at : cell.middle;
     }
     /// Of an emitter that has `share` in the cell, or none, where the light tree chooses it with `by_tree`.
     static double probability(const Cell& cell, const Share* share, double by_tree) {
@@ -94,13 +99,14 @@ class LearnedDirectLight final : public DirectLightSampler {
     /// A point on an emitter as its share has it; null: there is none, and the emitter draws it.
     SurfacePoint point_by_share(const Share* share, const SurfacePoint& at, std::uint32_t emitter,
                                 SampleSource& source) const;
-    /// With which the light tree chooses an emitter in a cell.
-    double by_tree(const Cell& cell, const SurfacePoint& at, std::uint32_t emitter) const;
+    /// With which the light tree chooses an emitter that has `share` in the cell, or none.
+    double by_tree(const Cell& cell, const SurfacePoint& at, const Share* share, std::uint32_t emitter) const;
     double pdf(const Cell& cell, const SurfacePoint& at, const SurfacePoint& x0, double by_tree) const;
 
     const Scene* scene_;
     SurfaceCells tree_;
     std::vector<Cell> cells_;
+    Cell unknown_; ///< the light tree's choice
     double ratio_ = 1;
 };
 
