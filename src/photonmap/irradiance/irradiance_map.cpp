@@ -13,9 +13,6 @@ constexpr float kLift = 0.25f;
 /// How far from a place the middle of its photons' power lies, over the radius, where their light is one-sided: that of
 /// a half disc lies at 0.42.
 constexpr double kOffCentre = 0.5;
-/// What is one-sided is looked at again within this share of its radius, as long as so many photons are left.
-constexpr float kNearer = 0.7f;
-constexpr int kLeastPhotons = 10;
 constexpr unsigned kLevels = 8;
 
 /// Distance of a place over the largest radius of estimates. Farther than the estimates themselves look: where photons
@@ -58,52 +55,33 @@ IrradianceMap::IrradianceMap(const PhotonMap& pilots, const PhotonMap& main_phot
     mean_.effective /= static_cast<double>(own.size());
 }
 
-/// An estimate over a region, and how its light is spread.
-struct IrradianceMap::Tried {
-    DensityEstimate density;
-    float radius = 0;            // [m]
-    double sum = 0, squares = 0; // of the photons' power
-    Imath::V3d moment{0.0};      // about the place
-    unsigned marks = 0;          // of Estimate::Mark
-};
-
-IrradianceMap::Tried IrradianceMap::try_radius(const SurfaceRegion& region, float r, const PhotonMap& main_photons,
-                                               const IrradianceOptions& options) const {
-    Tried t{.density = {}, .radius = r};
-    const auto one = [&](const Photon& p) {
-        const double power = luminance(p.power());
-        t.sum += power;
-        t.squares += power * power;
-        t.moment += power * Imath::V3d(p.position() - region.position);
-        if (p.caustic()) t.marks |= Estimate::caustics;
-        return 1.0;
-    };
-    t.density = options.scene != nullptr
-                    ? estimate_density_in_sight(*options.scene, main_photons, region, r, *options.patches, one)
-                    : estimate_density(main_photons, region, r, options.patches, one);
-    t.density.value /= share_in_reach(options.coverage, region, r);
-    if (t.moment.length() > kOffCentre * t.sum * r) t.marks |= Estimate::one_sided;
-    return t;
-}
-
 IrradianceMap::Count IrradianceMap::estimate(std::uint32_t i, const PhotonMap& main_photons,
                                              const IrradianceOptions& options) {
     const Photon& place = pilots_[i];
     const PhotonQuery query{{place.position(), place.normal().decode()}, options.max_radius, options.k, options.shrink};
     // The pilot photon in the middle is there by choice of the place, so it is no evidence of the density there.
-    Tried t = try_radius(query.region, piloted_radius(pilots_, query, 1), main_photons, options);
-    // As in a crevice, whose mouth has many times the light: nearer by there are photons, too.
-    while ((t.marks & Estimate::one_sided) != 0) {
-        const Tried nearer = try_radius(query.region, kNearer * t.radius, main_photons, options);
-        if (nearer.density.photons < kLeastPhotons) break;
-        t = nearer;
-    }
-    const float r = t.radius;
+    const float r = piloted_radius(pilots_, query, 1);
+    double sum = 0, squares = 0;
+    Imath::V3d moment(0.0);
+    unsigned marks = 0;
+    const auto one = [&](const Photon& p) {
+        const double power = luminance(p.power());
+        sum += power;
+        squares += power * power;
+        moment += power * Imath::V3d(p.position() - place.position());
+        if (p.caustic()) marks |= Estimate::caustics;
+        return 1.0;
+    };
+    DensityEstimate e =
+        options.scene != nullptr
+            ? estimate_density_in_sight(*options.scene, main_photons, query.region, r, *options.patches, one)
+            : estimate_density(main_photons, query.region, r, options.patches, one);
+    e.value /= share_in_reach(options.coverage, query.region, r);
+    if (moment.length() > kOffCentre * sum * r) marks |= Estimate::one_sided;
     const double disc = kPi * static_cast<double>(r) * r;
-    estimates_[i] =
-        Estimate(t.density.value, t.marks, r, disc > 0 ? t.density.area / disc : 0.0,
-                 t.density.obstructed ? obstructed_levels(*options.patches, query.region, r) : std::uint8_t{0});
-    return {static_cast<double>(t.density.photons), t.squares > 0 ? t.sum * t.sum / t.squares : 0.0};
+    estimates_[i] = Estimate(e.value, marks, r, disc > 0 ? e.area / disc : 0.0,
+                             e.obstructed ? obstructed_levels(*options.patches, query.region, r) : std::uint8_t{0});
+    return {static_cast<double>(e.photons), squares > 0 ? sum * sum / squares : 0.0};
 }
 
 SurfaceLookupGrid::Found IrradianceMap::place_for_cell(const Vec3& middle, const Vec3& normal) const {

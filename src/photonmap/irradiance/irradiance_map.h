@@ -116,9 +116,6 @@ class IrradianceMap {
             return *this;
         }
     };
-    struct Tried;
-    Tried try_radius(const SurfaceRegion& region, float r, const PhotonMap& main_photons,
-                     const IrradianceOptions& options) const;
     /// Fills in place i; returns the number of photons that it is made from.
     Count estimate(std::uint32_t i, const PhotonMap& main_photons, const IrradianceOptions& options);
 
