@@ -137,7 +137,7 @@ Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSou
     if (!v.bsdf.traits().diffuse) return lobe(v, back, place, leg, source);
     const bool on = goes_on(leg, place, here);
     const Rgb f = v.bsdf.diffuse_reflectance(back);
-    Rgb sum = f * direct(place, v, back, source);
+    Rgb sum = f * direct(place, v, here, source);
     if (on)
         sum += traced_on(v, back, place, leg, source);
     else if (place)
@@ -153,12 +153,11 @@ Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSou
     return sum;
 }
 
-Rgb GatherRays::direct(const std::optional<std::uint32_t>& place, const Vertex& v, const Vec3& back,
+Rgb GatherRays::direct(const std::optional<std::uint32_t>& place, const Vertex& v, const SurfaceRegion& here,
                        SampleSource& source) const {
-    const Vec3 normal = facing(v.point.ng, back);
-    if (place && !is_fine(*place) && maps_.irradiance->is_near(*place, {v.point.p, normal}, kInTheSameLight))
+    if (place && !is_fine(*place) && maps_.irradiance->is_near(*place, here, kInTheSameLight))
         if (const auto near = maps_.direct->direct(*place, v.point.p)) return *near;
-    return direct_irradiance(scene_, v.point, v.bsdf, normal, 1, source).irradiance;
+    return direct_irradiance(scene_, v.point, v.bsdf, here.normal, 1, source).irradiance;
 }
 
 Vertex GatherRays::widened(const Vertex& v, const Bsdf& part) const {
@@ -225,10 +224,10 @@ Rgb GatherRays::traced_on(const Vertex& v, const Vec3& back, const std::optional
             next->weight * trace(v, next->w, next->pdf, {0, leg.scatterings + 1, leg.traced_on + 1}, source).indirect;
     if (!place) return sum;
     // Light that specular vertices alone brought here is found by no ray.
-    const Vec3 normal = facing(v.point.ng, back);
-    const bool known = maps_.irradiance->is_near(*place, {v.point.p, normal});
+    const SurfaceRegion here{v.point.p, facing(v.point.ng, back)};
+    const bool known = maps_.irradiance->is_near(*place, here);
     if (known ? maps_.irradiance->has_caustics(*place) : scene_.traits().delta)
-        sum += photons(Asked::caustics, *place, v, normal, back, source);
+        sum += photons(Asked::caustics, *place, v, here.normal, back, source);
     return sum;
 }
 

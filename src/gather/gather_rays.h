@@ -91,7 +91,7 @@ class GatherRays {
     Rgb traced_on(const Vertex& v, const Vec3& back, const std::optional<std::uint32_t>& place, const Leg& leg,
                   SampleSource& source) const;
     /// Irradiance that emitters bring, weighed as the diffuse part weighs it: that of the place, if it does for `v`.
-    Rgb direct(const std::optional<std::uint32_t>& place, const Vertex& v, const Vec3& back,
+    Rgb direct(const std::optional<std::uint32_t>& place, const Vertex& v, const SurfaceRegion& here,
                SampleSource& source) const;
     /// `v` with a part of its BSDF, no narrower than LookupOptions::least_alpha.
     Vertex widened(const Vertex& v, const Bsdf& part) const;

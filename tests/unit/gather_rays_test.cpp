@@ -28,6 +28,14 @@ GatherRays::Arrival below(const MappedGather& gather, const Vec3& point, Rng& rn
     return gather.along(point, {0, -1, 0}, rng);
 }
 
+/// The mean of what rays straight down from `height` find at `x`, for z from `margin` to 1 - margin [W/(m^2 sr)].
+double mean_below(const MappedGather& gather, float x, float height, float margin, Rng& rng) {
+    RunningStats found;
+    for (float z = margin; z < 1 - margin; z += 0.02f)
+        found.add(luminance(below(gather, {x, height, z}, rng).indirect));
+    return found.mean();
+}
+
 /// A floor of 1 x 1 m with a wall across it at x = 0.5 m, and photons on it; nothing emits.
 class Floor {
   public:
@@ -49,10 +57,7 @@ class Floor {
     }
     /// Mean of what rays from straight above find at `x` [W/(m^2 sr)].
     double seen_at(float x, float height = 0.25f) {
-        const MappedGather gather(*scene_, patches_, photons_, lookups());
-        RunningStats found;
-        for (float z = 0.2f; z < 0.8f; z += 0.02f) found.add(luminance(below(gather, {x, height, z}, rng_).indirect));
-        return found.mean();
+        return mean_below({*scene_, patches_, photons_, lookups()}, x, height, 0.2f, rng_);
     }
 
   private:
@@ -88,19 +93,26 @@ TEST(GatherRays, TakeNothingFromPlacesThatLieBeyondTheirOwnEstimates) {
     EXPECT_EQ(floor.seen_at(0.8f), 0) << "light from 0.2 m away";
 }
 
-/// A roof keeps the lamp's light from x > 0.55 m. Photons, and with them places of the map, are in the light alone.
-TEST(GatherRays, DontTakeDirectLightToTheShadowBesideIt) {
+/// White surfaces, a roof of reflectance `roof` 0.5 m above the floor from x = `edge` on, and a white lamp of 1 cm 1 m
+/// above x = 0.25 m.
+std::unique_ptr<Scene> under_a_lamp(std::vector<Rectangle> surfaces, float edge, double roof, double radiance) {
+    surfaces.push_back({{edge, 0.5f, -1}, {0.6f, 0, 0}, {0, 0, 3}});
+    surfaces.push_back({{0.245f, 1, 0.495f}, {0.01f, 0, 0}, {0, 0, 0.01f}});
     SceneDescription d;
-    const Rectangle floor{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}};
-    const Rectangle roof{{0.4f, 0.5f, -1}, {0.6f, 0, 0}, {0, 0, 3}};
-    const Rectangle lamp{{0.245f, 1, 0.495f}, {0.01f, 0, 0}, {0, 0, 0.01f}};
-    for (const Rectangle& r : {floor, roof, lamp}) {
+    for (const Rectangle& r : surfaces) {
         d.shapes.push_back(shape_of(r));
         d.shapes.back().material = make_diffuse(Rgb(0.5));
     }
+    d.shapes[d.shapes.size() - 2].material = make_diffuse(Rgb(roof));
     d.shapes.back().emission =
-        std::make_unique<SurfaceEmission>(SurfaceEmission{.radiance = Rgb(1e11), .two_sided = true});
-    const Scene scene(std::move(d));
+        std::make_unique<SurfaceEmission>(SurfaceEmission{.radiance = Rgb(radiance), .two_sided = true});
+    return std::make_unique<Scene>(std::move(d));
+}
+
+/// A roof keeps the lamp's light from x > 0.55 m. Photons, and with them places of the map, are in the light alone.
+TEST(GatherRays, DontTakeDirectLightToTheShadowBesideIt) {
+    const auto made = under_a_lamp({{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}}}, 0.4f, 0.5, 1e11);
+    const Scene& scene = *made;
     const SurfacePatches patches(scene);
     Rng rng = make_rng(7);
     PhotonSet photons;
@@ -108,11 +120,7 @@ TEST(GatherRays, DontTakeDirectLightToTheShadowBesideIt) {
     throw_photons(lit, 2000, rng, photons.main_photons);
     throw_photons(lit, 200, rng, photons.pilots);
     const MappedGather gather(scene, patches, photons, lookups());
-    const auto seen_at = [&](float x) {
-        RunningStats found;
-        for (float z = 0.3f; z < 0.7f; z += 0.02f) found.add(luminance(below(gather, {x, 0.25f, z}, rng).indirect));
-        return found.mean();
-    };
+    const auto seen_at = [&](float x) { return mean_below(gather, x, 0.25f, 0.3f, rng); };
     ASSERT_GT(seen_at(0.48f), 0);
     EXPECT_LT(seen_at(0.57f), 0.01 * seen_at(0.48f));
 }
@@ -121,39 +129,18 @@ TEST(GatherRays, DontTakeDirectLightToTheShadowBesideIt) {
 /// places of the map, are on the slab alone.
 class Slab {
   public:
-    explicit Slab(double radiance) : scene_(make_scene(radiance)), patches_(*scene_) {
-        const Rectangle lit{{0, kHeight, 0}, {0, 0, 1}, {0.45f, 0, 0}};
-        throw_photons(lit, 20'000, rng_, photons_.main_photons);
-        throw_photons(lit, 150, rng_, photons_.pilots); // so few that estimates look as far as they may
+    /// `radiance`: of the lamp [W/(m^2 sr)]. The roof's shadow begins at 0.47 m.
+    explicit Slab(double radiance)
+        : scene_(under_a_lamp({{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}}, kTop}, 0.36f, 0, radiance)), patches_(*scene_) {
+        throw_photons(kTop, 20'000, rng_, photons_.main_photons);
+        throw_photons(kTop, 150, rng_, photons_.pilots); // so few that estimates look as far as they may
     }
 
     /// Mean of what rays from straight above find at `x` [W/(m^2 sr)].
-    double seen_at(float x) {
-        const MappedGather gather(*scene_, patches_, photons_, lookups());
-        RunningStats found;
-        for (float z = 0.3f; z < 0.7f; z += 0.02f) found.add(luminance(below(gather, {x, 0.25f, z}, rng_).indirect));
-        return found.mean();
-    }
+    double seen_at(float x) { return mean_below({*scene_, patches_, photons_, lookups()}, x, 0.25f, 0.3f, rng_); }
 
   private:
-    static constexpr float kHeight = 0.03f; // [m]
-
-    /// `radiance`: of a lamp [W/(m^2 sr)].
-    static std::unique_ptr<Scene> make_scene(double radiance) {
-        SceneDescription d;
-        const Rectangle floor{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}};
-        const Rectangle slab{{0, kHeight, 0}, {0, 0, 1}, {0.45f, 0, 0}};
-        const Rectangle roof{{0.36f, 0.5f, -1}, {0.6f, 0, 0}, {0, 0, 3}}; // its shadow begins at 0.47 m
-        const Rectangle lamp{{0.245f, 1, 0.495f}, {0.01f, 0, 0}, {0, 0, 0.01f}};
-        for (const Rectangle& r : {floor, slab, roof, lamp}) {
-            d.shapes.push_back(shape_of(r));
-            d.shapes.back().material = make_diffuse(Rgb(0.5));
-        }
-        d.shapes[2].material = make_diffuse(Rgb(0.0));
-        d.shapes.back().emission =
-            std::make_unique<SurfaceEmission>(SurfaceEmission{.radiance = Rgb(radiance), .two_sided = true});
-        return std::make_unique<Scene>(std::move(d));
-    }
+    inline static const Rectangle kTop{{0, 0.03f, 0}, {0, 0, 1}, {0.45f, 0, 0}};
 
     std::unique_ptr<Scene> scene_;
     SurfacePatches patches_;

@@ -1,12 +1,11 @@
 // Irradiance made of photons beforehand.
 #include "photonmap/irradiance/irradiance_map.h"
 
-#include "core/statistics.h"
 #include "photon_support.h"
+#include "scene/material.h"
+#include "scene/scene.h"
 
 #include <gtest/gtest.h>
-
-#include <cmath>
 
 namespace keyhole {
 namespace {
@@ -19,11 +18,8 @@ constexpr float kReach = 0.1f; // of estimates [m]
 /// density is density(x) [1/m^2], up to a factor.
 template <class Density> double over_truth(const Density& density, int photons, float from, float to) {
     const Rectangle floor{{0, 0, 0}, {0, 0, 1}, {0.5f, 0, 0}};
-    const std::vector<Shape> shapes = [&] {
-        std::vector<Shape> list;
-        list.push_back(shape_of(floor));
-        return list;
-    }();
+    std::vector<Shape> shapes;
+    shapes.push_back(shape_of(floor));
     Rng rng = make_rng(5);
     std::vector<Photon> main_photons, pilots;
     double mean = 0;
@@ -54,6 +50,26 @@ TEST(IrradianceMap, IsTheMeanOfItsPhotonsWhereLightIsEvenOrFallsEvenly) {
     EXPECT_NEAR(over_truth(even, 1000, 0.2f, 0.3f), 1, 0.1);
     const auto slope = [](double x) { return 1 - x; };
     EXPECT_NEAR(over_truth(slope, 100'000, 0.2f, 0.3f), 1, 0.03);
+}
+
+/// A board lies above the floor, by less than estimates look, and all light on the board.
+TEST(IrradianceMap, IsNotKnownUnderABoardThatHasAllTheLight) {
+    constexpr float kHeight = 0.47f * kReach;
+    const Rectangle floor{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}}, board{{0, kHeight, 0}, {0, 0, 1}, {1, 0, 0}};
+    SceneDescription d;
+    for (const Rectangle& r : {floor, board}) {
+        d.shapes.push_back(shape_of(r));
+        d.shapes.back().material = make_diffuse(Rgb(0.5));
+    }
+    const Scene scene(std::move(d));
+    const SurfacePatches patches(scene);
+    Rng rng = make_rng(6);
+    const PhotonMap main_photons(throw_photons(board, 10'000, rng));
+    const PhotonMap pilots(throw_photons(board, 2000, rng), PhotonMap::Wanted::one);
+    const IrradianceMap map(pilots, main_photons,
+                            {.k = 1000, .max_radius = kReach, .patches = &patches, .scene = &scene}, {});
+    EXPECT_TRUE(map.irradiance(Vec3(0.5f, kHeight, 0.5f), Vec3(0, 1, 0)).known);
+    EXPECT_FALSE(map.irradiance(Vec3(0.5f, 0, 0.5f), Vec3(0, 1, 0)).known);
 }
 
 } // namespace
