@@ -119,7 +119,7 @@ bool GatherRays::goes_on(const Leg& leg, const std::optional<std::uint32_t>& pla
     if (leg.traced_on == 0) return !near || seen_from_near || is_fine(*place);
     // To trace paths further costs more noise than it removes error, but in crevices: there all estimates have the
     // light of the room before them.
-    return seen_from_near && (!near || maps_.irradiance->is_one_sided(*place));
+    return seen_from_near && (!near || maps_.irradiance->is_in_crevice(*place));
 }
 
 bool GatherRays::is_fine(std::uint32_t place) const { return maps_.irradiance->area_share(place) < kFine; }

@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace keyhole {
 namespace {
 
@@ -70,6 +72,50 @@ TEST(IrradianceMap, IsNotKnownUnderABoardThatHasAllTheLight) {
                             {.k = 1000, .max_radius = kReach, .patches = &patches, .scene = &scene}, {});
     EXPECT_TRUE(map.irradiance(Vec3(0.5f, kHeight, 0.5f), Vec3(0, 1, 0)).known);
     EXPECT_FALSE(map.irradiance(Vec3(0.5f, 0, 0.5f), Vec3(0, 1, 0)).known);
+}
+
+/// A board lies low above a floor, and light comes in from its edge at x = 0 only: it falls to a third over the height.
+TEST(IrradianceMap, IsNoMeanOverMoreThanTheWidthOfACrevice) {
+    constexpr float kHeight = 0.2f * kReach;
+    const Rectangle floor{{0, 0, 0}, {0, 0, 1}, {0.5f, 0, 0}}, board{{0, kHeight, 0}, {0, 0, 1}, {0.5f, 0, 0}};
+    const auto density = [](float x) { return std::exp(-x / kHeight); };
+    const auto map_of = [&](const std::vector<Rectangle>& rectangles, const auto& look) {
+        SceneDescription d;
+        for (const Rectangle& r : rectangles) {
+            d.shapes.push_back(shape_of(r));
+            d.shapes.back().material = make_diffuse(Rgb(0.5));
+        }
+        const Scene scene(std::move(d));
+        const SurfacePatches patches(scene);
+        Rng rng = make_rng(7);
+        const auto at = [&](float x) {
+            return Photon(Vec3(x, 0, static_cast<float>(rng.next())), Vec3(0, 1, 0), Vec3(0, 1, 0), Rgb(1.0));
+        };
+        std::vector<Photon> main_photons, pilots;
+        while (main_photons.size() < 100'000)
+            main_photons.push_back(at(std::min(-kHeight * static_cast<float>(std::log(1 - rng.next())), 0.499f)));
+        for (int i = 0; i < 40; ++i) pilots.push_back(at((3 + static_cast<float>(rng.next())) * kHeight));
+        const double scale = static_cast<double>(main_photons.size()) / kHeight;
+        const PhotonMap main_map(std::move(main_photons)), pilot_map(std::move(pilots), PhotonMap::Wanted::one);
+        look(IrradianceMap(pilot_map, main_map, {.k = 1000, .max_radius = kReach, .patches = &patches, .scene = &scene},
+                           {}),
+             scale);
+    };
+    const auto over_truth = [&](const IrradianceMap& map, double scale) {
+        double found = 0, truth = 0;
+        for (const Photon& p : map.places()) {
+            found += map.irradiance(p.position(), Vec3(0, 1, 0)).irradiance.x;
+            truth += scale * density(p.position().x);
+        }
+        return found / truth;
+    };
+    map_of({floor, board}, [&](const IrradianceMap& map, double scale) {
+        EXPECT_TRUE(map.is_in_crevice(0));
+        EXPECT_NEAR(over_truth(map, scale), 1.6, 0.3);
+    });
+    map_of({floor}, [&](const IrradianceMap& map, double scale) {
+        EXPECT_GT(over_truth(map, scale), 3); // so much a mean over the whole reach is too large
+    });
 }
 
 } // namespace

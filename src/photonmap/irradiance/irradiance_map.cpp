@@ -4,6 +4,7 @@
 #include "photonmap/surface/density_in_sight.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace keyhole {
 namespace {
@@ -14,6 +15,10 @@ constexpr float kLift = 0.25f;
 /// a half disc lies at 0.42.
 constexpr double kOffCentre = 0.5;
 constexpr unsigned kLevels = 8;
+
+/// Radius of an estimate over the free height above its place, at most. In a crevice light changes over the crevice's
+/// width, and a wider mean would have the light of the room before it.
+constexpr float kMostOfFreeHeight = 2;
 
 /// Distance of a place over the largest radius of estimates. Farther than the estimates themselves look: where photons
 /// are rare, most places have none that near, and to call them dark would take light away.
@@ -31,6 +36,16 @@ std::uint8_t obstructed_levels(const SurfacePatches& patches, const SurfaceRegio
     unsigned levels = 0;
     for (unsigned i = 0; i < kLevels; ++i, r /= 2) levels |= patches.obstructed(region, r) ? 1u << i : 0u;
     return static_cast<std::uint8_t>(levels);
+}
+
+/// Distance from the middle of a region to what stands above it [m]; infinite where nothing does.
+float free_height(const Scene& scene, const SurfaceRegion& region, float r) {
+    constexpr float kOffSurface = 1e-3f; // of the radius
+    SurfacePoint from;
+    from.p = region.position + region.normal * (kOffSurface * r);
+    const auto hit = scene.trace(from, region.normal);
+    return hit && hit->site == Site::surface ? (hit->p - region.position).length()
+                                             : std::numeric_limits<float>::infinity();
 }
 
 } // namespace
@@ -60,7 +75,10 @@ IrradianceMap::Count IrradianceMap::estimate(std::uint32_t i, const PhotonMap& m
     const Photon& place = pilots_[i];
     const PhotonQuery query{{place.position(), place.normal().decode()}, options.max_radius, options.k, options.shrink};
     // The pilot photon in the middle is there by choice of the place, so it is no evidence of the density there.
-    const float r = piloted_radius(pilots_, query, 1);
+    const float expected = piloted_radius(pilots_, query, 1);
+    const float allowed =
+        options.scene != nullptr ? kMostOfFreeHeight * free_height(*options.scene, query.region, expected) : expected;
+    const float r = std::min(expected, allowed);
     double sum = 0, squares = 0;
     Imath::V3d moment(0.0);
     unsigned marks = 0;
@@ -77,7 +95,7 @@ IrradianceMap::Count IrradianceMap::estimate(std::uint32_t i, const PhotonMap& m
             ? estimate_density_in_sight(*options.scene, main_photons, query.region, r, *options.patches, one)
             : estimate_density(main_photons, query.region, r, options.patches, one);
     e.value /= share_in_reach(options.coverage, query.region, r);
-    if (moment.length() > kOffCentre * sum * r) marks |= Estimate::one_sided;
+    if (r < expected || moment.length() > kOffCentre * sum * r) marks |= Estimate::in_crevice;
     const double disc = kPi * static_cast<double>(r) * r;
     estimates_[i] = Estimate(e.value, marks, r, disc > 0 ? e.area / disc : 0.0,
                              e.obstructed ? obstructed_levels(*options.patches, query.region, r) : std::uint8_t{0});
