@@ -4,7 +4,6 @@
 #include "photonmap/surface/density_in_sight.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace keyhole {
 namespace {
@@ -38,21 +37,12 @@ std::uint8_t obstructed_levels(const SurfacePatches& patches, const SurfaceRegio
     return static_cast<std::uint8_t>(levels);
 }
 
-/// Distance from the middle of a region to what stands above it [m]; infinite where nothing does.
-float free_height(const Scene& scene, const SurfaceRegion& region, float r) {
-    constexpr float kOffSurface = 1e-3f; // of the radius
-    SurfacePoint from;
-    from.p = region.position + region.normal * (kOffSurface * r);
-    const auto hit = scene.trace(from, region.normal);
-    return hit && hit->site == Site::surface ? (hit->p - region.position).length()
-                                             : std::numeric_limits<float>::infinity();
-}
-
 } // namespace
 
 IrradianceMap::IrradianceMap(const PhotonMap& pilots, const PhotonMap& main_photons, const IrradianceOptions& options,
                              const RunContext& context)
-    : pilots_(pilots), estimates_(pilots.photons().size()), max_radius_(options.max_radius), scene_(options.scene) {
+    : pilots_(pilots), estimates_(pilots.photons().size()), max_radius_(options.max_radius), scene_(options.scene),
+      patches_(options.patches) {
     const Range own = own_part(static_cast<std::int64_t>(estimates_.size()), context);
     std::vector<Count> used(static_cast<std::size_t>(blocks_of(own)));
     context.begin("irradiance", static_cast<std::uint64_t>(own.size()), "estimates");
@@ -76,9 +66,10 @@ IrradianceMap::Count IrradianceMap::estimate(std::uint32_t i, const PhotonMap& m
     const PhotonQuery query{{place.position(), place.normal().decode()}, options.max_radius, options.k, options.shrink};
     // The pilot photon in the middle is there by choice of the place, so it is no evidence of the density there.
     const float expected = piloted_radius(pilots_, query, 1);
-    const float allowed =
-        options.scene != nullptr ? kMostOfFreeHeight * free_height(*options.scene, query.region, expected) : expected;
-    const float r = std::min(expected, allowed);
+    const bool by_sight = options.scene != nullptr;
+    const float r = by_sight
+                        ? std::min(expected, kMostOfFreeHeight * options.patches->free_height(query.region, expected))
+                        : expected;
     double sum = 0, squares = 0;
     Imath::V3d moment(0.0);
     unsigned marks = 0;
@@ -91,9 +82,8 @@ IrradianceMap::Count IrradianceMap::estimate(std::uint32_t i, const PhotonMap& m
         return 1.0;
     };
     DensityEstimate e =
-        options.scene != nullptr
-            ? estimate_density_in_sight(*options.scene, main_photons, query.region, r, *options.patches, one)
-            : estimate_density(main_photons, query.region, r, options.patches, one);
+        by_sight ? estimate_density_in_sight(*options.scene, main_photons, query.region, r, *options.patches, one)
+                 : estimate_density(main_photons, query.region, r, options.patches, one);
     e.value /= share_in_reach(options.coverage, query.region, r);
     if (r < expected || moment.length() > kOffCentre * sum * r) marks |= Estimate::in_crevice;
     const double disc = kPi * static_cast<double>(r) * r;
@@ -121,11 +111,14 @@ IrradianceMap::Answer IrradianceMap::irradiance(const SurfacePoint& point, const
 }
 
 IrradianceMap::Answer IrradianceMap::answer(std::uint32_t place, const SurfaceRegion& region) const {
+    if (!may_be_hidden(place, region)) return {estimates_[place].irradiance(), true, place};
+    // Under a low board the line of sight must not run above it.
+    const float highest = patches_->free_height(region, radius(place)) / 2;
     const auto visible = [&](const Photon& p) {
-        const float lift = kLift * (p.position() - region.position).length();
+        const float lift = std::min(highest, kLift * (p.position() - region.position).length());
         return in_sight(*scene_, region, lift, p.position());
     };
-    if (may_be_hidden(place, region) && !visible(pilots_[place])) {
+    if (!visible(pilots_[place])) {
         int hidden = 0;
         const auto accept = [&](const Photon& p) {
             const auto i = static_cast<std::uint32_t>(&p - pilots_.photons().data());

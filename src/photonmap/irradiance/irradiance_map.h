@@ -20,7 +20,7 @@ struct IrradianceOptions {
     int k = 60;                               ///< photons to be expected in an estimate
     float max_radius;                         ///< [m]
     float shrink = 1;                         ///< of regions, as in PhotonQuery
-    const SurfacePatches* patches = nullptr;  ///< for the area at edges; null: the disc's
+    const SurfacePatches* patches = nullptr;  ///< for the area at edges; null: the disc's. Must outlive the map
     const GatherCoverage* coverage = nullptr; ///< that the map ends at; null: nowhere
     const Scene* scene = nullptr; ///< for walls that stand on a surface and part it; needs `patches`; null: none do
 };
@@ -123,6 +123,7 @@ class IrradianceMap {
     std::vector<Estimate> estimates_;
     float max_radius_;
     const Scene* scene_;
+    const SurfacePatches* patches_;
     std::optional<SurfaceLookupGrid> grid_;
     Count mean_;
 };

@@ -22,6 +22,8 @@ constexpr double kRingRadius = 0.85;
 constexpr std::array kRays{32, 128, 512};
 constexpr int kHits = 8;
 constexpr int kMostLayers = 8; // of surface in a region, one above the other
+/// Of the radius, how far above a region's middle rays start: what lies lower is its own surface.
+constexpr float kOffSurface = 1e-3f;
 
 bool holds_photons(const Shape& shape) {
     return !is_interface(shape) && (shape.material == nullptr || shape.material->traits().finite);
@@ -174,6 +176,22 @@ double SurfacePatches::area_in_sight(const SurfaceRegion& region, double r, floa
         return true;
     });
     return seen > 0 ? (has_tree_ ? area(region, r) : sampled) * seen / all : 0;
+}
+
+float SurfacePatches::free_height(const SurfaceRegion& region, double r) const {
+    constexpr float kNone = std::numeric_limits<float>::infinity();
+    if (scene_ == nullptr) return kNone;
+    SurfacePoint from;
+    from.p = region.position;
+    from.ng = region.normal;
+    from.offset = kOffSurface * static_cast<float>(r);
+    for (int layer = 0; layer < kMostLayers; ++layer) {
+        const auto hit = scene_->trace(from, region.normal);
+        if (!hit || hit->site != Site::surface) return kNone;
+        if (holds_photons(shapes_[hit->shape])) return (hit->p - region.position).length();
+        from = *hit;
+    }
+    return kNone;
 }
 
 bool SurfacePatches::obstructed(const SurfaceRegion& region, double r) const {

@@ -31,6 +31,10 @@ class SurfacePatches {
     /// in a crevice, and without a scene.
     double area_in_sight(const SurfaceRegion& region, double r, float lift) const;
 
+    /// Distance from the middle of the region of radius `r` to the first surface above it that holds photons [m];
+    /// infinite where there is none, and without a scene.
+    float free_height(const SurfaceRegion& region, double r) const;
+
     /// Whether other surfaces may stand on the region of radius `r`, where they could part one half of it from the
     /// other. By bounding boxes: true more often than need be on slanted and curved surfaces; by rays along the surface
     /// where there are too many.
