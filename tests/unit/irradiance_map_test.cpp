@@ -8,6 +8,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
+
+#include <cmath>
 
 namespace keyhole {
 namespace {
