@@ -9,8 +9,7 @@
 
 #include <cmath>
 #include <utility>
-
-#include <cmath>
+#include <vector>
 
 namespace keyhole {
 namespace {
