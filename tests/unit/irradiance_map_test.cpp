@@ -56,16 +56,23 @@ TEST(IrradianceMap, IsTheMeanOfItsPhotonsWhereLightIsEvenOrFallsEvenly) {
     EXPECT_NEAR(over_truth(slope, 100'000, 0.2f, 0.3f), 1, 0.03);
 }
 
+using Piece = std::pair<Rectangle, MaterialPtr>;
+
+SceneDescription pieces(const std::vector<Piece>& all) {
+    SceneDescription d;
+    for (const auto& [rectangle, material] : all) {
+        d.shapes.push_back(shape_of(rectangle));
+        d.shapes.back().material = material;
+    }
+    return d;
+}
+
 /// A board lies above the floor, by less than estimates look, and all light on the board.
 TEST(IrradianceMap, IsNotKnownUnderABoardThatHasAllTheLight) {
     constexpr float kHeight = 0.2f * kReach;
     const Rectangle floor{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}}, board{{0, kHeight, 0}, {0, 0, 1}, {1, 0, 0}};
-    SceneDescription d;
-    for (const Rectangle& r : {floor, board}) {
-        d.shapes.push_back(shape_of(r));
-        d.shapes.back().material = make_diffuse(Rgb(0.5));
-    }
-    const Scene scene(std::move(d));
+    const auto white = make_diffuse(Rgb(0.5));
+    const Scene scene(pieces({{floor, white}, {board, white}}));
     const SurfacePatches patches(scene);
     Rng rng = make_rng(6);
     const PhotonMap main_photons(throw_photons(board, 10'000, rng));
@@ -81,13 +88,8 @@ TEST(IrradianceMap, IsNoMeanOverMoreThanTheWidthOfACrevice) {
     constexpr float kHeight = 0.2f * kReach;
     const Rectangle floor{{0, 0, 0}, {0, 0, 1}, {0.5f, 0, 0}}, board{{0, kHeight, 0}, {0, 0, 1}, {0.5f, 0, 0}};
     const auto density = [](float x) { return std::exp(-x / kHeight); };
-    const auto map_of = [&](const std::vector<std::pair<Rectangle, MaterialPtr>>& rectangles, const auto& look) {
-        SceneDescription d;
-        for (const auto& [r, material] : rectangles) {
-            d.shapes.push_back(shape_of(r));
-            d.shapes.back().material = material;
-        }
-        const Scene scene(std::move(d));
+    const auto map_of = [&](const std::vector<Piece>& all, const auto& look) {
+        const Scene scene(pieces(all));
         const SurfacePatches patches(scene);
         Rng rng = make_rng(7);
         const auto at = [&](float x) {
