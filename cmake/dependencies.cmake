@@ -1,6 +1,7 @@
 # Libraries, all from Debian 12. scripts/install_dependencies.sh has their packages.
 find_package(embree 3.13 CONFIG REQUIRED)
 find_package(nanoflann 1.4 CONFIG REQUIRED)
+find_package(tsl-robin-map 1.2 CONFIG REQUIRED)
 find_package(OpenEXR 3.1 CONFIG REQUIRED)
 find_package(yaml-cpp 0.7 CONFIG REQUIRED)
 find_package(TBB 2021 CONFIG REQUIRED COMPONENTS tbb)

@@ -5,7 +5,7 @@ set -euo pipefail
 
 packages=(
     g++ cmake ninja-build pkg-config
-    libembree-dev libnanoflann-dev libopenexr-dev libopenimageio-dev libyaml-cpp-dev libtbb-dev
+    libembree-dev libnanoflann-dev robin-map-dev libopenexr-dev libopenimageio-dev libyaml-cpp-dev libtbb-dev
     libcli11-dev libfmt-dev nlohmann-json3-dev libassimp-dev libpcg-cpp-dev libpng-dev libjpeg-dev zlib1g-dev
     libgtest-dev libgmock-dev)
 [[ ${1-} != --ci ]] || packages+=(clang-14 libclang-rt-14-dev clang-format-14 clang-tidy-14 libopenmpi-dev openmpi-bin)

@@ -1,5 +1,6 @@
 #include "gather/fill_cache.h"
 
+#include "core/parallel.h"
 #include "core/shared_work.h"
 #include "gather/compute_record.h"
 #include "gather/outlying_records.h"
@@ -13,11 +14,12 @@
 namespace keyhole {
 namespace {
 
-constexpr int kCoarsest = 16;      // [pixels] between the points of the first level
-constexpr std::size_t kBatch = 64; // records computed at once
-constexpr double kCovered = 0.1;   // share below which a point needs a record of its own
-constexpr double kFirst = 0.5;     // share of rays that each record gets alike
-constexpr int kLeastMore = 8;      // fewer rays are not worth a hemisphere
+constexpr int kCoarsest = 16;       // [pixels] between the points of the first level
+constexpr std::size_t kBatch = 64;  // records computed at once
+constexpr std::size_t kAhead = 256; // pixels whose points are found at once
+constexpr double kCovered = 0.1;    // share below which a point needs a record of its own
+constexpr double kFirst = 0.5;      // share of rays that each record gets alike
+constexpr int kLeastMore = 8;       // fewer rays are not worth a hemisphere
 constexpr std::array kSteps{kCoarsest, kCoarsest / 2, kCoarsest / 4, kCoarsest / 8, 1, 1};
 
 /// Pixels of one level in an order that jumps about, so that those of one batch are far from each other.
@@ -42,19 +44,21 @@ class CacheFill {
           first_(std::max(kLeastMore, static_cast<int>(std::lround(kFirst * options.rays)))) {}
 
     void fill_level(int step, std::uint64_t level, const RunContext& context) {
-        const ImageWindow& window = rays_.scene().camera().window();
-        const std::uint64_t pixels = this->pixels();
-        for (const int pixel : level_pixels(window, step)) {
-            if (context.stopped()) return;
-            Rng rng(options_.seed, StreamPurpose::cache, (2 * level + 1) * pixels + static_cast<std::uint64_t>(pixel));
-            const int column = pixel % window.width, row = pixel / window.width;
-            const double across = column + rng.next(), down = row + rng.next();
-            const Vec2 at(static_cast<float>(across), static_cast<float>(down));
-            const auto c = visible_point(rays_, window.to_window(at), rng);
-            if (!c || is_covered(*c)) continue;
-            batch_.push_back(*c);
-            indices_.push_back(2 * level * pixels + static_cast<std::uint64_t>(pixel));
-            if (batch_.size() == kBatch) flush(context);
+        const std::vector<int> pixels = level_pixels(rays_.scene().camera().window(), step);
+        for (std::size_t begin = 0; begin < pixels.size() && !context.stopped(); begin += kAhead) {
+            std::vector<Candidate> candidates(std::min(kAhead, pixels.size() - begin));
+            parallel_for(static_cast<std::int64_t>(candidates.size()), [&](std::int64_t k) {
+                const auto i = static_cast<std::size_t>(k);
+                candidates[i] = candidate(static_cast<std::uint64_t>(pixels[begin + i]), level);
+            });
+            const std::size_t known = cache_.size();
+            for (const Candidate& c : candidates) {
+                // Records that were put in meanwhile may cover it.
+                if (!c.point || (cache_.size() > known && is_covered(*c.point))) continue;
+                batch_.push_back(*c.point);
+                indices_.push_back(c.index);
+                if (batch_.size() == kBatch) flush(context);
+            }
         }
         flush(context);
     }
@@ -84,6 +88,22 @@ class CacheFill {
     std::uint64_t pixels() const {
         const ImageWindow& window = rays_.scene().camera().window();
         return static_cast<std::uint64_t>(window.width) * static_cast<std::uint64_t>(window.height);
+    }
+    /// A point that needs a record, and the random stream of that; none where there are records enough.
+    struct Candidate {
+        std::optional<VisiblePoint> point;
+        std::uint64_t index = 0;
+    };
+    Candidate candidate(std::uint64_t pixel, std::uint64_t level) const {
+        const ImageWindow& window = rays_.scene().camera().window();
+        const auto width = static_cast<std::uint64_t>(window.width), index = 2 * level * pixels() + pixel;
+        Rng rng(options_.seed, StreamPurpose::cache, index + pixels());
+        const double across = static_cast<double>(pixel % width) + rng.next();
+        const double down = static_cast<double>(pixel / width) + rng.next();
+        const Vec2 at(static_cast<float>(across), static_cast<float>(down));
+        auto c = visible_point(rays_, window.to_window(at), rng);
+        if (c && is_covered(*c)) c.reset();
+        return {c, index};
     }
     bool is_covered(const VisiblePoint& c) const {
         return cache_.irradiance(c.vertex.point.p, cache_normal(c.vertex, c.back)).covered >= kCovered;

@@ -267,8 +267,9 @@ void IrradianceCache::index(std::uint32_t i) {
 }
 
 std::size_t IrradianceCache::bytes() const {
-    std::size_t sum = records_.capacity() * sizeof(Stored) + cells_.bucket_count() * sizeof(void*);
-    for (const auto& [k, cell] : cells_) sum += cell.capacity() * sizeof(std::uint32_t) + 48;
+    using Bucket = std::pair<decltype(cells_)::value_type, std::uint64_t>; // with how far from its place it stands
+    std::size_t sum = records_.capacity() * sizeof(Stored) + cells_.bucket_count() * sizeof(Bucket);
+    for (const auto& [k, cell] : cells_) sum += cell.capacity() * sizeof(std::uint32_t);
     return sum;
 }
 

@@ -7,8 +7,9 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <unordered_map>
 #include <vector>
+
+#include <tsl/robin_map.h>
 
 namespace keyhole {
 
@@ -99,6 +100,13 @@ class IrradianceCache {
         float held = 1; ///< factor of its translation gradient
     };
     using Cell = std::vector<std::uint32_t>;
+    struct HashOfCell {
+        /// Fibonacci hashing, whose upper bits are the good ones (Knuth, The Art of Computer Programming 3, 6.4).
+        std::size_t operator()(std::uint64_t key) const {
+            const std::uint64_t product = key * 0x9E3779B97F4A7C15;
+            return product ^ product >> 32;
+        }
+    };
 
     struct Sums;
     Sums sum_of_all() const;
@@ -118,7 +126,7 @@ class IrradianceCache {
     float error_, overlap_;
     std::vector<Stored> records_;
     // A hashed grid for each power of two of the radius: a record stands in all cells that its reach overlaps.
-    std::unordered_map<std::uint64_t, Cell> cells_;
+    tsl::robin_map<std::uint64_t, Cell, HashOfCell> cells_;
     int lowest_level_ = 0, highest_level_ = -1;
 };
 

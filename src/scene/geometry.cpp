@@ -56,7 +56,8 @@ SurfacePoint triangle_point(const TriangleMesh& mesh, std::uint32_t triangle, fl
     SurfacePoint s;
     s.p = a * w + b * u + c * v;
     // Lengths to the fourth power, which floats don't hold for all that may be in a scene.
-    s.ng = Vec3(Imath::V3d(b - a).cross(Imath::V3d(c - a)).normalized());
+    const Imath::V3d n = Imath::V3d(b - a).cross(Imath::V3d(c - a));
+    s.ng = Vec3(n * (1 / std::max(n.length(), std::numeric_limits<double>::min())));
     s.offset = kRelativeError * absolute(s.ng).dot(absolute(a) * w + absolute(b) * u + absolute(c) * v);
     s.ns = s.ng;
     s.primitive = triangle;

@@ -8,6 +8,7 @@
 #include "sampling/proposals/cut.h"
 #include "sampling/proposals/registry.h"
 
+#include <algorithm>
 #include <cstdlib>
 
 namespace keyhole {
@@ -20,7 +21,11 @@ class UserPathProposal final : public Proposal<Path> {
           guide_(*context.scene, path), label_("user path: " + path.name) {}
 
     std::string_view name() const override { return label_; }
-    double suitability(const Path& x) const override { return total_weight(x) > 0 ? 1 : 0; }
+    /// Whether total_weight() is more than nothing.
+    double suitability(const Path& x) const override {
+        const auto stays = [](const Vertex& v) { return !v.specular(); };
+        return guide_.user_path().seen || std::any_of(x.x.begin() + 1, x.x.end() - 1, stays) ? 1 : 0;
+    }
     std::optional<Path> propose(const Path& x, Rng& rng, Failure& why) const override;
     double transition_density(const Path& x, const Path& y) const override;
 

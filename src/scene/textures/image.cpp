@@ -48,8 +48,9 @@ template <class Texels> class Decoder {
 
 /// Row or column `i` of `n` after wrapping; -1: outside.
 int wrapped(std::int64_t i, int n, Wrap wrap) {
-    if (wrap == Wrap::clamp) return static_cast<int>(std::clamp<std::int64_t>(i, 0, n - 1));
-    if (wrap == Wrap::black) return i >= 0 && i < n ? static_cast<int>(i) : -1;
+    if (i >= 0 && i < n) return static_cast<int>(i);
+    if (wrap == Wrap::clamp) return i < 0 ? 0 : n - 1;
+    if (wrap == Wrap::black) return -1;
     const std::int64_t r = i % n;
     return static_cast<int>(r < 0 ? r + n : r);
 }
@@ -68,18 +69,20 @@ template <class T, class Texels> class ImageTexture final : public Texture<T> {
 
   private:
     T filtered(double x, double y) const {
-        if (options_.filter == Filter::nearest)
-            return texel(static_cast<std::int64_t>(std::floor(x)), static_cast<std::int64_t>(std::floor(y)));
+        if (options_.filter == Filter::nearest) return texel(column(std::floor(x)), row(std::floor(y)));
         x -= 0.5;
         y -= 0.5;
         const double fx = std::floor(x), fy = std::floor(y), tx = x - fx, ty = y - fy;
-        const auto i = static_cast<std::int64_t>(fx), j = static_cast<std::int64_t>(fy);
-        return (texel(i, j) * (1 - tx) + texel(i + 1, j) * tx) * (1 - ty) +
-               (texel(i, j + 1) * (1 - tx) + texel(i + 1, j + 1) * tx) * ty;
+        const int left = column(fx), right = column(fx + 1), above = row(fy), below = row(fy + 1);
+        return (texel(left, above) * (1 - tx) + texel(right, above) * tx) * (1 - ty) +
+               (texel(left, below) * (1 - tx) + texel(right, below) * tx) * ty;
     }
 
-    T texel(std::int64_t i, std::int64_t j) const {
-        const int x = wrapped(i, image_->width, options_.wrap), y = wrapped(j, image_->height, options_.wrap);
+    int column(double x) const { return wrapped(static_cast<std::int64_t>(x), image_->width, options_.wrap); }
+    int row(double y) const { return wrapped(static_cast<std::int64_t>(y), image_->height, options_.wrap); }
+
+    /// At what column() and row() say.
+    T texel(int x, int y) const {
         if (x < 0 || y < 0) return T(0);
         const auto pixel =
             static_cast<std::size_t>(y) * static_cast<std::size_t>(image_->width) + static_cast<std::size_t>(x);

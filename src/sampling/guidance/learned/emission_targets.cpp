@@ -164,9 +164,9 @@ double EmissionTargets::pdf(const FirstEdge& edge) const {
 
 EmissionTargets::Ways EmissionTargets::Group::ways(const SurfacePoint& x0, const EmitterRay& ray, double own,
                                                    const DirectionHistogram::Place& on_map) const {
-    if (x0.site != Site::infinite) return {0, x0.p, own};
-    if (directions.empty()) return {own, {}, 0};
-    Ways ways{(1 - kOwn) * map_share() * directions.pdf_on_map(on_map) + kOwn * own, {}, 0};
+    if (x0.site != Site::infinite) return {.from = x0.p, .from_pdf = own};
+    if (directions.empty()) return {.parallel = own};
+    Ways ways{.parallel = (1 - kOwn) * map_share() * directions.pdf_on_map(on_map) + kOwn * own};
     if (!directions.has_plane()) return ways;
     if (const auto on = directions.on_plane(ray.origin.p, ray.w)) {
         ways.from = on->q;
