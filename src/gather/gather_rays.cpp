@@ -3,6 +3,7 @@
 #include "gather/direct_irradiance.h"
 #include "gather/direct_light.h"
 #include "gather/photon_reflection.h"
+#include "gather/spots/spot_mixture.h"
 #include "photonmap/confirmation.h"
 #include "photonmap/few_photons.h"
 #include "photonmap/surface/density_in_sight.h"
@@ -137,9 +138,10 @@ Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSou
     if (!v.bsdf.traits().diffuse) return lobe(v, back, place, leg, source);
     const bool on = goes_on(leg, place, here);
     const Rgb f = v.bsdf.diffuse_reflectance(back);
-    Rgb sum = f * direct(place, v, here, source);
+    const Rgb direct_here = direct(place, v, here, source);
+    Rgb sum = f * direct_here;
     if (on)
-        sum += traced_on(v, back, place, leg, source);
+        sum += traced_on(v, back, place, direct_here + known.irradiance, leg, source);
     else if (place)
         sum += f * known.irradiance;
     if (!v.bsdf.traits().glossy) return sum;
@@ -216,12 +218,27 @@ std::optional<LobeNoise> GatherRays::lobe_noise(const Vertex& v, const Vec3& bac
     return LobeNoise{variance(once, again) + variance_of_photons(wide, back), variance(first, second)};
 }
 
-Rgb GatherRays::traced_on(const Vertex& v, const Vec3& back, const std::optional<std::uint32_t>& place, const Leg& leg,
-                          SampleSource& source) const {
-    Rgb sum(0.0);
-    if (const auto next = continue_walk(v, back, From::eye, source); next && !is_specular(next->event))
-        sum +=
-            next->weight * trace(v, next->w, next->pdf, {0, leg.scatterings + 1, leg.traced_on + 1}, source).indirect;
+Rgb GatherRays::bounced(const Vertex& v, const Vec3& back, const Rgb& irradiance, const Leg& next,
+                        SampleSource& source) const {
+    const auto by_bsdf = [&](const auto& density) {
+        const auto on = continue_walk(v, back, From::eye, source);
+        if (!on || is_specular(on->event)) return Rgb(0.0);
+        return on->weight * trace(v, on->w, on->pdf, next, source).indirect * (on->pdf / density(on->w, on->pdf));
+    };
+    if (maps_.spots == nullptr) return by_bsdf([](const Vec3& /*w*/, double pdf) { return pdf; });
+    const SpotMixture mixture(*maps_.spots, v.point.p, facing(v.point.ng, back), luminance(irradiance));
+    if (!(mixture.aimed() > 0) || source.next() >= mixture.aimed())
+        return by_bsdf([&](const Vec3& w, double pdf) { return mixture.density(w, pdf); });
+    const Vec3 w = mixture.sample(source);
+    const ScatterValue s = scatter(v.point, v.bsdf, Event::finite, w, back);
+    const double density = mixture.density(w, s.pdf_to_light);
+    if (!(density > 0) || !(luminance(s.value) > 0)) return Rgb(0.0);
+    return s.value * trace(v, w, density, next, source).indirect * (v.point.abs_cos(w) / density);
+}
+
+Rgb GatherRays::traced_on(const Vertex& v, const Vec3& back, const std::optional<std::uint32_t>& place,
+                          const Rgb& irradiance, const Leg& leg, SampleSource& source) const {
+    Rgb sum = bounced(v, back, irradiance, {0, leg.scatterings + 1, leg.traced_on + 1}, source);
     if (!place) return sum;
     // Light that specular vertices alone brought here is found by no ray.
     const SurfaceRegion here{v.point.p, facing(v.point.ng, back)};

@@ -11,6 +11,8 @@
 
 namespace keyhole {
 
+class HotSpots;
+
 /// What stage three asks. Maps may be null: nothing of that kind was found.
 struct GatherMaps {
     const PilotedMap* global = nullptr;
@@ -23,6 +25,7 @@ struct GatherMaps {
     /// How lobes are asked where rays end; null: by photons, as must be where there is coverage. A ray that is traced
     /// on may end beyond it, or where the photons of chains don't lie (Photons::everywhere).
     const LobeTechniques* lobes = nullptr;
+    const HotSpots* spots = nullptr; ///< that rays which are traced on are aimed at; null: none
 };
 
 struct LookupOptions {
@@ -87,9 +90,12 @@ class GatherRays {
     bool is_fine(std::uint32_t place) const;
     /// Radiance towards `back` that `v` reflects by its finite part.
     Rgb reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSource& source) const;
-    /// What `v`, whose place is `place`, if it has one, reflects of indirect light that comes along a ray more.
-    Rgb traced_on(const Vertex& v, const Vec3& back, const std::optional<std::uint32_t>& place, const Leg& leg,
-                  SampleSource& source) const;
+    /// What `v`, at which the irradiance is about `irradiance` [W/m^2], reflects of indirect light that comes along a
+    /// ray more. `next`: the leg that this begins.
+    Rgb bounced(const Vertex& v, const Vec3& back, const Rgb& irradiance, const Leg& next, SampleSource& source) const;
+    /// The same with the caustics that photons tell of near `place`, if `v` has one.
+    Rgb traced_on(const Vertex& v, const Vec3& back, const std::optional<std::uint32_t>& place, const Rgb& irradiance,
+                  const Leg& leg, SampleSource& source) const;
     /// Irradiance that emitters bring, weighed as the diffuse part weighs it: that of the place, if it does for `v`.
     Rgb direct(const std::optional<std::uint32_t>& place, const Vertex& v, const SurfaceRegion& here,
                SampleSource& source) const;

@@ -1,6 +1,10 @@
-// Records that aim at hot spots: the same irradiance, less of a gamble.
+// Records, and rays that are traced on, that aim at hot spots: the same irradiance, less of a gamble.
 #include "core/statistics.h"
 #include "gather/compute_record.h"
+#include "gather/spots/spot_mixture.h"
+#include "mapped_gather.h"
+#include "photon_support.h"
+#include "scene/warp.h"
 #include "support/chance.h"
 #include "support/test_scenes.h"
 
@@ -82,6 +86,51 @@ TEST_F(SpotRecords, HaveTheSlopeThatTheirNeighboursShow) {
     const Records a = make(spots_, left), b = make(spots_, right), middle = make(spots_, from_);
     const double difference = (b.irradiance.mean() - a.irradiance.mean()) / 0.8;
     EXPECT_NEAR(middle.slope, difference, 0.25 * std::abs(difference));
+}
+
+/// The irradiance of a cone of radiance 1, about twice as large as the one that is aimed at, by both techniques.
+TEST_F(SpotRecords, MixedRaysHaveTheDensityOfBothTechniques) {
+    const Vec3 p = from_.vertex.point.p, n = from_.vertex.point.ng;
+    const auto cones = spots_.cones_from(p, n);
+    ASSERT_GE(cones.size(), 1u);
+    const Vec3 axis = cones.front().axis;
+    const double sine2 = 2 * (1 - cones.front().cos_half_angle * cones.front().cos_half_angle);
+    for (const double besides : {0.0, 10 * cones.front().irradiance}) {
+        const SpotMixture mixture(spots_, p, n, besides);
+        EXPECT_GT(mixture.aimed(), 0.02);
+        EXPECT_LE(mixture.aimed(), 0.5);
+        RunningStats sum;
+        for (int i = 0; i < 200'000; ++i) {
+            const bool aims = rng_.next() < mixture.aimed();
+            const double u0 = rng_.next(), u1 = rng_.next();
+            const Vec3 w = aims ? mixture.sample(rng_) : Frame(n).to_world(cosine_hemisphere(u0, u1));
+            const double cosine = std::max(0.0f, w.dot(n));
+            const bool inside = static_cast<double>(w.dot(axis)) > std::sqrt(1 - sine2);
+            sum.add(inside ? cosine / mixture.density(w, cosine * kInvPi) : 0.0);
+        }
+        EXPECT_TRUE(test::has_mean(sum, kPi * sine2 * static_cast<double>(axis.dot(n))));
+        EXPECT_LT(sum.standard_error(), 0.05 * sum.mean()) << "too noisy to mean anything";
+    }
+}
+
+/// Rays that end on the floor of the room from nearer than the estimate there looks.
+TEST_F(SpotRecords, RaysThatAreTracedOnBringTheSameWithLessVariance) {
+    const SurfacePatches patches(*scene_);
+    PhotonSet photons;
+    const photon_test::Rectangle floor{{1, 0, 1}, {0, 0, 2}, {2, 0, 0}};
+    photon_test::throw_photons(floor, 20'000, rng_, photons.main_photons, Rgb(1e-6));
+    photon_test::throw_photons(floor, 2'000, rng_, photons.pilots, Rgb(1e-6));
+    const MappedGather gather(*scene_, patches, photons, {.max_radius = 0.1f, .caustic_radius = 0.1f});
+    const auto found = [&](const HotSpots* spots) {
+        RunningStats sum;
+        for (int i = 0; i < 400'000; ++i)
+            sum.add(luminance(gather.along({2, 0.004f, 2}, {0, -1, 0}, rng_, nullptr, spots).indirect));
+        return sum;
+    };
+    const RunningStats aimed = found(&spots_), blind = found(nullptr);
+    EXPECT_TRUE(test::same_mean(aimed, blind));
+    EXPECT_LT(blind.standard_error(), 0.1 * blind.mean()) << "too noisy to mean anything";
+    EXPECT_LT(aimed.variance(), blind.variance() / 10);
 }
 
 // A small globe around a lamp, in a long room: few rays meet it, and find it ten times as bright here as there.

@@ -15,19 +15,24 @@ class MappedGather {
                       {}),
           direct_(scene, irradiance_.places(), {}, {}) {}
 
-    GatherRays rays(const LobeTechniques* lobes = nullptr) const {
-        return {
-            scene_,
-            {.global = &global_, .irradiance = &irradiance_, .direct = &direct_, .patches = &patches_, .lobes = lobes},
-            options_,
-            8};
+    GatherRays rays(const LobeTechniques* lobes = nullptr, const HotSpots* spots = nullptr) const {
+        return {scene_,
+                {.global = &global_,
+                 .irradiance = &irradiance_,
+                 .direct = &direct_,
+                 .patches = &patches_,
+                 .lobes = lobes,
+                 .spots = spots},
+                options_,
+                8};
     }
     /// What a ray from a point in space along `w` finds.
-    GatherRays::Arrival along(const Vec3& point, const Vec3& w, Rng& rng, const LobeTechniques* lobes = nullptr) const {
+    GatherRays::Arrival along(const Vec3& point, const Vec3& w, Rng& rng, const LobeTechniques* lobes = nullptr,
+                              const HotSpots* spots = nullptr) const {
         Vertex from;
         from.point.site = Site::point;
         from.point.p = point;
-        return rays(lobes).trace(from, w, 1, 1, rng);
+        return rays(lobes, spots).trace(from, w, 1, 1, rng);
     }
 
   private:

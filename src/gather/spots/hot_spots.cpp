@@ -12,8 +12,6 @@
 namespace keyhole {
 namespace {
 
-constexpr std::size_t kMostSpots = 64;
-
 /// What a gather ray brings of indirect light, and from where; none if it meets nothing.
 std::optional<RadianceSample> find(const GatherRays& rays, std::uint64_t seed, std::int64_t i) {
     Rng rng(seed, StreamPurpose::hot_spots, static_cast<std::uint64_t>(i));
@@ -43,7 +41,7 @@ HotSpots::HotSpots(const GatherRays& rays, std::int64_t count, std::uint64_t see
     for (const auto& f : found)
         if (f) samples.push_back(*f);
     for (const BrightBall& ball : find_bright_balls(samples).balls) {
-        if (spots_.size() == kMostSpots) break;
+        if (spots_.size() == kMost) break;
         double sum2 = 0, inside = 0;
         for (const RadianceSample& f : samples) {
             if ((f.place - ball.centre).length2() > ball.radius * ball.radius) continue;
@@ -55,20 +53,22 @@ HotSpots::HotSpots(const GatherRays& rays, std::int64_t count, std::uint64_t see
     }
 }
 
+std::optional<SpotCone> HotSpots::cone_of(std::size_t i, const Vec3& p, const Vec3& n) const {
+    const Vec3 to = spots_[i].centre - p;
+    const double distance = static_cast<double>(to.length());
+    const auto radius = static_cast<double>(spots_[i].radius);
+    if (distance < 1.2 * radius) return std::nullopt;
+    const double sine = radius / distance;
+    const double cosine = static_cast<double>(to.dot(n)) / distance;
+    if (cosine <= -sine) return std::nullopt; // below the horizon
+    SpotCone cone{static_cast<int>(i), to / static_cast<float>(distance), std::sqrt(1 - sine * sine), 0};
+    cone.irradiance = spots_[i].radiance * cone.solid_angle() * std::max(cosine, sine);
+    return cone;
+}
+
 std::vector<SpotCone> HotSpots::cones_from(const Vec3& p, const Vec3& n) const {
     std::vector<SpotCone> cones;
-    for (std::size_t i = 0; i < spots_.size(); ++i) {
-        const Vec3 to = spots_[i].centre - p;
-        const double distance = static_cast<double>(to.length());
-        const auto radius = static_cast<double>(spots_[i].radius);
-        if (distance < 1.2 * radius) continue;
-        const double sine = radius / distance;
-        const double cosine = static_cast<double>(to.dot(n)) / distance;
-        if (cosine <= -sine) continue; // below the horizon
-        SpotCone cone{static_cast<int>(i), to.normalized(), std::sqrt(1 - sine * sine), 0};
-        cone.irradiance = spots_[i].radiance * cone.solid_angle() * std::max(cosine, sine);
-        cones.push_back(cone);
-    }
+    for_each_cone(p, n, [&](const SpotCone& cone) { cones.push_back(cone); });
     return cones;
 }
 

@@ -5,6 +5,7 @@
 #include "gather/gather_rays.h"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -26,6 +27,8 @@ struct SpotCone {
 /// thread-safe.
 class HotSpots {
   public:
+    static constexpr std::size_t kMost = 64;
+
     /// None.
     HotSpots() = default;
     /// Looks for them with `count` rays.
@@ -37,7 +40,12 @@ class HotSpots {
         return (place - s.centre).length2() <= s.radius * s.radius;
     }
 
-    /// Cones of the spots that shine on `p` with normal `n`, if they see it. Spots that surround `p` are left out.
+    /// Calls visit(cone) for the spots that shine on `p` with normal `n`, if they see it. Spots that surround `p` are
+    /// left out.
+    template <class Visit> void for_each_cone(const Vec3& p, const Vec3& n, Visit&& visit) const {
+        for (std::size_t i = 0; i < spots_.size(); ++i)
+            if (const auto cone = cone_of(i, p, n)) visit(*cone);
+    }
     std::vector<SpotCone> cones_from(const Vec3& p, const Vec3& n) const;
     /// Those that are worth rays, and at most `rays` of these shared among them by what they may bring: fewer where
     /// spots are the lesser part of what makes rays differ.
@@ -51,6 +59,8 @@ class HotSpots {
         float radius;    ///< [m]
         double radiance; ///< root of the mean square of what rays brought from there [W/(m^2 sr)]
     };
+
+    std::optional<SpotCone> cone_of(std::size_t i, const Vec3& p, const Vec3& n) const;
 
     std::vector<Spot> spots_;
     double share_ = 0; ///< that all spots have of the second moment of what rays bring

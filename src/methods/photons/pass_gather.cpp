@@ -87,6 +87,7 @@ PassGather::PassGather(const SamplerContext& c, const RenderPlan& plan, std::int
         if (context.by_time && context.communicator == nullptr)
             decide = [&](const PlacedRecords& placed) { return rays_worth_their_time(placed, samples, context); };
         spots_ = find_hot_spots(*rays_, options, context);
+        if (spots_.size() > 0) maps.spots = &spots_, rays_.emplace(rays());
         cache_ = fill_cache(*rays_, spots_, options, context.with_reserve(kForSamples), decide);
     }
     gather_.emplace(*rays_, cache_ ? &*cache_ : nullptr, &spots_, samples);
