@@ -6,6 +6,7 @@
 #include "scene/bsdfs/diffuse.h"
 #include "scene/emitters/emitters.h"
 #include "scene/emitters/sphere_map.h"
+#include "scene/load/load_yaml.h"
 #include "scene/warp.h"
 #include "support/chance.h"
 #include "support/chi_squared.h"
@@ -127,7 +128,7 @@ TEST(DirectionHistogram, FindsTheWindowThatRaysMeetIn) {
 
 /// From a place in whose view rays through the window make but a narrow cone: what samples do there, and what the
 /// density says of it.
-void expect_density_of_samples(const DirectionHistogram& histogram, const Vec3& p) {
+template <class Histogram> void expect_density_of_samples(const Histogram& histogram, const Vec3& p) {
     SCOPED_TRACE(testing::Message() << p);
     const Vec3 axis = (Vec3(0, 2, -0.5f) - p).normalized();
     const double cos_edge = std::cos(0.15), solid_angle = 2 * kPi * (1 - cos_edge);
@@ -154,6 +155,24 @@ TEST(DirectionHistogram, HasTheDensityOfItsSamplesFromWhereverItIsAsked) {
     expect_density_of_samples(histogram, {0.5f, 1, -3});   // from behind
     expect_density_of_samples(histogram, {6, 2, -0.5f});   // in the plane
     expect_density_of_samples(histogram, {6, 2, -0.501f}); // nearly
+}
+
+/// The rays of a cell that pass the left quarter of the window, and all.
+TEST(NestedHistogram, KnowsOfThePartOfAWindowThatItsOwnRaysMissed) {
+    const DirectionHistogram::Plane plane{{0, 2, -0.5f}, {0, 0, -1}};
+    const auto all = rays_through_a_window(400, 0);
+    std::vector<DirectionHistogram::Ray> some;
+    for (const auto& ray : all)
+        if ((ray.p + ray.w * ((-0.5f - ray.p.z) / ray.w.z)).x < -0.25f) some.push_back(ray);
+    const auto wider = std::make_shared<const DirectionHistogram>(all, plane);
+    const DirectionHistogram own(some, plane);
+    const NestedHistogram nested(own, wider), alone(own, nullptr);
+    const Vec3 p(0.8f, 0, 0.3f), missed = (Vec3(0.3f, 2, -0.5f) - p).normalized();
+    EXPECT_GT(wider->pdf(p, missed), 100 * own.pdf(p, missed));
+    EXPECT_EQ(alone.pdf(p, missed), own.pdf(p, missed));
+    EXPECT_GT(nested.pdf(p, missed), 0.2 * wider->pdf(p, missed));
+    expect_density_of_samples(nested, p);
+    expect_density_of_samples(alone, p);
 }
 
 TEST(DirectionHistogram, KeepsDirectionsWhereRaysDoNotMeet) {
@@ -273,6 +292,31 @@ TEST_F(LearnedDirectLight_Window, BringsAllLightWithATenthOfTheVariance) {
               0.1 * arriving(*scene, nullptr, kPlace, 200'000).variance());
     EXPECT_GT(std::abs(z_score(plain, arriving(*scene, learned.get(), kFloor, 100'000, 1.2))), 4)
         << "a density that is wrong by a fifth has to show";
+}
+
+/// A curtain covers half of the window: what is seen of that changes within a few hands' breadths.
+TEST(LearnedDirectLight, LeavesNoStripOfTheSkyToChance) {
+    const Scene scene(load_scene(KEYHOLE_SOURCE_DIR "/scenes/bedroom.yaml").description);
+    const auto learned = learn_direct_light(scene, {.paths = 65'536}, {});
+    ASSERT_TRUE(learned);
+    Rng rng(5, StreamPurpose::test, 0);
+    std::vector<RunningStats> places;
+    RunningStats all;
+    for (int i = 0; i < 600; ++i) {
+        const Vertex eye = sample_eye(scene, rng);
+        const double x = rng.next();
+        const Vec3 w = scene.camera().ray_direction(eye.point, Vec2(Imath::V2d(x, rng.next())));
+        const auto at = scene.trace(eye.point, w);
+        if (!at || at->site != Site::surface) continue;
+        const Vec3 n = facing(at->ng, -w);
+        places.push_back(arriving(scene, learned.get(), {at->p, at->p, n}, 2000));
+        all.add(places.back().mean());
+    }
+    const double dark = 0.1 * all.mean() * all.mean();
+    std::vector<double> noise; // relative variance; what is nearly dark doesn't show
+    for (const RunningStats& p : places) noise.push_back(p.variance() / (p.mean() * p.mean() + dark));
+    std::ranges::sort(noise);
+    EXPECT_LT(noise[noise.size() * 9 / 10], 5.5);
 }
 
 TEST(LearnedDirectLight_ManyLamps, FindsTheOneThatShinesAndLosesNone) {

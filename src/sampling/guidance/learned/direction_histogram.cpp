@@ -156,9 +156,9 @@ Vec3 DirectionHistogram::sample(const Vec3& p, double u0, double u1) const {
     return (sample_on_plane((u0 - flat) / (1 - flat), u1) - p).normalized();
 }
 
-double DirectionHistogram::pdf(const Vec3& p, const Vec3& w) const {
+double DirectionHistogram::pdf(const Vec3& p, const Vec3& w, const Place& on_map) const {
     const double flat = share_of_octahedron(p);
-    double sum = flat * pdf_on_map(place_on_map(w));
+    double sum = flat * pdf_on_map(on_map);
     if (flat == 1) return sum;
     const auto on = on_plane(p, w);
     if (!on || !((on->q - p).dot(w) > 0)) return sum; // behind p

@@ -37,7 +37,7 @@ class DirectionHistogram {
     /// Unit direction at `p` by two numbers in [0,1). Not to be called when empty.
     Vec3 sample(const Vec3& p, double u0, double u1) const;
     /// Density per solid angle with which sample() makes `w` at `p`.
-    double pdf(const Vec3& p, const Vec3& w) const;
+    double pdf(const Vec3& p, const Vec3& w) const { return pdf(p, w, place_on_map(w)); }
 
     /// The parts of which that is made: a point of the plane, where there is one with a histogram, by its density per
     /// area [1/m^2], and a direction by the octahedral map, per solid angle.
@@ -54,6 +54,8 @@ class DirectionHistogram {
     using Place = PlaneHistogram::Place;
     static Place place_on_map(const Vec3& w);
     double pdf_on_map(const Place& place) const;
+    /// pdf() for who knows place_on_map(w).
+    double pdf(const Vec3& p, const Vec3& w, const Place& on_map) const;
     /// Of all directions, those that are drawn from the octahedral map where there is a plane: those that are flat to
     /// it must not be left to chance.
     static constexpr double kNotOnPlane = 0.15;

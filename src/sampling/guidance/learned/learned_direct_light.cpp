@@ -13,6 +13,8 @@ namespace {
 
 /// Samples of a cell, at least: half of them make its histogram while the other half tells how good that is.
 constexpr std::size_t kLeastFound = 128;
+/// Samples of a wider cell over those of a cell.
+constexpr std::size_t kTimesWider = 16;
 /// Shares of the light tree that a cell chooses among.
 constexpr std::array<double, 6> kPlainShares{0.1, 0.2, 0.35, 0.5, 0.75, 1};
 /// Second moment over that of asking the light tree for the middle of the cell, below which it is asked for each place.
@@ -66,6 +68,7 @@ double LearnedDirectLight::Cell::pdf(std::uint32_t emitter, const Vec3& p, const
 
 /// An emitter's share is the root of the second moment that its samples have when they are drawn as they will be.
 std::vector<LearnedDirectLight::Share> LearnedDirectLight::make_shares(std::span<const FoundLight* const> found,
+                                                                       const WiderCells::Directions& wider,
                                                                        const Cell* like) {
     std::vector<const FoundLight*> sorted(found.begin(), found.end());
     std::ranges::stable_sort(sorted, {}, &FoundLight::emitter);
@@ -80,8 +83,10 @@ std::vector<LearnedDirectLight::Share> LearnedDirectLight::make_shares(std::span
         }
         if (!rays.empty()) {
             const Share* model = like != nullptr ? like->share_of(share.emitter) : nullptr;
-            share.directions = DirectionHistogram(rays, model != nullptr ? model->directions.plane()
-                                                                         : DirectionHistogram::meeting_plane(rays));
+            const auto behind = wider.find(share.emitter);
+            share.directions = {DirectionHistogram(rays, model != nullptr ? model->directions.own().plane()
+                                                                          : DirectionHistogram::meeting_plane(rays)),
+                                behind != wider.end() ? behind->second : nullptr};
         }
         for (std::size_t i = begin; i < end; ++i) {
             const FoundLight& f = *sorted[i];
@@ -97,7 +102,9 @@ std::vector<LearnedDirectLight::Share> LearnedDirectLight::make_shares(std::span
     return shares;
 }
 
-LearnedDirectLight::Cell LearnedDirectLight::make_cell(std::span<const FoundLight* const> found) const {
+/// What wider cells know is not held out: of their finds, these are few.
+LearnedDirectLight::Cell LearnedDirectLight::make_cell(std::span<const FoundLight* const> found,
+                                                       const WiderCells& wider) const {
     Cell cell;
     cell.count = found.size();
     if (found.size() < kLeastFound) return cell;
@@ -105,12 +112,13 @@ LearnedDirectLight::Cell LearnedDirectLight::make_cell(std::span<const FoundLigh
     for (std::size_t i = 0; i < found.size(); ++i) (i % 2 == 0 ? some : others).push_back(found[i]);
     std::array<double, kPlainShares.size()> by_middle{}, by_place{};
     Cell whole;
-    whole.shares = make_shares(found);
     cell.middle = middle_of(found);
+    const WiderCells::Directions& behind = wider.at({cell.middle.p, cell.middle.ng});
+    whole.shares = make_shares(found, behind);
     cell.known = known_around(found);
     for (Share& share : whole.shares) share.by_tree = scene_->light_tree().probability(cell.middle, share.emitter);
     for (const auto& [learned, held_out] : {std::pair{&some, &others}, std::pair{&others, &some}}) {
-        cell.shares = make_shares(*learned, &whole);
+        cell.shares = make_shares(*learned, behind, &whole);
         for (const FoundLight* f : *held_out) {
             const double middle = whole.share_of(f->emitter)->by_tree * f->point_pdf, place = f->choice * f->point_pdf;
             const double by_shares = cell.pdf(*f), value2 = f->value * f->value / f->density;
@@ -137,9 +145,11 @@ LearnedDirectLight::LearnedDirectLight(const Scene& scene, std::span<const Found
     tree_ = SurfaceCells(std::move(places), kLeastFound);
     std::vector<std::vector<const FoundLight*>> by_cell(tree_.size());
     for (const FoundLight& f : found) by_cell[tree_.cell_of(f.at)].push_back(&f);
+    const WiderCells wider(found, kTimesWider * kLeastFound);
+    bytes_of_wider_ = wider.bytes();
     cells_.resize(tree_.size());
     parallel_for(static_cast<std::int64_t>(cells_.size()), [&](std::int64_t i) {
-        cells_[static_cast<std::size_t>(i)] = make_cell(by_cell[static_cast<std::size_t>(i)]);
+        cells_[static_cast<std::size_t>(i)] = make_cell(by_cell[static_cast<std::size_t>(i)], wider);
     });
     double sum = 0;
     for (const Cell& cell : cells_) sum += cell.ratio * static_cast<double>(cell.count);
@@ -227,7 +237,7 @@ std::vector<EmitterChance> LearnedDirectLight::chances(const SurfacePoint& at, i
 }
 
 std::size_t LearnedDirectLight::bytes() const {
-    std::size_t sum = tree_.bytes() + cells_.capacity() * sizeof(Cell);
+    std::size_t sum = tree_.bytes() + cells_.capacity() * sizeof(Cell) + bytes_of_wider_;
     for (const Cell& cell : cells_) {
         sum += cell.shares.capacity() * sizeof(Share);
         for (const Share& share : cell.shares) sum += share.directions.bytes();

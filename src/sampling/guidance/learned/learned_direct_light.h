@@ -2,8 +2,9 @@
 // the sky.
 #pragma once
 
-#include "sampling/guidance/learned/direction_histogram.h"
-#include "sampling/guidance/learned/surface_cells.h"
+#include "sampling/guidance/learned/found_light.h"
+#include "sampling/guidance/learned/nested_histogram.h"
+#include "sampling/guidance/learned/wider_cells.h"
 #include "scene/scene.h"
 
 #include <Imath/ImathBox.h>
@@ -13,18 +14,6 @@
 #include <vector>
 
 namespace keyhole {
-
-/// Light that a shadow ray found: a sample of an emitter's point that is seen from a place.
-struct FoundLight {
-    SurfaceCells::Place at;
-    std::uint32_t emitter;
-    bool infinite;    ///< from an environment
-    Vec3 towards;     ///< unit: where it came from
-    double value;     ///< luminance that it would bring per unit of the coordinates of the emitter's point [W/m^2 / ..]
-    double choice;    ///< probability of the emitter by the light tree
-    double point_pdf; ///< of the point by the emitter
-    double density{0}; ///< of all samples that were drawn in search of light, added up: balance heuristic
-};
 
 /// With which probability samples of direct light go to an emitter.
 struct EmitterChance {
@@ -36,9 +25,9 @@ struct EmitterChance {
 /// Surfaces in cells by place and normal, in each of which emitters are chosen by the root of the second moment of what
 /// they were found to bring, visibility included (Vevoda, Kondapaneni and Krivanek 2018, "Bayesian Online Regression
 /// for Adaptive Direct Illumination Sampling", cells and moments; theirs are regularised where these fall back on the
-/// light tree), and directions to an environment by a histogram. Of all samples a share goes by
-/// the light tree as if nothing were known: in each cell that which would have left the least second moment of light
-/// that the histogram was not made from. Immutable and thread-safe.
+/// light tree), and directions to an environment by a histogram, with that of a wider cell behind it. Of all samples a
+/// share goes by the light tree as if nothing were known: in each cell that which would have left the least second
+/// moment of light that the histogram was not made from. Immutable and thread-safe.
 class LearnedDirectLight final : public DirectLightSampler {
   public:
     /// @param found what shadow rays found, in any order; there may be nothing
@@ -65,9 +54,9 @@ class LearnedDirectLight final : public DirectLightSampler {
     struct Share {
         std::uint32_t emitter;
         double probability = 0;
-        double up_to = 0;                ///< sum of the probabilities so far
-        double by_tree = 0;              ///< probability that the light tree has for the middle of the cell
-        DirectionHistogram directions{}; ///< to an environment; empty: by the emitter
+        double up_to = 0;             ///< sum of the probabilities so far
+        double by_tree = 0;           ///< probability that the light tree has for the middle of the cell
+        NestedHistogram directions{}; ///< to an environment; empty: by the emitter
     };
     struct Cell {
         double plain = 1;     ///< share of samples by the light tree
@@ -84,8 +73,9 @@ class LearnedDirectLight final : public DirectLightSampler {
         double pdf(const FoundLight& f) const { return pdf(f.emitter, f.at.p, f.towards, f.point_pdf); }
     };
     /// `like`: planes of the histograms are those that these have.
-    static std::vector<Share> make_shares(std::span<const FoundLight* const> found, const Cell* like = nullptr);
-    Cell make_cell(std::span<const FoundLight* const> found) const;
+    static std::vector<Share> make_shares(std::span<const FoundLight* const> found, const WiderCells::Directions& wider,
+                                          const Cell* like = nullptr);
+    Cell make_cell(std::span<const FoundLight* const> found, const WiderCells& wider) const;
     const Cell& cell_of(const SurfaceCells::Place& at) const;
     const Cell& cell_of(const SurfacePoint& at) const { return cell_of(SurfaceCells::Place{at.p, at.ng}); }
     /// What the light tree is asked for.
@@ -108,6 +98,7 @@ class LearnedDirectLight final : public DirectLightSampler {
     std::vector<Cell> cells_;
     Cell unknown_; ///< the light tree's choice
     double ratio_ = 1;
+    std::size_t bytes_of_wider_ = 0; ///< of histograms that cells share
 };
 
 } // namespace keyhole

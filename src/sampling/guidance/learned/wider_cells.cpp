@@ -1,0 +1,51 @@
+#include "sampling/guidance/learned/wider_cells.h"
+
+#include "core/parallel.h"
+
+#include <algorithm>
+
+namespace keyhole {
+namespace {
+
+/// Finds that make a histogram: more tell little more here, and every shadow ray asks for its density.
+constexpr std::size_t kFinds = 256;
+
+WiderCells::Directions histograms(std::span<const FoundLight* const> found) {
+    std::map<std::uint32_t, std::vector<DirectionHistogram::Ray>> rays;
+    const std::size_t stride = std::max<std::size_t>(1, found.size() / kFinds);
+    for (std::size_t i = 0; i < found.size(); i += stride) {
+        const FoundLight& f = *found[i];
+        rays[f.emitter].push_back({f.at.p, f.towards, f.value / f.density});
+    }
+    WiderCells::Directions all;
+    for (const auto& [emitter, of_emitter] : rays) {
+        DirectionHistogram histogram(of_emitter, DirectionHistogram::meeting_plane(of_emitter));
+        if (!histogram.empty()) all[emitter] = std::make_shared<const DirectionHistogram>(std::move(histogram));
+    }
+    return all;
+}
+
+} // namespace
+
+WiderCells::WiderCells(std::span<const FoundLight> found, std::size_t least) {
+    std::vector<SurfaceCells::Place> places;
+    for (const FoundLight& f : found)
+        if (f.infinite) places.push_back(f.at);
+    tree_ = SurfaceCells(std::move(places), least);
+    std::vector<std::vector<const FoundLight*>> by_cell(tree_.size());
+    for (const FoundLight& f : found)
+        if (f.infinite) by_cell[tree_.cell_of(f.at)].push_back(&f);
+    cells_.resize(tree_.size());
+    parallel_for(static_cast<std::int64_t>(cells_.size()), [&](std::int64_t i) {
+        cells_[static_cast<std::size_t>(i)] = histograms(by_cell[static_cast<std::size_t>(i)]);
+    });
+}
+
+std::size_t WiderCells::bytes() const {
+    std::size_t sum = tree_.bytes() + cells_.capacity() * sizeof(Directions);
+    for (const Directions& cell : cells_)
+        for (const auto& [emitter, histogram] : cell) sum += sizeof(DirectionHistogram) + histogram->bytes();
+    return sum;
+}
+
+} // namespace keyhole
