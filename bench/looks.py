@@ -17,7 +17,7 @@ import numpy
 import OpenImageIO as oiio
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-OWN = {name: (ROOT / f"scenes/{name}.yaml", 320, 240) for name in ("box", "rooms", "lantern", "kitchen")}
+OWN = {name: (ROOT / f"scenes/{name}.yaml", 320, 240) for name in ("box", "rooms", "lantern", "kitchen", "bedroom")}
 OUTSIDE = {"coffee": (200, 250), "bathroom": (240, 240), "dining-room": (320, 180)}
 
 

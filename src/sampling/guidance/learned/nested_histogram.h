@@ -3,7 +3,9 @@
 
 #include "sampling/guidance/learned/direction_histogram.h"
 
+#include <cstddef>
 #include <memory>
+#include <utility>
 
 namespace keyhole {
 

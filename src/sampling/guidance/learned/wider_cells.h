@@ -4,6 +4,8 @@
 #include "sampling/guidance/learned/direction_histogram.h"
 #include "sampling/guidance/learned/found_light.h"
 
+#include <cstddef>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <span>
