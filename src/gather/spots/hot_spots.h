@@ -27,7 +27,7 @@ struct SpotCone {
 /// thread-safe.
 class HotSpots {
   public:
-    static constexpr std::size_t kMost = 64;
+    static constexpr std::size_t kMost = 64; ///< spots
 
     /// None.
     HotSpots() = default;

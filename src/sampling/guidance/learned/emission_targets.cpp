@@ -65,15 +65,10 @@ EmitterRay parallel_ray(const Scene& scene, const SurfacePoint& x0, const Vec3& 
 
 EmissionTargets::EmissionTargets(const Scene& scene, std::span<const SeenLight> seen) : scene_(&scene) {
     if (seen.empty()) return;
-    std::vector<SurfaceCells::Place> places;
-    places.reserve(seen.size());
-    for (const SeenLight& s : seen) places.push_back(s.at);
-    const SurfaceCells cells(std::move(places), kLeastTargets);
-    std::vector<std::vector<const SeenLight*>> by_cell(cells.size());
-    for (const SeenLight& s : seen) by_cell[cells.cell_of(s.at)].push_back(&s);
+    SeenInCells by_cell(seen, kLeastTargets);
     std::vector<Ball> balls;
     std::vector<double> weights;
-    for (auto& here : by_cell) {
+    for (auto& here : by_cell.cells) {
         std::ranges::stable_sort(here, {}, &SeenLight::emitter);
         add_cell(here, balls, weights);
     }

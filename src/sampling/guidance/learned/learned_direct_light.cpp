@@ -139,17 +139,13 @@ LearnedDirectLight::Cell LearnedDirectLight::make_cell(std::span<const FoundLigh
 }
 
 LearnedDirectLight::LearnedDirectLight(const Scene& scene, std::span<const FoundLight> found) : scene_(&scene) {
-    std::vector<SurfaceCells::Place> places;
-    places.reserve(found.size());
-    for (const FoundLight& f : found) places.push_back(f.at);
-    tree_ = SurfaceCells(std::move(places), kLeastFound);
-    std::vector<std::vector<const FoundLight*>> by_cell(tree_.size());
-    for (const FoundLight& f : found) by_cell[tree_.cell_of(f.at)].push_back(&f);
+    SeenInCells by_cell(found, kLeastFound);
+    tree_ = std::move(by_cell.tree);
     const WiderCells wider(found, kTimesWider * kLeastFound);
     bytes_of_wider_ = wider.bytes();
     cells_.resize(tree_.size());
     parallel_for(static_cast<std::int64_t>(cells_.size()), [&](std::int64_t i) {
-        cells_[static_cast<std::size_t>(i)] = make_cell(by_cell[static_cast<std::size_t>(i)], wider);
+        cells_[static_cast<std::size_t>(i)] = make_cell(by_cell.cells[static_cast<std::size_t>(i)], wider);
     });
     double sum = 0;
     for (const Cell& cell : cells_) sum += cell.ratio * static_cast<double>(cell.count);

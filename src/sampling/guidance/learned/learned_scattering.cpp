@@ -29,19 +29,15 @@ DirectionHistogram histogram_of(std::span<const SeenScattering* const> seen, dou
 } // namespace
 
 LearnedScattering::LearnedScattering(std::span<const SeenScattering> seen) {
-    std::vector<SurfaceCells::Place> places;
-    places.reserve(seen.size());
-    for (const SeenScattering& s : seen) places.push_back(s.at);
-    tree_ = SurfaceCells(std::move(places), kLeastSeen);
-    std::vector<std::vector<const SeenScattering*>> by_cell(tree_.size());
-    for (const SeenScattering& s : seen) by_cell[tree_.cell_of(s.at)].push_back(&s);
+    SeenInCells by_cell(seen, kLeastSeen);
+    tree_ = std::move(by_cell.tree);
     cells_.resize(tree_.size());
     parallel_for(static_cast<std::int64_t>(cells_.size()), [&](std::int64_t i) {
-        cells_[static_cast<std::size_t>(i)] = make_cell(by_cell[static_cast<std::size_t>(i)]);
+        cells_[static_cast<std::size_t>(i)] = make_cell(by_cell.cells[static_cast<std::size_t>(i)]);
     });
     double all = 0;
     for (std::size_t i = 0; i < cells_.size(); ++i)
-        for (const SeenScattering* s : by_cell[i]) {
+        for (const SeenScattering* s : by_cell.cells[i]) {
             all += s->weight;
             if (cells_[i].plain < 1) helped_ += s->weight;
         }

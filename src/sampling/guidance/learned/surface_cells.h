@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace keyhole {
@@ -43,6 +44,23 @@ class SurfaceCells {
     float normal_scale_ = 0; // [m]: by how much normals count beside places
     std::vector<Node> nodes_{Node{}};
     std::uint32_t cells_ = 1;
+};
+
+/// Cells over all that has a place `at`, and what stands in each of them, in its order.
+template <class Seen> struct SeenInCells {
+    SurfaceCells tree;
+    std::vector<std::vector<const Seen*>> cells;
+
+    /// @param seen must outlive this
+    /// @param least of them that each cell holds, unless there are fewer in all
+    SeenInCells(std::span<const Seen> seen, std::size_t least) {
+        std::vector<SurfaceCells::Place> places;
+        places.reserve(seen.size());
+        for (const Seen& s : seen) places.push_back(s.at);
+        tree = SurfaceCells(std::move(places), least);
+        cells.resize(tree.size());
+        for (const Seen& s : seen) cells[tree.cell_of(s.at)].push_back(&s);
+    }
 };
 
 } // namespace keyhole

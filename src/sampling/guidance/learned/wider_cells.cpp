@@ -3,6 +3,7 @@
 #include "core/parallel.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace keyhole {
 namespace {
@@ -28,16 +29,13 @@ WiderCells::Directions histograms(std::span<const FoundLight* const> found) {
 } // namespace
 
 WiderCells::WiderCells(std::span<const FoundLight> found, std::size_t least) {
-    std::vector<SurfaceCells::Place> places;
-    for (const FoundLight& f : found)
-        if (f.infinite) places.push_back(f.at);
-    tree_ = SurfaceCells(std::move(places), least);
-    std::vector<std::vector<const FoundLight*>> by_cell(tree_.size());
-    for (const FoundLight& f : found)
-        if (f.infinite) by_cell[tree_.cell_of(f.at)].push_back(&f);
+    std::vector<FoundLight> sky;
+    std::ranges::copy_if(found, std::back_inserter(sky), &FoundLight::infinite);
+    SeenInCells by_cell(std::span<const FoundLight>(sky), least);
+    tree_ = std::move(by_cell.tree);
     cells_.resize(tree_.size());
     parallel_for(static_cast<std::int64_t>(cells_.size()), [&](std::int64_t i) {
-        cells_[static_cast<std::size_t>(i)] = histograms(by_cell[static_cast<std::size_t>(i)]);
+        cells_[static_cast<std::size_t>(i)] = histograms(by_cell.cells[static_cast<std::size_t>(i)]);
     });
 }
 
