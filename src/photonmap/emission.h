@@ -43,6 +43,11 @@ struct EmittedPhotons : Photons, Emission {
     std::size_t bytes = 0; ///< of the stores
 };
 
+/// Of the photons of light paths, the effective share that is where light is seen: (sum w)^2 / (n sum w^2), where w is
+/// the visible power that the guide gives to each of the n photons of some thousand paths; 0 if there is none.
+double share_of_photons_seen(const Scene& scene, const EmissionGuide& guide, const StorageRule& rule,
+                             std::uint64_t seed, const RunContext& context);
+
 /// Traces light paths and stores a photon at every vertex where a map can be asked (see docs/photon-maps.md): in the
 /// global map unless light came straight from the emitter, and, if it came through specular vertices only or from
 /// outside the coverage of gather rays, in the caustic map as well; each map is complete by itself.

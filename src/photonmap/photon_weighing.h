@@ -61,9 +61,13 @@ struct PhotonWeighing {
 struct PhotonWeights {
     double known_global = 0, known_caustic = 0; ///< weight
     double unknown = 0;                         ///< luminance of power [W]
+    double squares = 0;                         ///< of known weights
+    std::uint64_t all = 0;                      ///< how many there are
     std::uint64_t seen = 0;                     ///< how many have a known weight that isn't 0
 
     void add(PhotonKind kind, const PhotonWeighing::Weight& weight, double power) {
+        ++all;
+        if (weight.known) squares += weight.value * weight.value;
         seen += weight.known && weight.value > 0 ? 1 : 0;
         (!weight.known                ? unknown
          : kind == PhotonKind::global ? known_global
@@ -73,8 +77,14 @@ struct PhotonWeights {
         known_global += o.known_global;
         known_caustic += o.known_caustic;
         unknown += o.unknown;
+        squares += o.squares;
+        all += o.all;
         seen += o.seen;
         return *this;
+    }
+    /// Effective share of photons that are seen: (sum w)^2 / (n sum w^2); 0 if none is.
+    double effective_share() const {
+        return squares > 0 ? known() * known() / (static_cast<double>(all) * squares) : 0;
     }
     double known() const { return known_global + known_caustic; }
     /// Photons of unknown importance together weigh a twentieth of the others: few enough to cost little, enough for

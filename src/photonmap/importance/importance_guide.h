@@ -15,7 +15,9 @@ class ImportanceGuide {
     ImportanceGuide(const PhotonMap& importons, float max_radius, const SurfacePatches& patches, const Scene* scene,
                     const RunContext& context)
         : places_(some(importons), PhotonMap::Wanted::one),
-          map_(places_, importons, {.k = 30, .max_radius = max_radius, .patches = &patches, .scene = scene}, context) {}
+          map_(places_, importons,
+               {.k = 30, .max_radius = max_radius, .patches = &patches, .most_hidden = kMostHidden, .scene = scene},
+               context) {}
     ImportanceGuide(const ImportanceGuide&) = delete; // map_ refers to places_
     ImportanceGuide& operator=(const ImportanceGuide&) = delete;
 
@@ -26,6 +28,10 @@ class ImportanceGuide {
     std::size_t bytes() const { return places_.bytes() + map_.bytes(); }
 
   private:
+    /// Behind the outer faces of walls a lookup finds one hidden importon after the other: rays that are better spent
+    /// on light paths. Where that many are hidden nothing is known, and photons share what is kept for such places.
+    static constexpr int kMostHidden = 4;
+
     /// Importons that stand in for pilot photons. They count as main photons as well, which a guide can afford.
     static std::vector<Photon> some(const PhotonMap& importons);
 

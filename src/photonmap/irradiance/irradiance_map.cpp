@@ -42,7 +42,7 @@ std::uint8_t obstructed_levels(const SurfacePatches& patches, const SurfaceRegio
 IrradianceMap::IrradianceMap(const PhotonMap& pilots, const PhotonMap& main_photons, const IrradianceOptions& options,
                              const RunContext& context)
     : pilots_(pilots), estimates_(pilots.photons().size()), max_radius_(options.max_radius), scene_(options.scene),
-      patches_(options.patches) {
+      patches_(options.patches), most_hidden_(options.most_hidden) {
     const Range own = own_part(static_cast<std::int64_t>(estimates_.size()), context);
     std::vector<Count> used(static_cast<std::size_t>(blocks_of(own)));
     context.begin("irradiance", static_cast<std::uint64_t>(own.size()), "estimates");
@@ -120,16 +120,20 @@ IrradianceMap::Answer IrradianceMap::answer(std::uint32_t place, const SurfaceRe
     };
     if (!visible(pilots_[place])) {
         int hidden = 0;
-        const auto accept = [&](const Photon& p) {
+        std::optional<std::uint32_t> seen; // the nearest one so far
+        (void)pilots_.nearest_accepted(region, kFarthest * max_radius_, [&](const Photon& p) {
             const auto i = static_cast<std::uint32_t>(&p - pilots_.photons().data());
+            if (hidden >= most_hidden_) return true; // given up: what is accepted now only ends the search
             if (hidden >= kTestedAll && i % kTestedThen != 0) return false;
-            const bool seen = visible(p);
-            hidden += seen ? 0 : 1;
-            return seen;
-        };
-        const auto other = pilots_.nearest_accepted(region, kFarthest * max_radius_, accept);
-        if (!other) return {};
-        place = other->index;
+            if (!visible(p)) {
+                ++hidden;
+                return false;
+            }
+            seen = i;
+            return true;
+        });
+        if (!seen) return {};
+        place = *seen;
     }
     return {estimates_[place].irradiance(), true, place};
 }

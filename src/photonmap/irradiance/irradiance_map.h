@@ -11,6 +11,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct IrradianceOptions {
     float shrink = 1;                         ///< of regions, as in PhotonQuery
     const SurfacePatches* patches = nullptr;  ///< for the area at edges; null: the disc's. Must outlive the map
     const GatherCoverage* coverage = nullptr; ///< that the map ends at; null: nowhere
+    int most_hidden = std::numeric_limits<int>::max(); ///< places that a lookup finds hidden before it gives up
     const Scene* scene = nullptr; ///< for walls that stand on a surface and part it; needs `patches`; null: none do
 };
 
@@ -124,6 +126,7 @@ class IrradianceMap {
     float max_radius_;
     const Scene* scene_;
     const SurfacePatches* patches_;
+    int most_hidden_;
     std::optional<SurfaceLookupGrid> grid_;
     Count mean_;
 };
