@@ -5,6 +5,7 @@
 #include "gather/compute_record.h"
 #include "gather/outlying_records.h"
 #include "gather/ray_shares.h"
+#include "photonmap/surface/sight.h"
 
 #include <algorithm>
 #include <array>
@@ -17,7 +18,8 @@ namespace {
 constexpr int kCoarsest = 16;       // [pixels] between the points of the first level
 constexpr std::size_t kBatch = 64;  // records computed at once
 constexpr std::size_t kAhead = 256; // pixels whose points are found at once
-constexpr double kCovered = 0.1;    // share below which a point needs a record of its own
+constexpr float kCovered = 0.1f;    // share below which a point needs a record of its own
+constexpr float kLift = 0.1f;       // height at which places look at each other, over their distance
 constexpr double kFirst = 0.5;      // share of rays that each record gets alike
 constexpr int kLeastMore = 8;       // fewer rays are not worth a hemisphere
 constexpr std::array kSteps{kCoarsest, kCoarsest / 2, kCoarsest / 4, kCoarsest / 8, 1, 1};
@@ -105,8 +107,15 @@ class CacheFill {
         if (c && is_covered(*c)) c.reset();
         return {c, index};
     }
+    /// A record that a wall hides doesn't tell what light there is on this side of it, however far it is used. Once a
+    /// record stands here, the two end where they contradict each other.
     bool is_covered(const VisiblePoint& c) const {
-        return cache_.irradiance(c.vertex.point.p, cache_normal(c.vertex, c.back)).covered >= kCovered;
+        const SurfaceRegion here{c.vertex.point.p, facing(c.vertex.point.ng, c.back)};
+        const auto sees = [&](const Vec3& record) {
+            const float apart = (record - here.position).length();
+            return apart < c.pixel || in_sight(rays_.scene(), here, kLift * apart, record);
+        };
+        return cache_.covers(here.position, cache_normal(c.vertex, c.back), kCovered, sees);
     }
     void flush(const RunContext& context) {
         std::vector<IrradianceRecord> records(batch_.size());

@@ -1,6 +1,7 @@
 #include "gather/irradiance_cache.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace keyhole {
@@ -23,6 +24,9 @@ Vec3 to_vec(const Rgb& c) { return {static_cast<float>(c.x), static_cast<float>(
 
 float luminance_of(const Vec3& c) { return c.dot(Vec3(0.2126f, 0.7152f, 0.0722f)); }
 
+/// A record is found by new ones whose reach is up to so many times, as a power of two, that of its own.
+constexpr int kLevelsOfStanding = 10;
+
 /// The level whose cells are about as wide as a record's radius of use, so that each record overlaps 8 to 27 of them:
 /// larger cells would offer more records in vain.
 int level_of(float reach) { return static_cast<int>(std::ceil(std::log2(reach))); }
@@ -31,8 +35,11 @@ struct CellIndex {
     std::int64_t x, y, z;
 };
 
+/// 2^e for -126 <= e < 128, without the call that std::ldexp() is: lookups ask for it at each level.
+float power_of_two(int e) { return std::bit_cast<float>(static_cast<std::uint32_t>(127 + e) << 23); }
+
 CellIndex cell_at(const Vec3& p, int level) {
-    const float scale = std::ldexp(1.0f, -level);
+    const float scale = power_of_two(-level);
     const auto floor = [&](float v) { return static_cast<std::int64_t>(std::floor(v * scale)); };
     return {floor(p.x), floor(p.y), floor(p.z)};
 }
@@ -41,6 +48,14 @@ CellIndex cell_at(const Vec3& p, int level) {
 std::uint64_t key(const CellIndex& c, int level) {
     const auto bits = [](std::int64_t v) { return static_cast<std::uint64_t>(v) & 0x7FFFF; };
     return bits(c.x) | bits(c.y) << 19 | bits(c.z) << 38 | (static_cast<std::uint64_t>(level) & 0x7F) << 57;
+}
+
+/// Calls visit(cell) for the cells of a level that the box of half width `reach` around `p` overlaps.
+template <class Visit> void for_cells(const Vec3& p, float reach, int level, const Visit& visit) {
+    const CellIndex lo = cell_at(p - Vec3(reach), level), hi = cell_at(p + Vec3(reach), level);
+    for (auto x = lo.x; x <= hi.x; ++x)
+        for (auto y = lo.y; y <= hi.y; ++y)
+            for (auto z = lo.z; z <= hi.z; ++z) visit(CellIndex{x, y, z});
 }
 
 /// Falls from 1 at 0 to 0 at 1, smoothly at both, so that no border of a record shows.
@@ -56,35 +71,52 @@ template <class Visit> void IrradianceCache::visit_near(const Vec3& position, Vi
     }
 }
 
-IrradianceCache::Weight IrradianceCache::weight_of(const Stored& r, const Vec3& d, const Vec3& normal) const {
-    const float height = d.dot(r.normal), height2 = height * height, across2 = d.length2() - height2;
-    const float raised = kHeight2 * height2 / (r.radius * r.radius);
-    const float apart2 = across2 / (r.reach * r.reach) + raised;
-    if (!(apart2 < 1)) return {};
+float IrradianceCache::weight_of(const Stored& r, float as_far, const Vec3& d, const Vec3& normal) {
+    const float height = d.dot(r.normal), height2 = height * height;
+    const float apart2 = (d.length2() - height2) / (as_far * as_far) + kHeight2 * height2 / (r.radius * r.radius);
+    if (!(apart2 < 1)) return 0;
     // What lies behind the record may be in the dark behind an edge.
-    if (d.dot(normal + r.normal) < -0.1f * r.radius) return {};
+    if (d.dot(normal + r.normal) < -0.1f * r.radius) return 0;
     const float turned = (normal - r.normal).length2() / (2 * kNormalReach);
-    const float say = kernel(std::max(apart2, turned));
-    if (!(say > 0)) return {};
-    return {say, kernel(std::max(across2 / (r.radius * r.radius) + raised, turned))};
+    return kernel(std::max(apart2, turned));
+}
+
+template <class Visit> void IrradianceCache::visit_standing(const Vec3& position, float reach, Visit&& visit) const {
+    const int level = level_of(reach);
+    for_cells(position, reach, level, [&](const CellIndex& c) {
+        const auto cell = standing_.find(key(c, level));
+        if (cell == standing_.end()) return;
+        for (const std::uint32_t i : cell->second) visit(i);
+    });
 }
 
 IrradianceCache::Answer IrradianceCache::irradiance(const Vec3& position, const Vec3& normal) const {
     Vec3 sum(0.0f);
-    float weights = 0, covered = 0, variance = 0;
+    float weights = 0, variance = 0;
     visit_near(position, [&](std::uint32_t i) {
         const Stored& r = records_[i];
         const Vec3 d = position - r.position;
-        const Weight w = weight_of(r, d, normal);
-        if (!(w.say > 0)) return;
-        covered += w.covered;
-        sum += irradiance_at(r, d, normal - r.normal) * w.say;
-        weights += w.say;
-        variance += w.say * w.say * r.variance;
+        const float w = weight_of(r, r.reach, d, normal);
+        if (!(w > 0)) return;
+        sum += irradiance_at(r, d, normal - r.normal) * w;
+        weights += w;
+        variance += w * w * r.variance;
     });
     if (!(weights > 0)) return {};
     sum /= weights;
-    return {Rgb(sum.x, sum.y, sum.z), std::sqrt(variance) / weights, true, covered};
+    return {Rgb(sum.x, sum.y, sum.z), std::sqrt(variance) / weights, true};
+}
+
+bool IrradianceCache::covers(const Vec3& position, const Vec3& normal, float share,
+                             const std::function<bool(const Vec3& record)>& sees) const {
+    float covered = 0;
+    visit_near(position, [&](std::uint32_t i) {
+        if (covered >= share) return;
+        const Stored& r = records_[i];
+        const float w = weight_of(r, r.radius, position - r.position, normal);
+        if (w > 0 && sees(r.position)) covered += w;
+    });
+    return covered >= share;
 }
 
 /// What `r` predicts at an offset `to` from it, where normals are turned by `turn`.
@@ -185,7 +217,7 @@ std::vector<IrradianceCache::Prediction> IrradianceCache::others_at(std::uint32_
         if (k == i) return;
         const Stored& r = records_[k];
         const Vec3 d = here.position - r.position;
-        const float weight = weight_of(r, d, here.normal).say;
+        const float weight = weight_of(r, r.reach, d, here.normal);
         if (!(weight > 0)) return;
         const Vec3 e = irradiance_at(r, d, here.normal - r.normal);
         found.push_back({k, weight, Rgb(e.x, e.y, e.z)});
@@ -235,24 +267,39 @@ void IrradianceCache::clamp_with_neighbours(Stored& r) {
 }
 
 void IrradianceCache::end_where_wrong(Stored& r) {
-    const float doubt = kDoubt * error_;
     visit_near(r.position, [&](std::uint32_t i) {
         Stored& other = records_[i];
-        const Vec3 d = r.position - other.position, turn = r.normal - other.normal;
-        const float apart = d.length();
-        if (!(apart < std::max(r.reach, other.reach)) || turn.length2() > 2 * kNormalReach) return;
-        const float here = luminance_of(r.irradiance), there = luminance_of(other.irradiance);
-        const float wrong = std::max(std::abs(luminance_of(irradiance_at(other, d, turn)) - here),
-                                     std::abs(luminance_of(irradiance_at(r, -d, -turn)) - there));
-        const float noise2 = 4 * (r.variance + other.variance), allowed = doubt * std::max(here, there);
-        if (!(wrong * wrong > allowed * allowed + noise2)) return;
-        // What first order leaves out grows as the square of the distance.
-        const float good = apart * std::sqrt(allowed / wrong);
-        for (Stored* s : {&r, &other}) {
-            s->distance = std::min(s->distance, good / error_);
-            update_radius(*s);
-        }
+        if (!((r.position - other.position).length() < std::max(r.reach, other.reach))) return;
+        const float good = good_between(r, other, std::max(wrong_at(other, r), wrong_at(r, other)));
+        for (Stored* s : {&r, &other}) end_at(*s, good);
     });
+    // Those that don't reach as far as here have no say here, and this one may have none there.
+    visit_standing(r.position, r.reach, [&](std::uint32_t i) {
+        const Stored& other = records_[i];
+        if ((other.position - r.position).length() < r.reach) end_at(r, good_between(r, other, wrong_at(r, other)));
+    });
+}
+
+/// By how much the luminance that `r` predicts at another record is wrong; 0 where it predicts nothing.
+float IrradianceCache::wrong_at(const Stored& r, const Stored& other) {
+    const Vec3 turn = other.normal - r.normal;
+    if (turn.length2() > 2 * kNormalReach) return 0;
+    return std::abs(luminance_of(irradiance_at(r, other.position - r.position, turn)) - luminance_of(other.irradiance));
+}
+
+/// How far two records are good for where one predicts the other with an error: all of the way where that may be noise.
+float IrradianceCache::good_between(const Stored& a, const Stored& b, float wrong) const {
+    const float allowed = kDoubt * error_ * std::max(luminance_of(a.irradiance), luminance_of(b.irradiance));
+    const float noise2 = 4 * (a.variance + b.variance);
+    if (!(wrong * wrong > allowed * allowed + noise2)) return std::numeric_limits<float>::infinity();
+    // What first order leaves out grows as the square of the distance.
+    return (a.position - b.position).length() * std::sqrt(allowed / wrong);
+}
+
+void IrradianceCache::end_at(Stored& r, float good) const {
+    if (!(good < error_ * r.distance)) return;
+    r.distance = good / error_;
+    update_radius(r);
 }
 
 void IrradianceCache::index(std::uint32_t i) {
@@ -260,16 +307,17 @@ void IrradianceCache::index(std::uint32_t i) {
     const int level = level_of(r.reach);
     lowest_level_ = records_.size() == 1 ? level : std::min(lowest_level_, level);
     highest_level_ = std::max(records_.size() == 1 ? level : highest_level_, level);
-    const CellIndex lo = cell_at(r.position - Vec3(r.reach), level), hi = cell_at(r.position + Vec3(r.reach), level);
-    for (auto x = lo.x; x <= hi.x; ++x)
-        for (auto y = lo.y; y <= hi.y; ++y)
-            for (auto z = lo.z; z <= hi.z; ++z) cells_[key({x, y, z}, level)].push_back(i);
+    for_cells(r.position, r.reach, level, [&](const CellIndex& c) { cells_[key(c, level)].push_back(i); });
+    for (int l = level; l < level + kLevelsOfStanding; ++l) standing_[key(cell_at(r.position, l), l)].push_back(i);
 }
 
 std::size_t IrradianceCache::bytes() const {
-    using Bucket = std::pair<decltype(cells_)::value_type, std::uint64_t>; // with how far from its place it stands
-    std::size_t sum = records_.capacity() * sizeof(Stored) + cells_.bucket_count() * sizeof(Bucket);
-    for (const auto& [k, cell] : cells_) sum += cell.capacity() * sizeof(std::uint32_t);
+    using Bucket = std::pair<Grid::value_type, std::uint64_t>; // with how far from its place it stands
+    std::size_t sum = records_.capacity() * sizeof(Stored);
+    for (const Grid* grid : {&cells_, &standing_}) {
+        sum += grid->bucket_count() * sizeof(Bucket);
+        for (const auto& [k, cell] : *grid) sum += cell.capacity() * sizeof(std::uint32_t);
+    }
     return sum;
 }
 

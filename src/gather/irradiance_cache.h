@@ -5,6 +5,7 @@
 #include "gather/hemisphere.h"
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -64,9 +65,14 @@ class IrradianceCache {
         Rgb irradiance{0.0}; ///< [W/m^2]
         double error = 0;    ///< standard error of its luminance by the rays that records had at first [W/m^2]
         bool known = false;  ///< whether any record had a say
-        double covered = 0;  ///< by the records within whose radius this is; at a record 1 at least
     };
     Answer irradiance(const Vec3& position, const Vec3& normal) const;
+
+    /// Whether a place is covered by at least `share` by the records within whose radius it lies, those of which
+    /// `sees(record)` says that they are in sight of it: each covers the place where it stands by 1, and nothing at its
+    /// radius. `sees` is asked as seldom as possible.
+    bool covers(const Vec3& position, const Vec3& normal, float share,
+                const std::function<bool(const Vec3& record)>& sees) const;
 
     std::size_t size() const { return records_.size(); }
     std::size_t bytes() const;
@@ -110,23 +116,27 @@ class IrradianceCache {
 
     struct Sums;
     Sums sum_of_all() const;
-    /// What record `r` counts at an offset `d` from it where the normal is `normal`.
-    struct Weight {
-        float say = 0, covered = 0;
-    };
-    Weight weight_of(const Stored& r, const Vec3& d, const Vec3& normal) const;
+    /// What record `r` counts at an offset `d` from it where the normal is `normal`, if it is used `as_far` [m].
+    static float weight_of(const Stored& r, float as_far, const Vec3& d, const Vec3& normal);
     void update_radius(Stored& r) const;
     void clamp_with_neighbours(Stored& r);
     void end_where_wrong(Stored& r);
+    static float wrong_at(const Stored& r, const Stored& other);
+    float good_between(const Stored& a, const Stored& b, float wrong) const;
+    void end_at(Stored& r, float good) const;
     static Vec3 irradiance_at(const Stored& r, const Vec3& to, const Vec3& turn);
     void index(std::uint32_t i);
     /// Calls visit(record) for all whose reach may include `position`.
     template <class Visit> void visit_near(const Vec3& position, Visit&& visit) const;
+    /// Calls visit(record) for all of shorter reach than `reach` that stand in a box which has those within it.
+    template <class Visit> void visit_standing(const Vec3& position, float reach, Visit&& visit) const;
 
     float error_, overlap_;
     std::vector<Stored> records_;
-    // A hashed grid for each power of two of the radius: a record stands in all cells that its reach overlaps.
-    tsl::robin_map<std::uint64_t, Cell, HashOfCell> cells_;
+    // Hashed grids for each power of two of the reach: a record is in all cells that its reach overlaps.
+    using Grid = tsl::robin_map<std::uint64_t, Cell, HashOfCell>;
+    Grid cells_;
+    Grid standing_; // in those where it stands, of its own power of two and larger ones
     int lowest_level_ = 0, highest_level_ = -1;
 };
 

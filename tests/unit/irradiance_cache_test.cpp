@@ -22,15 +22,20 @@ IrradianceRecord record(const Vec3& p, double e, double distance, const Vec3& sl
     return r;
 }
 
+bool covers(const IrradianceCache& cache, const Vec3& p, float share, bool seen = true) {
+    return cache.covers(p, {0, 0, 1}, share, [&](const Vec3& /*record*/) { return seen; });
+}
+
 TEST(IrradianceCache, IsExactAtARecordAndSilentBeyondItsReach) {
     IrradianceCache cache(0.2f);
     EXPECT_FALSE(cache.irradiance({0, 0, 0}, {0, 0, 1}).known);
     cache.insert(record({1, 2, 3}, 5, 1));
     const auto there = cache.irradiance({1, 2, 3}, {0, 0, 1});
     EXPECT_DOUBLE_EQ(there.irradiance.y, 5);
-    EXPECT_DOUBLE_EQ(there.covered, 1);
-    EXPECT_GT(cache.irradiance({1.19f, 2, 3}, {0, 0, 1}).covered, 0);
-    EXPECT_EQ(cache.irradiance({1.21f, 2, 3}, {0, 0, 1}).covered, 0) << "another record is wanted";
+    EXPECT_TRUE(covers(cache, {1, 2, 3}, 1));
+    EXPECT_FALSE(covers(cache, {1, 2, 3}, 1, false)) << "a record that a wall hides covers nothing";
+    EXPECT_TRUE(covers(cache, {1.19f, 2, 3}, 1e-6f));
+    EXPECT_FALSE(covers(cache, {1.21f, 2, 3}, 1e-6f)) << "another record is wanted";
     EXPECT_TRUE(cache.irradiance({1.39f, 2, 3}, {0, 0, 1}).known) << "but this one may still be used";
     EXPECT_FALSE(cache.irradiance({1.41f, 2, 3}, {0, 0, 1}).known);
 }
@@ -189,7 +194,7 @@ TEST(IrradianceCache, GetsFinerWhereGradientsContradictEachOther) {
     std::size_t flat = 0, curved = 0;
     for (const float step : {0.4f, 0.2f, 0.1f, 0.05f, 0.02f, 0.01f})
         for (float x = -2; x < 2; x += step)
-            if (!(cache.irradiance({x, 0, 0}, {0, 0, 1}).covered >= 0.1)) {
+            if (!covers(cache, {x, 0, 0}, 0.1f)) {
                 cache.insert(peak_record(x));
                 ++(x < 0 ? flat : curved);
             }
@@ -197,6 +202,21 @@ TEST(IrradianceCache, GetsFinerWhereGradientsContradictEachOther) {
         EXPECT_NEAR(cache.irradiance({x, 0, 0}, {0, 0, 1}).irradiance.x, peak(x), 0.15 * peak(x)) << "at " << x;
     EXPECT_LT(flat, 8) << "straight light needs no more of them";
     EXPECT_LT(curved, 60);
+}
+
+/// A dark record of short reach behind a wall, and a bright one before it, whose own reach has the dark one's place but
+/// not the other way round.
+TEST(IrradianceCache, EndsARecordBeforeOneThatContradictsItWhicheverCameFirst) {
+    IrradianceRecord dark = record({0, 0, 0}, 0.1, 0.25), bright = record({0.3f, 0, 0}, 10, 1.5);
+    dark.light.variance = bright.light.variance = 0;
+    for (const bool dark_first : {true, false}) {
+        IrradianceCache cache(0.2f);
+        cache.insert(dark_first ? dark : bright);
+        cache.insert(dark_first ? bright : dark);
+        EXPECT_FLOAT_EQ(cache.reach(dark_first ? 0 : 1), 0.1f);
+        EXPECT_LT(cache.reach(dark_first ? 1 : 0), 0.25f) << "dark first: " << dark_first;
+        EXPECT_LT(cache.irradiance({0.06f, 0, 0}, {0, 0, 1}).irradiance.x, 0.2) << "dark first: " << dark_first;
+    }
 }
 
 TEST(IrradianceCache, TakesInWhatMoreRaysFound) {
