@@ -100,8 +100,8 @@ class CacheFill {
         const ImageWindow& window = rays_.scene().camera().window();
         const auto width = static_cast<std::uint64_t>(window.width), index = 2 * level * pixels() + pixel;
         Rng rng(options_.seed, StreamPurpose::cache, index + pixels());
-        const double across = static_cast<double>(pixel % width) + rng.next();
-        const double down = static_cast<double>(pixel / width) + rng.next();
+        const std::uint64_t column = pixel % width, row = pixel / width;
+        const double across = static_cast<double>(column) + rng.next(), down = static_cast<double>(row) + rng.next();
         const Vec2 at(static_cast<float>(across), static_cast<float>(down));
         auto c = visible_point(rays_, window.to_window(at), rng);
         if (c && is_covered(*c)) c.reset();

@@ -200,7 +200,7 @@ double share_of_photons_seen(const Scene& scene, const EmissionGuide& guide, con
                              std::uint64_t seed, const RunContext& context) {
     if (scene.emitter_distribution().empty()) return 0;
     const EmissionOptions options{.paths = kPilot, .photons = 0, .rule = rule, .seed = seed};
-    return learn_from_pilot(scene, guide, options, context).weights.effective_share();
+    return learn_from_pilot(scene, guide, options, context).weights.share_seen(kPilot);
 }
 
 EmittedPhotons emit_photons(const Scene& scene, const EmissionGuide& guide, const EmissionOptions& options,

@@ -43,8 +43,8 @@ struct EmittedPhotons : Photons, Emission {
     std::size_t bytes = 0; ///< of the stores
 };
 
-/// Of the photons of light paths, the effective share that is where light is seen: (sum w)^2 / (n sum w^2), where w is
-/// the visible power that the guide gives to each of the n photons of some thousand paths; 0 if there is none.
+/// How much of plain light tracing brings what is seen: PhotonWeights::share_seen() of some thousand paths, by the
+/// visible power that the guide gives to their photons.
 double share_of_photons_seen(const Scene& scene, const EmissionGuide& guide, const StorageRule& rule,
                              std::uint64_t seed, const RunContext& context);
 

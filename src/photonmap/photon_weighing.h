@@ -5,6 +5,7 @@
 #include "sampling/paths/gather_coverage.h"
 #include "sampling/paths/light_tracer.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -82,9 +83,11 @@ struct PhotonWeights {
         seen += o.seen;
         return *this;
     }
-    /// Effective share of photons that are seen: (sum w)^2 / (n sum w^2); 0 if none is.
-    double effective_share() const {
-        return squares > 0 ? known() * known() / (static_cast<double>(all) * squares) : 0;
+    /// Photons that are seen, as many equal ones as would be as good, over all of these paths or photons, whichever are
+    /// more: (sum w)^2 / (n sum w^2), with known weights w. 0 if none is seen.
+    double share_seen(std::int64_t paths) const {
+        const auto n = static_cast<double>(std::max(all, static_cast<std::uint64_t>(paths)));
+        return squares > 0 ? known() * known() / (n * squares) : 0;
     }
     double known() const { return known_global + known_caustic; }
     /// Photons of unknown importance together weigh a twentieth of the others: few enough to cost little, enough for

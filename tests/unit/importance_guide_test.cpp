@@ -5,9 +5,11 @@
 #include "photonmap/emission.h"
 #include "photonmap/importance/importance_tracing.h"
 #include "sampling/paths/walk.h"
+#include "scene/emitters/emitters.h"
 #include "scene/ray_counter.h"
 #include "scene/scene.h"
 #include "support/test_scenes.h"
+#include "support/window_room.h"
 
 #include <gtest/gtest.h>
 
@@ -54,10 +56,14 @@ double share_seen(const Scene& scene) {
     return share_of_photons_seen(scene, {&at_d2, &at_d1}, {.max_scatterings = 8}, 2, {});
 }
 
-/// In a box that is in view as a whole nearly every photon counts; of the light of a room behind a slit little does.
+/// In a box that is in view as a whole nearly every photon counts; of the light of a room behind a slit little does,
+/// and of the sky's, most of which misses the window, though what comes in is all seen.
 TEST(ShareOfPhotonsSeen, TellsWhereImportanceIsWorthIt) {
     EXPECT_GT(share_seen(*test::diffuse_box()), 0.6);
     EXPECT_LT(share_seen(*test::two_rooms(0.1f)), 0.1);
+    test::SceneMaker room = test::room_with_a_window();
+    room.emitter(make_constant_environment(Rgb(1.0))).camera({2.7f, 1.5f, 2.8f}, {0.8f, 0.7f, 0.4f}, 55).window(48, 32);
+    EXPECT_LT(share_seen(*room.build()), 0.2);
 }
 
 } // namespace
