@@ -56,7 +56,8 @@ class EmissionSampler final : public PhotonSampler {
     Guides guide(std::uint64_t seed, RenderStats& stats, const RunContext& context) {
         Guides guides = make_guides(c_, seed, memory().importons, stats, context);
         if (learned_) return guides;
-        const double seen = share_of_photons_seen(c_.scene, guides.both(), c_.storage(), seed, context);
+        const double seen =
+            share_of_photons_seen(c_.scene, guides.both(), c_.storage(), c_.settings.light_paths, seed, context);
         stats.values["photons that are seen, effective share"] = seen;
         by_importance_ = seen < kNearlyAll || !c_.user_paths.empty();
         if (!by_importance_) return {};
