@@ -48,7 +48,7 @@ Blocks render_blocks(Scene& scene, Settings settings, int runs, const std::strin
 Disagreement compare(const Blocks& a, const Blocks& b, double tolerance) {
     Disagreement d;
     std::vector<double> p(a.size());
-    double sum_a = 0, sum_b = 0, quiet_a = 0, quiet_b = 0;
+    double sum_a = 0, sum_b = 0, variance = 0, quiet_a = 0, quiet_b = 0;
     for (std::size_t i = 0; i < a.size(); ++i) {
         const double va = a[i].variance() / static_cast<double>(a[i].count());
         const double vb = b[i].variance() / static_cast<double>(b[i].count());
@@ -66,9 +66,11 @@ Disagreement compare(const Blocks& a, const Blocks& b, double tolerance) {
         quiet_a += noisy ? 0 : a[i].mean();
         quiet_b += noisy ? 0 : reference;
         sum_a += a[i].mean();
+        variance += va;
         sum_b += b[i].mean();
     }
     d.ratio = sum_a / sum_b;
+    d.ratio_error = std::sqrt(variance) / sum_b;
     d.quiet_ratio = quiet_a / quiet_b;
     std::vector<std::size_t> order(a.size());
     std::iota(order.begin(), order.end(), std::size_t{0});

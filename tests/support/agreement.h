@@ -30,6 +30,7 @@ struct Disagreement {
     double worst = 0;         ///< largest relative difference of a block
     double largest_error = 0; ///< largest relative standard error of a block of the first picture
     double ratio = 1;         ///< of mean brightness
+    double ratio_error = 0;   ///< standard error of `ratio` by that of the first picture's blocks, taken as independent
     int noisy = 0;            ///< blocks of the first picture with a relative standard error above a quarter
     double quiet_ratio = 1;   ///< of mean brightness in the others
     std::string report;       ///< blocks that were rejected
