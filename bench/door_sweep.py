@@ -20,7 +20,7 @@ from common import luminance
 GUIDED = ["--user-paths", "USER_PATHS"]
 NOT_LOOKING = ["-D", "find_openings=false"]
 METHODS = {"pm": [], "ipm, not looking": NOT_LOOKING, "mps, not looking": NOT_LOOKING, "auto, not looking": NOT_LOOKING,
-           "ipm": [], "mps": [], "pss": [], "auto": [],
+           "ipm": [], "mps": [], "auto": [],
            "ipm, user paths": GUIDED, "mps, user paths": GUIDED, "auto, user paths": GUIDED, "mlt, user paths": GUIDED}
 SCENE = """film: {{resolution: [64, 48]}}
 camera: {{from: [0.4, 1.2, -1.2], to: [3, 1, 0.3], fov: 60}}

@@ -17,7 +17,7 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-METHODS = ["mps", "ipm", "pm", "pss", "mlt", "path", "bdpt", "pssmlt", "mmlt", "rjmlt", "auto"]
+METHODS = ["mps", "ipm", "pm", "mlt", "path", "bdpt", "pssmlt", "mmlt", "rjmlt", "auto"]
 # Diffuse; mirror and glass; a lens; coats; environments; a mesh; media's absorption; what photons find hard.
 SCENES = ["box", "rooms", "lantern", "disco", "egg", "glossy", "tube", "ball", "failures/keyhole", "failures/sds",
           "failures/inside_glass", "failures/sun_glass", "failures/many_lights"]

@@ -12,7 +12,7 @@ from .export import scene as scene_export
 from .export import user_paths
 from .preferences import program
 
-KEEP_PHOTONS = "mps", "ipm", "pm", "pss"
+KEEP_PHOTONS = "mps", "ipm", "pm"
 
 
 class Tool:

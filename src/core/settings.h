@@ -139,7 +139,7 @@ template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
     visit("mis", s.mis, "how the techniques of bidirectional paths share them");
     visit("builder", s.builder, "how pssmlt makes paths");
     visit("failures", s.failures, "what pssmlt, mmlt and rjmlt do with proposals that make no path; exclude is biased");
-    visit("p_large", s.p_large, 0.0, 1.0, "probability of large steps of pssmlt, mmlt, rjmlt and pss");
+    visit("p_large", s.p_large, 0.0, 1.0, "probability of large steps of pssmlt, mmlt and rjmlt");
     visit("chain_share", s.chain_share, 0.0, 1.0,
           "of cps, what chains get of `mutations`; light paths get the rest of `light_paths`. auto: by trial");
     visit("large_step_mis", s.large_step_mis, "whether large steps deposit as samples on their own account");

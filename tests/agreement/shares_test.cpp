@@ -113,7 +113,7 @@ TEST_P(Shares, OfABrokenOffRenderAreGoneOnFrom) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, Shares,
-                         testing::Values("mps", "ipm", "pm", "pss", "mlt", "path", "bdpt", "pssmlt", "mmlt", "rjmlt"),
+                         testing::Values("mps", "ipm", "pm", "mlt", "path", "bdpt", "pssmlt", "mmlt", "rjmlt"),
                          [](const auto& info) { return std::string(info.param); });
 
 } // namespace

@@ -78,7 +78,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, Furnace_HasItsClosedForm,
                                                           MethodCase{"pssmlt"}, MethodCase{"mmlt", 16},
                                                           MethodCase{"rjmlt", 16}, MethodCase{"mps", 8, true},
                                                           MethodCase{"ipm", 8, true}, MethodCase{"pm", 8, true},
-                                                          MethodCase{"pss", 8, true}, MethodCase{"auto", 6}),
+                                                          MethodCase{"auto", 6}),
                                           testing::ValuesIn(kFurnaces)),
                          [](const auto& info) {
                              return fmt::format("{}_{}", std::get<0>(info.param).method, std::get<1>(info.param).name);

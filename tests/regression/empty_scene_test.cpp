@@ -45,8 +45,7 @@ TEST_P(EmptyScene_ShowsItsEnvironment, Everywhere) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, EmptyScene_ShowsItsEnvironment,
-                         testing::Values("auto", "path", "bdpt", "mlt", "pssmlt", "mmlt", "rjmlt", "pm", "ipm", "mps",
-                                         "pss"),
+                         testing::Values("auto", "path", "bdpt", "mlt", "pssmlt", "mmlt", "rjmlt", "pm", "ipm", "mps"),
                          [](const auto& info) { return std::string(info.param); });
 
 TEST(EmptyScene, OfNothingAtAllIsRefused) {

@@ -71,7 +71,7 @@ TEST_P(RanksOfAPass, MakeThePictureThatOneMakes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, RanksOfAPass,
-                         testing::Values("mps", "ipm", "pm", "pss", "auto", "mlt", "pssmlt", "mmlt", "rjmlt", "bdpt"),
+                         testing::Values("mps", "ipm", "pm", "auto", "mlt", "pssmlt", "mmlt", "rjmlt", "bdpt"),
                          [](const auto& info) { return std::string(info.param); });
 
 TEST_F(Ranks, RunWhatIsNoRender) {

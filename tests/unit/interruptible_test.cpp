@@ -51,8 +51,7 @@ TEST_P(StoppedAtOnce, RendersLeaveALook) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, StoppedAtOnce,
-                         testing::Values("auto", "path", "bdpt", "mlt", "pssmlt", "mmlt", "rjmlt", "pm", "ipm", "mps",
-                                         "pss"),
+                         testing::Values("auto", "path", "bdpt", "mlt", "pssmlt", "mmlt", "rjmlt", "pm", "ipm", "mps"),
                          [](const auto& info) { return std::string(info.param); });
 
 } // namespace

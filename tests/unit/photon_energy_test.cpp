@@ -2,7 +2,6 @@
 #include "photon_energy.h"
 
 #include "photonmap/emission.h"
-#include "photonmap/light_chains/light_chains.h"
 #include "photonmap/photon_sampling.h"
 #include "sampling/proposals/registry.h"
 #include "support/test_scenes.h"
@@ -27,29 +26,6 @@ Energy by_emission(const Scene& scene, const Rule& rule, bool guided, int runs) 
         const EmissionGuide both = guided ? guides.both() : EmissionGuide{};
         const EmissionOptions options{.paths = 12'000, .photons = 5'000, .rule = rule.storage(), .seed = seed};
         const EmittedPhotons photons = emit_photons(scene, both, options, {});
-        EXPECT_LE(photons.global.size() + photons.caustic.size(), options.photons);
-        add_run(scene, photons, e);
-    }
-    return e;
-}
-
-/// Several independent runs of chains over light sub-paths, thinned likewise.
-Energy by_light_chains(const Scene& scene, const Rule& rule, int runs, float guide_radius) {
-    const SurfacePatches patches(scene);
-    Energy e;
-    for (int run = 0; run < runs; ++run) {
-        const auto seed = static_cast<std::uint64_t>(100 + run);
-        const Guides guides = make_guides(scene, rule, seed, patches, guide_radius);
-        const EmissionGuide both = guides.both();
-        const LightChainOptions options{.samples = 15'000,
-                                        .chains = 200,
-                                        .mutations = 40'000,
-                                        .photons = 5'000,
-                                        .p_large = {},
-                                        .rule = rule.storage(),
-                                        .seed = seed};
-        const LightChainStart start = start_light_chains(scene, both, options, {});
-        const LightChainPhotons photons = run_light_chains(scene, both, start, options, {});
         EXPECT_LE(photons.global.size() + photons.caustic.size(), options.photons);
         add_run(scene, photons, e);
     }
@@ -115,16 +91,6 @@ void expect_emission_energy(const Scene& scene, const Rule& rule, const Energy& 
     }
 }
 
-void expect_light_chain_energy(const Scene& scene, const Rule& rule, const Energy& traced, float guide_radius = 0.5f,
-                               double tolerance = 0) {
-    SCOPED_TRACE("chains of light sub-paths");
-    const Energy chains = by_light_chains(scene, rule, 16, guide_radius);
-    expect_equal(chains.global, traced.global, "global", tolerance, {0, 1, 2, 3, 4, 5, 6});
-    expect_equal(chains.marked, traced.marked, "caustics in the global", tolerance, {0});
-    // Where the eye sees little of them they are few.
-    expect_equal(chains.caustic, traced.caustic, "caustic", 0, {2, 4});
-}
-
 /// `depth`: most scatterings of a path. Light tracing can't know how many of them the camera sub-path will take; where
 /// it takes more than the one at d1, as behind glass, they must be so many that the last ones carry no power.
 void expect_energy(const Scene& scene, bool caustics, int depth = 8, const GatherCoverage* coverage = nullptr,
@@ -133,7 +99,6 @@ void expect_energy(const Scene& scene, bool caustics, int depth = 8, const Gathe
     const Energy traced = by_light_tracing(scene, rule, 200'000);
     expect_emission_energy(scene, rule, traced);
     expect_chain_energy(scene, rule, traced, caustics);
-    expect_light_chain_energy(scene, rule, traced);
 }
 
 TEST(PhotonEnergy_EqualsLightTracing, DiffuseBox) { expect_energy(*test::diffuse_box(), false); }
@@ -186,14 +151,6 @@ TEST(PhotonEnergy_OfTheLiteralRule, IsWrongFromWallToWall) {
     // How sure eight runs can be of it, at one in twenty.
     EXPECT_LT(test::student_p_value(worst, kRuns - 1), test::sidak_threshold(6, 0.05)) << worst << " standard errors";
     EXPECT_GT(most / least, 1.5);
-}
-
-TEST(PhotonEnergy_EqualsLightTracing, WhereChainsOfLightPathsKnowNoImportance) {
-    const auto scene = test::two_rooms(0.5f);
-    const Rule rule{8};
-    // Where importance is known it is noise, and the target with it: its mean, which weights divide by, is known
-    // poorly, and the reciprocal is biased by some percent.
-    expect_light_chain_energy(*scene, rule, by_light_tracing(*scene, rule, 200'000), 0.01f, 0.05);
 }
 
 } // namespace

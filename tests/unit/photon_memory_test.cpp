@@ -42,7 +42,7 @@ TEST_P(PhotonMemory_StaysUnderItsCeiling, AtEverySize) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, PhotonMemory_StaysUnderItsCeiling, testing::Values("mps", "ipm", "pm", "pss", "cps"),
+INSTANTIATE_TEST_SUITE_P(Methods, PhotonMemory_StaysUnderItsCeiling, testing::Values("mps", "ipm", "pm", "cps"),
                          [](const auto& info) { return std::string(info.param); });
 
 } // namespace

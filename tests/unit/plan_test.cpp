@@ -98,7 +98,7 @@ TEST_P(PlanOfPhotons, AskedForAllItLeavesOutNothing) {
     EXPECT_TRUE(has_stage(stats, std::string(GetParam()) == "mps" ? "brightness" : "photons"));
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, PlanOfPhotons, testing::Values("mps", "ipm", "pss", "auto"),
+INSTANTIATE_TEST_SUITE_P(Methods, PlanOfPhotons, testing::Values("mps", "ipm", "auto"),
                          [](const auto& info) { return std::string(info.param); });
 
 TEST(Plan, LightThroughASlitIsNotGivenUp) {

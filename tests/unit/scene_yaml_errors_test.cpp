@@ -256,7 +256,7 @@ std::vector<Mistake> mistakes() {
         in_section("render: {spp: @[4]}", "found a list of 1"),
         in_section(
             "render: {method: @mpss}",
-            "expected one of auto, path, bdpt, ipm, mmlt, mps, cps, mlt, pssmlt, rjmlt, pm, pss; did you mean 'mps'?"),
+            "expected one of auto, path, bdpt, ipm, mmlt, mps, cps, mlt, pssmlt, rjmlt, pm; did you mean 'mps'?"),
         in_section("render: {bidirectional.weight: @1.5}", "expected a number from 0 to 1"),
         in_section("render: {bidirectional.weight: @nan}", "expected a number from 0 to 1"),
     };

@@ -47,14 +47,5 @@ inline double literal_scale(double path_chain_scale, double weight, double visib
 }
 /// 1 / N of N light paths.
 inline double emission_scale(std::int64_t light_paths) { return 1 / static_cast<double>(light_paths); }
-/// B / N of N steps of chains over light sub-paths, where B is the `unit` that their photons' weights are counted in.
-inline double light_chain_scale(double unit, std::int64_t steps) { return unit / static_cast<double>(steps); }
-
-/// Weight of a light sub-path of a chain in the unit of light_chain_scale(), over its share of the photons' weight:
-/// B / target, or, where large steps deposit on their own account with probability p, that of both together by the
-/// balance heuristic, B / (target + p B) (Kelemen et al. 2002).
-inline double light_chain_weight(double target, double brightness, double large, double unit) {
-    return 1 / (unit * (target / brightness + large));
-}
 
 } // namespace keyhole
