@@ -6,10 +6,9 @@ import bpy
 import numpy as np
 
 HEADER = struct.Struct("<8sIIQqq4QQQ")
-VERSION = 7
+VERSION = 8
 PHOTON = np.dtype([("position", "<f4", 3), ("power", "<u2", 3), ("direction", "<i2", 2), ("normal", "i1", 2)])
-BITS, BIAS = 13, 80  # of the shared exponent: see src/photonmap/quantised.h
-MARKS = 1 << 7  # the bits above that exponent: of a caustic photon, and of one that came from behind
+BITS, BIAS = 12, 80  # of the shared exponent: see src/photonmap/quantised.h
 NAME = "Keyhole Photons"
 
 
@@ -24,7 +23,7 @@ def read(path):
         raise ValueError(f"found a photon map of version {version}, expected version {VERSION}")
     photons = np.frombuffer(data, PHOTON, sum(counts), HEADER.size)
     words = photons["power"].astype(np.int64)
-    exponent = ((words >> BITS) << (3 * np.arange(3))).sum(1) % MARKS - BIAS - BITS
+    exponent = (words[:, 0] >> BITS | (words[:, 1] >> BITS & 7) << 4) - BIAS - BITS  # the rest are marks
     powers = (words & ((1 << BITS) - 1)) * np.exp2(exponent)[:, None]
     return photons["position"], powers / max(powers.mean(), 1e-300) if len(powers) else powers
 

@@ -89,7 +89,7 @@ void FinalGather::draw(const Vec2& image, SampleSource& source, Sample& out) con
 
 void FinalGather::shade(const Vertex& v, const Vec3& back, const Rgb& throughput, int scatterings, SampleSource& source,
                         Sample& out) const {
-    const auto cached = ask_cache(v, back);
+    const auto cached = ask_cache(v, back, scatterings);
     Light light{Rgb(0.0), cached ? cached->radiance : Rgb(0.0)};
     if (!cached)
         light = gather_all(v, back, scatterings, source);
@@ -99,16 +99,17 @@ void FinalGather::shade(const Vertex& v, const Vec3& back, const Rgb& throughput
         light.direct = direct_light(scene_, v, back, samples_.light, source);
     out.direct += throughput * light.direct;
     out.indirect += throughput * light.indirect;
-    const Rgb caustic = throughput * rays_.caustic(v, back, luminance(light.direct + light.indirect), source);
+    const Rgb caustic =
+        throughput * rays_.caustic(v, back, luminance(light.direct + light.indirect), scatterings, source);
     out.caustic += caustic;
     if (cached) out.of_records += luminance(throughput) * cached->error;
     if (out.confirm) out.unconfirmed += luminance(caustic) * rays_.unconfirmed_caustic(v, back);
 }
 
-std::optional<FinalGather::Cached> FinalGather::ask_cache(const Vertex& v, const Vec3& back) const {
+std::optional<FinalGather::Cached> FinalGather::ask_cache(const Vertex& v, const Vec3& back, int scatterings) const {
     if (cache_ == nullptr || !v.bsdf.traits().diffuse) return std::nullopt;
     const Vec3 normal = cache_normal(v, back);
-    const auto answer = cache_->irradiance(v.point.p, normal);
+    const auto answer = cache_->irradiance(v.point.p, normal, scatterings - 1);
     asked_.fetch_add(1, std::memory_order_relaxed);
     if (!answer.known) {
         unanswered_.fetch_add(1, std::memory_order_relaxed);

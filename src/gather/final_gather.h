@@ -60,7 +60,7 @@ class FinalGather {
         double error = 0; ///< standard error of its luminance
     };
     /// None where there is no such part or no such record.
-    std::optional<Cached> ask_cache(const Vertex& v, const Vec3& back) const;
+    std::optional<Cached> ask_cache(const Vertex& v, const Vec3& back, int scatterings) const;
 
     struct Light {
         Rgb direct, indirect; ///< caustics left out

@@ -60,6 +60,9 @@ struct GatherRays::Leg {
     float distance;  ///< from the vertex before [m]
     int scatterings; ///< between the eye and the vertex it led to, that one included
     int traced_on;   ///< rays before it, each traced on from where the last one ended
+
+    /// Vertices between the eye and the one it led to, d2, beyond d1.
+    int longer() const { return scatterings - 1; }
 };
 
 /// The walk along a gather ray, through specular vertices. It ends where the maps are asked: its last vertex is d2, so
@@ -83,7 +86,11 @@ struct GatherRays::Walk : SpecularWalkHooks {
             arrival.emitted += ray.throughput * emission_with_mis(rays.scene_, from, v, ray.w, pdf);
         if (ray.last == &from.point) arrival.distance = leg.distance;
         if (leg.scatterings == rays.max_scatterings_) return false;
-        if (v.bsdf.traits().finite) arrival.indirect += ray.throughput * rays.reflected(v, -ray.w, leg, source);
+        if (v.bsdf.traits().finite) {
+            End end;
+            const Rgb light = rays.reflected(v, -ray.w, leg, source, end);
+            rays.add(ray.throughput, light, end, leg, arrival);
+        }
         ++leg.scatterings;
         return v.bsdf.traits().delta;
     }
@@ -125,25 +132,40 @@ bool GatherRays::goes_on(const Leg& leg, const std::optional<std::uint32_t>& pla
 
 bool GatherRays::is_fine(std::uint32_t place) const { return maps_.irradiance->area_share(place) < kFine; }
 
-Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSource& source) const {
+void GatherRays::add(const Rgb& throughput, const Rgb& light, const End& end, const Leg& leg, Arrival& arrival) const {
+    arrival.indirect += throughput * light;
+    if (maps_.irradiance == nullptr || !maps_.irradiance->tells_lengths()) return;
+    const double all = luminance(throughput * light), direct = std::min(all, luminance(throughput * end.direct));
+    const double known = end.place ? maps_.irradiance->share_that_reaches(*end.place, leg.longer()) : 1;
+    for (int k = 1; k <= kLongerWays; ++k) {
+        const double share = end.place ? maps_.irradiance->share_that_reaches(*end.place, leg.longer() + k) : 1;
+        arrival.reaching[static_cast<std::size_t>(k - 1)] +=
+            static_cast<float>((leg.scatterings + 1 + k <= max_scatterings_ ? direct : 0) +
+                               (known > 0 ? (all - direct) * share / known : 0));
+    }
+}
+
+Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSource& source, End& end) const {
     if (!is_covered(maps_.coverage, v, back)) return Rgb(0.0);
     if (maps_.irradiance == nullptr || maps_.irradiance->places().empty()) {
         const Rgb direct = direct_light(scene_, v, back, 1, source);
-        return direct + global(v, back);
+        return direct + global(v, back, leg.longer());
     }
     const SurfaceRegion here{v.point.p, facing(v.point.ng, back)};
     const auto known = maps_.irradiance->irradiance(v.point, here.normal);
     // Photons may be near, but none that this place sees: those of the other side of a wall.
     const auto place = known.known ? std::optional(known.place) : std::nullopt;
+    end.place = place;
     if (!v.bsdf.traits().diffuse) return lobe(v, back, place, leg, source);
     const bool on = goes_on(leg, place, here);
+    const double share = place && !on ? maps_.irradiance->share_that_reaches(*place, leg.longer()) : 1;
     const Rgb f = v.bsdf.diffuse_reflectance(back);
     const Rgb direct_here = direct(place, v, here, source);
-    Rgb sum = f * direct_here;
+    Rgb sum = end.direct = f * direct_here;
     if (on)
         sum += traced_on(v, back, place, direct_here + known.irradiance, leg, source);
     else if (place)
-        sum += f * known.irradiance;
+        sum += f * known.irradiance * share;
     if (!v.bsdf.traits().glossy) return sum;
     // Seldom, and all the more then.
     const double p = std::max(kLeastGlossy, v.bsdf.glossy_probability(back));
@@ -151,7 +173,7 @@ Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSou
     const Vertex glossy = widened(v, v.bsdf.glossy_part());
     sum += direct_light(scene_, glossy, back, 1, source) / p;
     // What is traced on brings the indirect light of all parts.
-    if (place && !on) sum += photons(Asked::all, *place, glossy, facing(v.point.ng, back), back, source) / p;
+    if (place && !on) sum += photons({false, leg.longer()}, *place, glossy, facing(v.point.ng, back), back, source) / p;
     return sum;
 }
 
@@ -174,7 +196,8 @@ Rgb GatherRays::lobe(const Vertex& v, const Vec3& back, const std::optional<std:
     if (may_trace && !(place && maps_.lobes->by_photons(v.point.shape)))
         return lobe_traced_on(v, back, place, leg, source);
     const Vertex wide = widened(v, v.bsdf);
-    return direct_light(scene_, wide, back, 1, source) + photons_on_each_side(Asked::all, place, wide, back, source);
+    return direct_light(scene_, wide, back, 1, source) +
+           photons_on_each_side({false, leg.longer()}, place, wide, back, source);
 }
 
 Rgb GatherRays::lobe_traced_on(const Vertex& v, const Vec3& back, const std::optional<std::uint32_t>& place,
@@ -185,7 +208,7 @@ Rgb GatherRays::lobe_traced_on(const Vertex& v, const Vec3& back, const std::opt
         sum += next->weight * (arrival.emitted + arrival.indirect);
     }
     // Light that specular vertices alone brought here is found by no ray.
-    return sum + photons_on_each_side(Asked::caustics, place, widened(v, v.bsdf), back, source);
+    return sum + photons_on_each_side({true, leg.longer()}, place, widened(v, v.bsdf), back, source);
 }
 
 std::optional<std::uint32_t> GatherRays::place_at(const Vertex& v, const Vec3& normal) const {
@@ -197,7 +220,7 @@ Rgb GatherRays::photons_on_each_side(Asked asked, const std::optional<std::uint3
                                      const Vec3& back, SampleSource& source) const {
     return on_each_side(v, back, [&](const Vec3& normal) {
         const auto place = normal.dot(back) > 0 ? near : place_at(v, normal);
-        const bool any = place && (asked == Asked::all || maps_.irradiance->has_caustics(*place));
+        const bool any = place && (!asked.caustics || maps_.irradiance->has_caustics(*place));
         return any ? photons(asked, *place, v, normal, back, source) : Rgb(0.0);
     });
 }
@@ -244,17 +267,20 @@ Rgb GatherRays::traced_on(const Vertex& v, const Vec3& back, const std::optional
     const SurfaceRegion here{v.point.p, facing(v.point.ng, back)};
     const bool known = maps_.irradiance->is_near(*place, here);
     if (known ? maps_.irradiance->has_caustics(*place) : scene_.traits().delta)
-        sum += photons(Asked::caustics, *place, v, here.normal, back, source);
+        sum += photons({true, leg.longer()}, *place, v, here.normal, back, source);
     return sum;
 }
 
-Rgb GatherRays::caustic(const Vertex& v, const Vec3& back, double besides, SampleSource& source) const {
+Rgb GatherRays::caustic(const Vertex& v, const Vec3& back, double besides, int scatterings,
+                        SampleSource& source) const {
     if (maps_.caustic == nullptr) return Rgb(0.0);
-    return on_each_side(v, back, [&](const Vec3& normal) { return caustic(v, normal, back, besides, source); });
+    return on_each_side(v, back, [&](const Vec3& normal) {
+        return caustic_on_side(v, normal, back, besides, scatterings - 1, source);
+    });
 }
 
-Rgb GatherRays::caustic(const Vertex& v, const Vec3& normal, const Vec3& back, double besides,
-                        SampleSource& source) const {
+Rgb GatherRays::caustic_on_side(const Vertex& v, const Vec3& normal, const Vec3& back, double besides, int longer,
+                                SampleSource& source) const {
     const PhotonQuery query = query_at(v, normal, options_.caustic_radius, options_);
     const PilotedRegion piloted = piloted_region(maps_.caustic->pilots(), query);
     const float r = piloted.radius;
@@ -267,7 +293,7 @@ Rgb GatherRays::caustic(const Vertex& v, const Vec3& normal, const Vec3& back, d
     const Surroundings around = surroundings.around(query.region, piloted);
     if (!(around.area > 0)) return Rgb(0.0);
     const PhotonMap& photons = maps_.caustic->main_photons();
-    const PhotonReflection reflected(v, back);
+    const PhotonReflection reflected(v, back, longer);
     const double area = around.area * p;
     if (!around.partly_occluded) return estimate_density(photons, query.region, r, area, reflected).value;
     const auto all = [&](const Photon& photon) { return luminance(reflected(photon) * photon.power()); };
@@ -293,16 +319,17 @@ double GatherRays::unconfirmed_caustic(const Vertex& v, const Vec3& back) const 
     if (maps_.caustic == nullptr) return 0;
     const PhotonQuery query = query_at(v, facing(v.point.ng, back), options_.caustic_radius, options_);
     const float r = piloted_radius(maps_.caustic->pilots(), query);
-    return unconfirmed_share(*maps_.caustic, query.region, r, [reflected = PhotonReflection(v, back)](const Photon& p) {
-        return luminance(reflected(p) * p.power());
-    });
+    return unconfirmed_share(
+        *maps_.caustic, query.region, r,
+        [reflected = PhotonReflection(v, back, 0)](const Photon& p) { return luminance(reflected(p) * p.power()); });
 }
 
-Rgb GatherRays::global(const Vertex& v, const Vec3& back) const {
+Rgb GatherRays::global(const Vertex& v, const Vec3& back, int longer) const {
     if (maps_.global == nullptr) return Rgb(0.0);
     return on_each_side(v, back, [&](const Vec3& normal) {
         const PhotonQuery query = query_at(v, normal, options_.max_radius, options_);
-        const DensityEstimate e = estimate_density(*maps_.global, query, maps_.patches, PhotonReflection(v, back));
+        const DensityEstimate e =
+            estimate_density(*maps_.global, query, maps_.patches, PhotonReflection(v, back, longer));
         return e.value / share_in_reach(maps_.coverage, query.region, e.radius);
     });
 }
@@ -321,7 +348,7 @@ double GatherRays::area_near(std::uint32_t place, const SurfaceRegion& region) c
 
 double GatherRays::variance_of_photons(const Vertex& v, const Vec3& back) const {
     if (maps_.global == nullptr) return 0;
-    const PhotonReflection reflected(v, back);
+    const PhotonReflection reflected(v, back, 0);
     return on_each_side(v, back, [&](const Vec3& normal) {
         double sum2 = 0;
         const auto place = place_at(v, normal);
@@ -346,13 +373,11 @@ Rgb GatherRays::photons(Asked asked, std::uint32_t place, const Vertex& v, const
     if (!(area > 0)) return Rgb(0.0);
     const PhotonMap& map = maps_.global->main_photons();
     const auto few = [&](const auto& weight) {
-        const auto power = [&](const Photon& p) {
-            return asked == Asked::all || p.caustic() ? luminance(p.power()) : 0.0;
-        };
+        const auto power = [&](const Photon& p) { return !asked.caustics || p.caustic() ? luminance(p.power()) : 0.0; };
         const auto light = [&](const Photon& p) { return weight(p) * p.power(); };
         return sum_over_few(map, {query.region, r, kPhotonsOfLobe}, power, light, source) / area;
     };
-    const PhotonReflection reflected(v, back);
+    const PhotonReflection reflected(v, back, asked.longer);
     if (!may_be_partly_occluded(place, query.region)) return few(reflected);
     return few(weight_in_sight(scene_, query.region, r, reflected));
 }

@@ -55,6 +55,8 @@ class GatherRays {
         Rgb indirect{0.0}; ///< reflected by what the ray met
         Rgb emitted{0.0};  ///< emitted by what it met first, weighted against next_event() at the ray's origin
         float distance = std::numeric_limits<float>::infinity(); ///< to what it met first [m]
+        /// Luminance of what of `indirect` could go by longer ways from the ray's origin to the eye than it does.
+        LongerWays reaching{};
     };
     /// Follows the ray from `from` along `w`, which was drawn with density `pdf` per solid angle. `scatterings` counts
     /// those between the eye and the ray.
@@ -62,8 +64,8 @@ class GatherRays {
 
     /// Radiance towards `back` that the caustic map gives at a visible point, which reflects so much luminance besides.
     /// Where the surface is so fine that a lookup takes many rays, and the caustic is the lesser part, it is looked at
-    /// by chance, and counts all the more then.
-    Rgb caustic(const Vertex& v, const Vec3& back, double besides, SampleSource& source) const;
+    /// by chance, and counts all the more then. `scatterings` counts those between the eye and here, this one included.
+    Rgb caustic(const Vertex& v, const Vec3& back, double besides, int scatterings, SampleSource& source) const;
     /// Share of its luminance that pilot photons don't confirm (unconfirmed_share()).
     double unconfirmed_caustic(const Vertex& v, const Vec3& back) const;
 
@@ -76,7 +78,8 @@ class GatherRays {
 
   private:
     /// Of light that comes on the side of `normal`.
-    Rgb caustic(const Vertex& v, const Vec3& normal, const Vec3& back, double besides, SampleSource& source) const;
+    Rgb caustic_on_side(const Vertex& v, const Vec3& normal, const Vec3& back, double besides, int longer,
+                        SampleSource& source) const;
     /// With which probability a caustic is worth a look; 0 where there is none.
     double chance_of_caustic(const Vertex& v, const Vec3& back, const SurfaceRegion& region, float r,
                              double besides) const;
@@ -88,8 +91,15 @@ class GatherRays {
     bool goes_on(const Leg& leg, const std::optional<std::uint32_t>& place, const SurfaceRegion& here) const;
     /// Whether the surface around a place is finer than the estimate there.
     bool is_fine(std::uint32_t place) const;
+    /// What is known of where a ray ended.
+    struct End {
+        std::optional<std::uint32_t> place{}; ///< of the irradiance map
+        Rgb direct{0.0};                      ///< of what the diffuse part reflects there, what emitters bring
+    };
     /// Radiance towards `back` that `v` reflects by its finite part.
-    Rgb reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSource& source) const;
+    Rgb reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSource& source, End& end) const;
+    /// Adds `light`, which was found at `end`, to what comes along a ray.
+    void add(const Rgb& throughput, const Rgb& light, const End& end, const Leg& leg, Arrival& arrival) const;
     /// What `v`, at which the irradiance is about `irradiance` [W/m^2], reflects of indirect light that comes along a
     /// ray more. `next`: the leg that this begins.
     Rgb bounced(const Vertex& v, const Vec3& back, const Rgb& irradiance, const Leg& next, SampleSource& source) const;
@@ -110,9 +120,12 @@ class GatherRays {
     /// Whether something may stand on a region near a place, which has the radius of that, and hide photons there.
     bool may_be_partly_occluded(std::uint32_t place, const SurfaceRegion& region) const;
     /// What the global map says of light that `v` reflects towards `back`.
-    Rgb global(const Vertex& v, const Vec3& back) const;
+    Rgb global(const Vertex& v, const Vec3& back, int longer) const;
     /// Which of the photons near a place count.
-    enum class Asked { caustics, all };
+    struct Asked {
+        bool caustics; ///< these alone
+        int longer;    ///< those that may reach the eye by so many vertices more than the fewest: Photon::spare()
+    };
     /// Area [m^2] over which photons near a place are counted; 0 where that isn't known.
     double area_near(std::uint32_t place, const SurfaceRegion& region) const;
     /// The same as global() of these that come on the side of `normal`, near a place of the irradiance map, whose

@@ -1,7 +1,7 @@
 // Irradiance and its gradients from a stratified hemisphere of rays (Ward and Heckbert 1992, "Irradiance Gradients").
 #pragma once
 
-#include "core/vec.h"
+#include "photonmap/photon.h"
 
 #include <array>
 #include <span>
@@ -27,6 +27,7 @@ struct HemisphereEstimate {
     RgbGradient translation = kNoGradient; ///< derivative with respect to the position [W/m^3]
     double distance = 0;                   ///< harmonic mean of the rays' [m]; infinite if nothing was hit
     double variance = 0;                   ///< of the irradiance's luminance, at most [(W/m^2)^2]
+    LongerWays reaching{1, 1, 1, 1};       ///< shares of `irradiance`; whoever has the rays tells
 };
 
 /// The cells of a hemisphere: `rows` polar angles times `columns` azimuths, each with the same share of the cosine.

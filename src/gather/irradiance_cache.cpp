@@ -20,6 +20,7 @@ constexpr double kDark = 0.1;
 /// Relative error, over the cache's, by which two records may predict each other wrongly.
 constexpr float kDoubt = 1.0f / 3;
 
+Rgb to_rgb(const Vec3& v) { return {v.x, v.y, v.z}; }
 Vec3 to_vec(const Rgb& c) { return {static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z)}; }
 
 float luminance_of(const Vec3& c) { return c.dot(Vec3(0.2126f, 0.7152f, 0.0722f)); }
@@ -90,7 +91,7 @@ template <class Visit> void IrradianceCache::visit_standing(const Vec3& position
     });
 }
 
-IrradianceCache::Answer IrradianceCache::irradiance(const Vec3& position, const Vec3& normal) const {
+IrradianceCache::Answer IrradianceCache::irradiance(const Vec3& position, const Vec3& normal, int longer) const {
     Vec3 sum(0.0f);
     float weights = 0, variance = 0;
     visit_near(position, [&](std::uint32_t i) {
@@ -98,7 +99,7 @@ IrradianceCache::Answer IrradianceCache::irradiance(const Vec3& position, const 
         const Vec3 d = position - r.position;
         const float w = weight_of(r, r.reach, d, normal);
         if (!(w > 0)) return;
-        sum += irradiance_at(r, d, normal - r.normal) * w;
+        sum += irradiance_at(r, d, normal - r.normal) * (longer > 0 ? w * by_way(r.reaching, longer) : w);
         weights += w;
         variance += w * w * r.variance;
     });
@@ -142,7 +143,8 @@ void IrradianceCache::insert(const IrradianceRecord& record) {
              .distance = static_cast<float>(std::min(e.distance, 1e30)),
              .min_radius = record.min_radius,
              .max_radius = record.max_radius,
-             .min_radius_by_light = record.min_radius_by_light};
+             .min_radius_by_light = record.min_radius_by_light,
+             .reaching = e.reaching};
     // Where irradiance changes by its own size within that distance, first order says nothing beyond (Ward, Heckbert).
     const float y = static_cast<float>(luminance(e.irradiance));
     const Vec3 slope = r.translation[0] * 0.2126f + r.translation[1] * 0.7152f + r.translation[2] * 0.0722f;
@@ -202,6 +204,11 @@ std::vector<double> IrradianceCache::relative_noise() const {
 void IrradianceCache::refine(std::size_t i, const HemisphereEstimate& more, double share) {
     Stored& r = records_[i];
     const auto s = static_cast<float>(share);
+    const auto before = (1 - s) * static_cast<float>(luminance(to_rgb(r.irradiance)));
+    const auto added = s * static_cast<float>(luminance(more.irradiance));
+    if (before + added > 0)
+        for (std::size_t k = 0; k < r.reaching.size(); ++k)
+            r.reaching[k] = (before * r.reaching[k] + added * more.reaching[k]) / (before + added);
     r.irradiance += (to_vec(more.irradiance) - r.irradiance) * s;
     r.variance_by_all = (1 - s) * (1 - s) * r.variance_by_all + s * s * static_cast<float>(more.variance);
     for (std::size_t c = 0; c < 3; ++c) {

@@ -66,7 +66,9 @@ class IrradianceCache {
         double error = 0;    ///< standard error of its luminance by the rays that records had at first [W/m^2]
         bool known = false;  ///< whether any record had a say
     };
-    Answer irradiance(const Vec3& position, const Vec3& normal) const;
+    /// @param longer by how many vertices the way from here to the eye is longer than a straight one: light that was
+    ///     scattered too often to take it is left out
+    Answer irradiance(const Vec3& position, const Vec3& normal, int longer = 0) const;
 
     /// Whether a place is covered by at least `share` by the records within whose radius it lies, those of which
     /// `sees(record)` says that they are in sight of it: each covers the place where it stands by 1, and nothing at its
@@ -104,6 +106,7 @@ class IrradianceCache {
         float border = std::numeric_limits<float>::infinity(); ///< to where it ends unless its radius is larger [m]
         float min_radius, max_radius, min_radius_by_light;
         float held = 1; ///< factor of its translation gradient
+        LongerWays reaching;
     };
     using Cell = std::vector<std::uint32_t>;
     struct HashOfCell {

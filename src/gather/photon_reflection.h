@@ -21,9 +21,12 @@ constexpr double kLeastArrival = 0.05;
 /// inside, on the same side of both, that only the sides of their surfaces tell them apart.
 class PhotonReflection {
   public:
-    PhotonReflection(const Vertex& v, const Vec3& back) : v_(v), back_(back), through_(v.bsdf.traits().through) {}
+    /// @param longer by how many vertices the way on to the eye is longer than the shortest: see Photon::spare()
+    PhotonReflection(const Vertex& v, const Vec3& back, int longer)
+        : v_(v), back_(back), longer_(longer), through_(v.bsdf.traits().through) {}
 
     Rgb operator()(const Photon& photon) const {
+        if (!photon.reaches(longer_)) return Rgb(0.0);
         const Vec3 normal = photon.normal().decode(), w = photon.direction();
         if (through_ && photon.behind() != (normal.dot(v_.point.ng) < 0)) return Rgb(0.0);
         const Rgb f = v_.bsdf.finite(w, back_).value;
@@ -36,6 +39,7 @@ class PhotonReflection {
   private:
     const Vertex& v_;
     Vec3 back_;
+    int longer_;
     bool through_;
 };
 

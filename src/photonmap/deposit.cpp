@@ -89,7 +89,9 @@ void PathDepositor::store(Pending& pending) {
                               ? Rgb(1.0)
                               : power_of(pending, kind == PhotonKind::global, given, weight);
         if (is_black(power)) return std::nullopt;
-        const Photon photon(pending.vertex.point.p, pending.vertex.point.ng, pending.to_light, power, pending.caustic);
+        const Photon photon(pending.vertex.point.p, pending.vertex.point.ng, pending.to_light, power,
+                            {.caustic = pending.caustic,
+                             .spare = spare_scatterings(kind, pending.scatterings, options_.max_scatterings)});
         if (options_.observer != nullptr)
             options_.observer->stored(
                 photon, {pending.trail, static_cast<std::size_t>(pending.scatterings), pending.emitter, false});

@@ -89,9 +89,12 @@ class PathDepositor {
     Rgb power_of(const Pending& pending, bool global, double given, double weight);
     Rgb global_power(const Pending& pending, double given, double weight);
     Rgb caustic_power(const Pending& pending) const;
-    static ImportanceMap::Importance importance(const Pending& pending, const ImportanceMap& map,
-                                                Ways ways = Ways::all) {
-        return map.importance(pending.vertex.point, pending.vertex.bsdf, pending.to_light, ways);
+    /// By ways to the eye that a path of the stored sub-path may take.
+    ImportanceMap::Importance importance(const Pending& pending, const ImportanceMap& map,
+                                         Ways ways = Ways::all) const {
+        const PhotonKind kind = &map == options_.global ? PhotonKind::global : PhotonKind::caustic;
+        return map.importance(pending.vertex.point, pending.vertex.bsdf, pending.to_light, ways,
+                              spare_scatterings(kind, pending.scatterings, options_.max_scatterings));
     }
     /// E of the straight edge from d1 to a pinhole; 0 where it is hidden.
     Rgb straight_importance(const Pending& pending) const;

@@ -56,15 +56,15 @@ class Collector {
         if (observer_ != nullptr) trail_.push_back({v.point.p, !v.bsdf.traits().finite});
         if (!v.bsdf.traits().finite) return true;
         const StorageRule::Kinds kinds = rule_(v, to_light, past);
-        if (kinds.global) store(PhotonKind::global, v, to_light, power, past.caustic());
-        if (kinds.caustic) store(PhotonKind::caustic, v, to_light, power, past.caustic());
+        if (kinds.global) store(PhotonKind::global, v, to_light, power, past);
+        if (kinds.caustic) store(PhotonKind::caustic, v, to_light, power, past);
         return true;
     }
 
     EmissionBlock block;
 
   private:
-    void store(PhotonKind kind, const Vertex& v, const Vec3& to_light, Rgb power, bool caustic) {
+    void store(PhotonKind kind, const Vertex& v, const Vec3& to_light, Rgb power, const LightPast& past) {
         if (!(luminance(power) > 0)) return;
         PhotonWeighing::Weight weight = weighing_(kind, v, to_light, power);
         if (const double most = weighing_.most_visible;
@@ -81,13 +81,17 @@ class Collector {
         store_by_roulette(pilot ? block.pilots : block.main_photons, kind, share * weight.value,
                           pilot ? pilots_ : main_photons_, *rng_, [&](double /*weight*/) {
                               const Photon photon(v.point.p, v.point.ng, to_light, emitted_power(power, weight.value),
-                                                  caustic);
+                                                  {.caustic = past.caustic(), .spare = spare(kind, past)});
                               kept = true;
                               if (observer_ != nullptr)
                                   observer_->stored(photon, {trail_, trail_.size() - 1, emitter_, guided_});
                               return photon;
                           });
         if (observer_ != nullptr && !kept) observer_->thrown_away(v.point.p);
+    }
+
+    int spare(PhotonKind kind, const LightPast& past) const {
+        return spare_scatterings(kind, past.scatterings + 1, rule_.max_scatterings);
     }
 
     PhotonWeighing weighing_;

@@ -11,6 +11,11 @@
 
 namespace keyhole {
 
+/// Photon::spare() where light that `scatterings` vertices have scattered, that of the photon included, is stored.
+inline int spare_scatterings(PhotonKind kind, int scatterings, int max_scatterings) {
+    return max_scatterings - scatterings - (kind == PhotonKind::global ? 1 : 0); // d1 is still to come
+}
+
 /// What waits for the stores of either map.
 struct MapBuffers {
     PhotonBuffer global, caustic;

@@ -56,17 +56,18 @@ template <class Int> class OctahedralVector {
     Int x_ = 0, y_ = 0;
 };
 
-/// A non-negative RGB triple in 6 bytes: 13 bits a channel under one exponent of 7 bits (as RGB9E5, but wider), and two
-/// bits for whoever has a use for them. Rounded to nearest, so that errors average out: at most 2^-13 of the largest
-/// channel, in every channel. From 2^-79 (less becomes black) to 2^47 (more is held there).
+/// A non-negative RGB triple in 6 bytes: 12 bits a channel under one exponent of 7 bits (as RGB9E5, but wider), and
+/// five bits for whoever has a use for them. Rounded to nearest, so that errors average out: at most 2^-12 of the
+/// largest channel, in every channel. From 2^-79 (less becomes black) to 2^47 (more is held there).
 class SharedExponentRgb {
   public:
     SharedExponentRgb() = default;
 
     /// `c` is finite and has no negative channel.
-    /// @param marks 0 to 3
+    /// @param marks 0 to 31
     explicit SharedExponentRgb(const Rgb& c, unsigned marks = 0) {
-        words_[2] = static_cast<std::uint16_t>(marks << kMarks);
+        words_[1] = static_cast<std::uint16_t>(marks >> 4 << 15);
+        words_[2] = static_cast<std::uint16_t>(marks << kBits);
         assert(is_finite(c) && c.x >= 0 && c.y >= 0 && c.z >= 0);
         const double largest = std::max({c.x, c.y, c.z});
         int exponent = 0;
@@ -77,32 +78,32 @@ class SharedExponentRgb {
         const bool overflow = exponent > kMost;
         if (overflow) exponent = kMost;
         const double scale = std::ldexp(1.0, kBits - exponent);
-        const auto biased = static_cast<unsigned>(exponent + kBias);
+        const auto biased = static_cast<long>(exponent + kBias);
+        const std::array<long, 3> parts{biased & 15, biased >> 4, 0};
         for (unsigned i = 0; i < 3; ++i) {
             const double m = std::min(c[static_cast<int>(i)] * scale, static_cast<double>(kMask));
-            words_[i] = static_cast<std::uint16_t>(words_[i] | std::lrint(m) |
-                                                   static_cast<long>(biased >> (3 * i) & 7u) << kBits);
+            words_[i] = static_cast<std::uint16_t>(words_[i] | std::lrint(m) | parts[i] << kBits);
         }
     }
 
     Rgb decode() const {
-        const int biased = words_[0] >> kBits | words_[1] >> kBits << 3 | (words_[2] >> kBits & 1) << 6;
+        const int biased = words_[0] >> kBits | (words_[1] >> kBits & 7) << 4;
         const int exponent = biased - kBias - kBits;
         // 2^exponent put together from its bits: ldexp is slow, and this is the innermost loop of a lookup.
         const auto scale = std::bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52);
         return {(words_[0] & kMask) * scale, (words_[1] & kMask) * scale, (words_[2] & kMask) * scale};
     }
 
-    unsigned marks() const { return words_[2] >> kMarks; }
+    unsigned marks() const { return words_[2] >> kBits | static_cast<unsigned>(words_[1] >> 15) << 4; }
 
     bool operator==(const SharedExponentRgb&) const = default;
 
   private:
-    static constexpr int kBits = 13, kMask = (1 << kBits) - 1, kBias = 80;
+    static constexpr int kBits = 12, kMask = (1 << kBits) - 1, kBias = 80;
     static constexpr int kLeast = 1 - kBias, kMost = 127 - kBias; // exponents
-    static constexpr int kMarks = 14;                             // bit of the last word
 
-    // Mantissa below, bits of the exponent above: three in the first two words, and one in the last, with the marks.
+    // Mantissa below; above it four bits of the exponent in the first word, three in the second, and the marks in what
+    // is left.
     std::array<std::uint16_t, 3> words_{};
 };
 

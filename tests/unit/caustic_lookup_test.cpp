@@ -38,12 +38,14 @@ TEST(CausticLookup, IsRightOnAverageWhereItIsDoneByChance) {
     for (const Vec2& image : {Vec2(0.5f, 0.5f), Vec2(0.72f, 0.55f)}) {
         const auto seen = visible_point(rays, image, rng);
         ASSERT_TRUE(seen);
-        const double whole = luminance(rays.caustic(seen->vertex, seen->back, 0, rng));
+        const double whole = luminance(rays.caustic(seen->vertex, seen->back, 0, 1, rng));
         ASSERT_GT(whole, 0);
-        ASSERT_EQ(luminance(rays.caustic(seen->vertex, seen->back, 0, rng)), whole) << "the greater part is looked at";
+        ASSERT_EQ(luminance(rays.caustic(seen->vertex, seen->back, 0, 1, rng)), whole)
+            << "the greater part is looked at";
         for (const double besides : {20 * whole, 1e6 * whole}) {
             RunningStats found;
-            for (int i = 0; i < 4000; ++i) found.add(luminance(rays.caustic(seen->vertex, seen->back, besides, rng)));
+            for (int i = 0; i < 4000; ++i)
+                found.add(luminance(rays.caustic(seen->vertex, seen->back, besides, 1, rng)));
             EXPECT_TRUE(test::has_mean(found, whole));
             EXPECT_GT(found.variance(), 0) << "it was always looked at";
         }
@@ -71,7 +73,7 @@ TEST(CausticLookup, TellsWhatFallsOnTheFloorBesideAWall) {
                 above.site = Site::point;
                 above.p = {places[k], 1, z};
                 const auto seen = next_vertex(*scene, above, {0, -1, 0});
-                of_map.add(luminance(rays.caustic(seen.value(), {0, 1, 0}, 0, rng)));
+                of_map.add(luminance(rays.caustic(seen.value(), {0, 1, 0}, 0, 1, rng)));
             }
             found[k].add(of_map.mean());
         }

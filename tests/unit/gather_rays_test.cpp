@@ -52,7 +52,7 @@ class Floor {
         for (std::size_t i = photons_.main_photons.size() - static_cast<std::size_t>(count);
              caustic && i < photons_.main_photons.size(); ++i) {
             Photon& p = photons_.main_photons[i];
-            p = Photon(p.position(), p.normal().decode(), p.direction(), p.power(), true);
+            p = Photon(p.position(), p.normal().decode(), p.direction(), p.power(), {.caustic = true});
         }
     }
     /// Mean of what rays from straight above find at `x` [W/(m^2 sr)].

@@ -51,7 +51,7 @@ TEST(OutlyingPhotons, LoseWhatIsTooMuchUntilThereAreEnough) {
 }
 
 Photon of_power(const Rgb& power, bool caustic = false) {
-    return {Vec3(0), Vec3(0, 1, 0), Vec3(0, 1, 0), power, caustic};
+    return {Vec3(0), Vec3(0, 1, 0), Vec3(0, 1, 0), power, {.caustic = caustic}};
 }
 
 TEST(OutlyingPower, IsCutToWhatTheOthersAllow) {

@@ -45,7 +45,7 @@ constexpr int kDirections = 400'000;
 /// Weights of photons that arrive as from an even sky on a facet so tilted: mean times pi is what they make of it.
 RunningStats weights_of_photons(const Facet& facet, float degrees, Rng& rng) {
     const Frame frame(tilted(degrees));
-    const PhotonReflection reflected(facet.v, facet.to_eye);
+    const PhotonReflection reflected(facet.v, facet.to_eye, 0);
     RunningStats weights;
     for (int i = 0; i < kDirections; ++i) {
         const auto [u0, u1] = rng.take<2>();
@@ -86,8 +86,8 @@ TEST(PhotonReflection, MakesNoSpeckOfLightAlongTheFacet) {
     const Photon photon({0, 0, 0}, tilted(60), w.normalized(), Rgb(1.0));
     const double f = luminance(facet.v.bsdf.finite(photon.direction(), facet.to_eye).value);
     ASSERT_GT(f, 0);
-    EXPECT_LT(luminance(PhotonReflection(facet.v, facet.to_eye)(photon)), f);
-    EXPECT_GT(luminance(PhotonReflection(facet.v, facet.to_eye)(photon)), 0.1 * f);
+    EXPECT_LT(luminance(PhotonReflection(facet.v, facet.to_eye, 0)(photon)), f);
+    EXPECT_GT(luminance(PhotonReflection(facet.v, facet.to_eye, 0)(photon)), 0.1 * f);
 }
 
 TEST(PhotonReflection, IsTheBsdfWithoutShadingNormals) {
@@ -95,7 +95,7 @@ TEST(PhotonReflection, IsTheBsdfWithoutShadingNormals) {
     const Photon photon({0, 0, 0}, {0, 0, 1}, Vec3(0.9f, 0, 0.1f).normalized(), Rgb(1.0));
     const double f = luminance(facet.v.bsdf.finite(photon.direction(), facet.to_eye).value);
     ASSERT_GT(f, 0);
-    EXPECT_DOUBLE_EQ(luminance(PhotonReflection(facet.v, facet.to_eye)(photon)), f);
+    EXPECT_DOUBLE_EQ(luminance(PhotonReflection(facet.v, facet.to_eye, 0)(photon)), f);
 }
 
 } // namespace

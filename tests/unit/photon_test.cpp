@@ -48,13 +48,13 @@ TEST(SharedExponentRgb, RoundsWithinItsBoundAndWithoutBias) {
     for (int i = 0; i < 300'000; ++i) {
         const double magnitude = std::pow(10.0, 36 * rng.next() - 22);
         const Rgb c = Rgb(rng.next(), rng.next(), rng.next()) * magnitude;
-        const SharedExponentRgb stored(c, static_cast<unsigned>(i % 4));
+        const SharedExponentRgb stored(c, static_cast<unsigned>(i % 32));
         const Rgb back = stored.decode();
-        ASSERT_EQ(stored.marks(), static_cast<unsigned>(i % 4));
+        ASSERT_EQ(stored.marks(), static_cast<unsigned>(i % 32));
         const double largest = std::max({c.x, c.y, c.z});
         for (int k = 0; k < 3; ++k) {
             const double e = (back[k] - c[k]) / largest;
-            ASSERT_LE(std::abs(e), 0x1p-13);
+            ASSERT_LE(std::abs(e), 0x1p-12);
             error[k].add(e);
         }
     }
@@ -75,7 +75,7 @@ TEST(SharedExponentRgb, HandlesTheEndsOfItsRange) {
 
 TEST(Photon, StaysACausticOneWhateverItsPower) {
     for (const bool caustic : {false, true}) {
-        Photon photon(Vec3(0), {0, 0, 1}, {0, 0, 1}, Rgb(0.0), caustic);
+        Photon photon(Vec3(0), {0, 0, 1}, {0, 0, 1}, Rgb(0.0), {.caustic = caustic});
         EXPECT_EQ(photon.caustic(), caustic);
         EXPECT_TRUE(is_black(photon.power()));
         photon.set_power(Rgb(1, 2, 3));
@@ -84,9 +84,21 @@ TEST(Photon, StaysACausticOneWhateverItsPower) {
     }
 }
 
+TEST(Photon, KnowsByHowManyVerticesItsWayMayBeLonger) {
+    for (int spare = 0; spare < 10; ++spare) {
+        Photon photon(Vec3(0), {0, 0, 1}, {0, 0, 1}, Rgb(1.0), {.caustic = spare % 2 > 0, .spare = spare});
+        photon.set_power(Rgb(0.5));
+        EXPECT_EQ(photon.spare(), std::min(spare, PhotonPast::kMostSpare));
+        EXPECT_EQ(photon.caustic(), spare % 2 > 0);
+        EXPECT_FALSE(photon.behind());
+        for (int longer = 0; longer < 12; ++longer)
+            EXPECT_EQ(photon.reaches(longer), spare >= longer || spare >= PhotonPast::kMostSpare) << spare << longer;
+    }
+}
+
 TEST(Photon, KnowsWhichSideOfTheSurfaceTheLightCameTo) {
     const Vec3 up(0, 0, 1), slanted = Vec3(1, 2, 3).normalized();
-    Photon above(Vec3(0), up, slanted, Rgb(1.0)), below(Vec3(0), -up, slanted, Rgb(1.0), true);
+    Photon above(Vec3(0), up, slanted, Rgb(1.0)), below(Vec3(0), -up, slanted, Rgb(1.0), {.caustic = true});
     EXPECT_FALSE(above.behind());
     below.set_power(Rgb(0.0));
     EXPECT_TRUE(below.behind());

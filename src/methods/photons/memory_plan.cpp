@@ -13,22 +13,29 @@ namespace {
 constexpr double kFixed = 64 * 1024; // what small maps round up
 const double kIndexed = sizeof(Photon) + PhotonMap::index_bytes_per_photon(PhotonMap::Wanted::many);
 const double kPilotPhoton = sizeof(Photon) + PhotonMap::index_bytes_per_photon(PhotonMap::Wanted::one);
-constexpr double kEstimate = IrradianceMap::bytes_per_place(); // what each pilot photon of a map adds
-const double kInStageThree =
-    ((kPilotEvery - 1) * kIndexed + kPilotPhoton + kEstimate + DirectIrradianceCache::bytes_per_place()) / kPilotEvery;
 constexpr double kList = sizeof(std::uint32_t); // while an index is built; later places are as large
 constexpr double kInStageTwo = PhotonStore::bytes_per_photon() * 1.0625; // buffers on their way to the stores
 
+/// Longest paths, in scatterings, whose last ones count: with an albedo of 0.8 those after this bring half a percent.
+constexpr std::int64_t kLongPath = 24;
+
 } // namespace
 
+bool length_matters(const Settings& settings) { return settings.max_depth <= kLongPath; }
+
 MemoryPlan plan_memory(const Settings& settings, ImportanceUse use, int maps) {
+    // What each pilot photon of a map adds, and all of that for a photon.
+    const double estimate = IrradianceMap::bytes_per_place(length_matters(settings));
+    const double in_stage_three =
+        ((kPilotEvery - 1) * kIndexed + kPilotPhoton + estimate + DirectIrradianceCache::bytes_per_place()) /
+        kPilotEvery;
     const double memory = std::max(static_cast<double>(settings.photon_memory) - kFixed, kFixed);
     const bool stays = use == ImportanceUse::beside || use == ImportanceUse::both;
     // Importance that stays beside the photons decides how good their power is: half of what is left for it.
-    double photons = memory / (stays ? 2 * kInStageThree : kInStageThree);
+    double photons = memory / (stays ? 2 * in_stage_three : in_stage_three);
     if (settings.photons > 0) photons = std::min(photons, static_cast<double>(settings.photons));
     double importons = 0;
-    const double places = (kPilotPhoton + kEstimate) / kPilotEvery;
+    const double places = (kPilotPhoton + estimate) / kPilotEvery;
     const double each = kIndexed + (use == ImportanceUse::both ? places : 0);
     if (stays) importons = (memory - photons * kInStageTwo) / (each * maps);
     // All importons, and the index and the places of one map; later the places of all, beside the stores.

@@ -13,6 +13,10 @@ struct MemoryPlan {
     std::int64_t importons; ///< eye paths traced, each with at most one importon in each importance map
 };
 
+/// Whether max_depth is so small that it matters how long the way to the eye is from where photons are: light that has
+/// been scattered as often as that is too little otherwise.
+bool length_matters(const Settings& settings);
+
 /// A plan that stays under settings.photon_memory: before stage three importance maps and stores, in stage three the
 /// maps with their indices and precomputed irradiance. `maps` importance maps are made (1 or 2).
 MemoryPlan plan_memory(const Settings& settings, ImportanceUse use, int maps);

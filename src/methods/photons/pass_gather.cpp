@@ -2,6 +2,7 @@
 
 #include "core/statistics.h"
 #include "gather/fill_cache.h"
+#include "methods/photons/memory_plan.h"
 #include "methods/photons/photon_report.h"
 #include "methods/photons/radii.h"
 
@@ -55,6 +56,7 @@ PassGather::PassGather(const SamplerContext& c, const RenderPlan& plan, std::int
                                               .shrink = radii.shrink,
                                               .patches = &c.patches,
                                               .coverage = c.coverage,
+                                              .by_length = c.scene.traits().delta && length_matters(s),
                                               .scene = &c.scene},
                             context);
         report_lookups(*irradiance_, photons_in_region, stats);

@@ -5,10 +5,11 @@
 namespace keyhole {
 
 ImportanceMap::Importance ImportanceMap::importance(const SurfacePoint& d2, const Bsdf& bsdf, const Vec3& to_light,
-                                                    Ways ways) const {
+                                                    Ways ways, int longest) const {
     const PhotonQuery query{{d2.p, facing(d2.ng, to_light)}, options_.max_radius, options_.k};
     const auto scattering = [&](const Photon& importon) {
         if (ways == Ways::specular && !importon.caustic()) return Rgb(0.0);
+        if (importon.spare() > longest) return Rgb(0.0);
         return scatter(d2, bsdf, Event::finite, to_light, importon.direction()).value;
     };
     const DensityEstimate e = estimate_density(map_, query, options_.unbiased, options_.patches, scattering);

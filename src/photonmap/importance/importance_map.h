@@ -43,12 +43,14 @@ class ImportanceMap {
 
     /// E(d2, to_light) = integral of fs(d2) G(d2, d1) fs(d1) ... over all ways on to the eye: the sum over importons
     /// near `d2` of scattering from `to_light` (unit, away from the surface) into the importon's direction, times its
-    /// importance, over the area. `bsdf` is that at `d2`; `ways` which importons count.
+    /// importance, over the area. `bsdf` is that at `d2`; `ways` which importons count: of them, those whose way is
+    /// longer than the shortest by `longest` vertices at most (Photon::spare()).
     ///
     /// Importance arrives through the geometric surface, so the scattering carries the shading-normal factor
     /// |wi.ns| / |wi.ng| at d2, as a path's vertex value does (measure.h): E times the photon's own f is then the
     /// contribution of the path. Only importons on the side of `to_light` count, since finite BSDFs only reflect.
-    Importance importance(const SurfacePoint& d2, const Bsdf& bsdf, const Vec3& to_light, Ways ways = Ways::all) const;
+    Importance importance(const SurfacePoint& d2, const Bsdf& bsdf, const Vec3& to_light, Ways ways = Ways::all,
+                          int longest = PhotonPast::kMostSpare) const;
 
     const PhotonMap& map() const { return map_; }
     std::size_t bytes() const { return map_.bytes(); }

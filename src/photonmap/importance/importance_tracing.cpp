@@ -18,7 +18,8 @@ void trace_importons(const Scene& scene, const Vec2& image, const ImportanceTrac
                         [&](const Vertex& v, const Vec3& to_eye, const Rgb& throughput, const EyePast& past) {
                             if (past.finite == 1 || options.at_d1)
                                 (past.finite == 0 ? out.first : out.second)
-                                    .emplace_back(v.point.p, v.point.ng, to_eye, throughput * share, past.specular);
+                                    .emplace_back(v.point.p, v.point.ng, to_eye, throughput * share,
+                                                  PhotonPast{.caustic = past.specular > 0, .spare = past.specular});
                         });
 }
 

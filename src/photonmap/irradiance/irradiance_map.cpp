@@ -43,12 +43,14 @@ IrradianceMap::IrradianceMap(const PhotonMap& pilots, const PhotonMap& main_phot
                              const RunContext& context)
     : pilots_(pilots), estimates_(pilots.photons().size()), max_radius_(options.max_radius), scene_(options.scene),
       patches_(options.patches), most_hidden_(options.most_hidden) {
+    if (options.by_length) shares_.resize(estimates_.size());
     const Range own = own_part(static_cast<std::int64_t>(estimates_.size()), context);
     std::vector<Count> used(static_cast<std::size_t>(blocks_of(own)));
     context.begin("irradiance", static_cast<std::uint64_t>(own.size()), "estimates");
     shared_blocks(estimates_, context, [&](std::int64_t b, std::int64_t i) {
         used[static_cast<std::size_t>(b)] += estimate(static_cast<std::uint32_t>(i), main_photons, options);
     });
+    exchange_parts(shares_, context);
     if (options.scene != nullptr)
         grid_.emplace(
             options.scene->shapes(), kGridBytesPerPlace * estimates_.size(),
@@ -73,12 +75,14 @@ IrradianceMap::Count IrradianceMap::estimate(std::uint32_t i, const PhotonMap& m
     double sum = 0, squares = 0;
     Imath::V3d moment(0.0);
     unsigned marks = 0;
+    std::array<double, kLongerWays> reaching{}; // power of what may take 1, 2, ... vertices more
     const auto one = [&](const Photon& p) {
         const double power = luminance(p.power());
         sum += power;
         squares += power * power;
         moment += power * Imath::V3d(p.position() - place.position());
         if (p.caustic()) marks |= Estimate::caustics;
+        for (int k = 0; k < std::min(p.spare(), kLongerWays); ++k) reaching[static_cast<std::size_t>(k)] += power;
         return 1.0;
     };
     DensityEstimate e =
@@ -89,6 +93,9 @@ IrradianceMap::Count IrradianceMap::estimate(std::uint32_t i, const PhotonMap& m
     const double disc = kPi * static_cast<double>(r) * r;
     estimates_[i] = Estimate(e.value, marks, r, disc > 0 ? e.area / disc : 0.0,
                              e.obstructed ? obstructed_levels(*options.patches, query.region, r) : std::uint8_t{0});
+    if (!shares_.empty() && sum > 0)
+        std::ranges::transform(reaching, shares_[i].begin(),
+                               [&](double r) { return static_cast<std::uint8_t>(std::lround(255 * r / sum)); });
     return {static_cast<double>(e.photons), squares > 0 ? sum * sum / squares : 0.0};
 }
 

@@ -8,6 +8,7 @@
 #include "scene/scene.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -24,6 +25,7 @@ struct IrradianceOptions {
     const SurfacePatches* patches = nullptr;  ///< for the area at edges; null: the disc's. Must outlive the map
     const GatherCoverage* coverage = nullptr; ///< that the map ends at; null: nowhere
     int most_hidden = std::numeric_limits<int>::max(); ///< places that a lookup finds hidden before it gives up
+    bool by_length = false;                            ///< whether share_that_reaches() is wanted
     const Scene* scene = nullptr; ///< for walls that stand on a surface and part it; needs `patches`; null: none do
 };
 
@@ -65,13 +67,26 @@ class IrradianceMap {
         const float reach = share * radius(i);
         return region.distance2(pilots_[i].position()) <= reach * reach;
     }
+    /// Whether share_that_reaches() is known.
+    bool tells_lengths() const { return !shares_.empty(); }
+    /// Of the irradiance at place i, the share of what may take a way to the eye that is longer than the shortest by
+    /// `longer` vertices (Photon::spare()), as the estimate's photons have it: noisy. 1 where that isn't known.
+    double share_that_reaches(std::uint32_t i, int longer) const {
+        if (shares_.empty() || longer <= 0) return 1;
+        return shares_[i][static_cast<std::size_t>(std::min(longer, kLongerWays) - 1)] / 255.0;
+    }
     /// Whether something may stand there that hides photons in that radius from each other.
     bool obstructed(std::uint32_t i) const { return (estimates_[i].obstructed() & 1) != 0; }
 
     /// Memory without that of the pilot photons [bytes].
-    std::size_t bytes() const { return estimates_.capacity() * sizeof(Estimate) + (grid_ ? grid_->bytes() : 0); }
+    std::size_t bytes() const {
+        return estimates_.capacity() * sizeof(Estimate) + shares_.capacity() * sizeof(Shares) +
+               (grid_ ? grid_->bytes() : 0);
+    }
     /// Of it, for one pilot photon [bytes].
-    static constexpr std::size_t bytes_per_place() { return sizeof(Estimate) + kGridBytesPerPlace; }
+    static constexpr std::size_t bytes_per_place(bool by_length = false) {
+        return sizeof(Estimate) + kGridBytesPerPlace + (by_length ? sizeof(Shares) : 0);
+    }
     /// Number of photons that went into an estimate, on average over those that this process made.
     double mean_photons() const { return mean_.photons; }
     /// How many equal ones would be as good, on average over estimates: squared sum of power over sum of squares
@@ -80,6 +95,7 @@ class IrradianceMap {
 
   private:
     static constexpr std::size_t kGridBytesPerPlace = 6;
+    using Shares = std::array<std::uint8_t, kLongerWays>; ///< as LongerWays, times 255
 
     class Estimate {
       public:
@@ -123,6 +139,7 @@ class IrradianceMap {
 
     const PhotonMap& pilots_;
     std::vector<Estimate> estimates_;
+    std::vector<Shares> shares_; // by place; empty where nobody asks
     float max_radius_;
     const Scene* scene_;
     const SurfacePatches* patches_;

@@ -7,8 +7,8 @@ namespace keyhole {
 
 /// What lies between the eye and a vertex.
 struct EyePast {
-    int finite = 0;        ///< non-specular vertices
-    bool specular = false; ///< whether any is specular
+    int finite = 0;   ///< non-specular vertices
+    int specular = 0; ///< specular ones
 };
 
 /// The hooks of trace_eye_path_head().
@@ -25,7 +25,7 @@ template <class Visit> struct EyePathHead : WalkHooks {
     }
     bool leave(const Vertex& v, const Continuation& /*next*/, const WalkRay& /*ray*/) {
         if (v.specular())
-            past.specular = true;
+            ++past.specular;
         else
             ++past.finite;
         return past.finite < 2;
