@@ -49,6 +49,8 @@ void parametrise(SurfacePoint& s, const Sphere& sphere, const Vec3& outward) {
 
 } // namespace
 
+float rounding_along(const Vec3& n, const Vec3& p) { return kRelativeError * absolute(n).dot(absolute(p)); }
+
 SurfacePoint triangle_point(const TriangleMesh& mesh, std::uint32_t triangle, float u, float v, bool parametrised) {
     const auto& [ia, ib, ic] = mesh.triangles[triangle];
     const Vec3 &a = mesh.positions[ia], &b = mesh.positions[ib], &c = mesh.positions[ic];

@@ -11,6 +11,10 @@ namespace keyhole {
 SurfacePoint triangle_point(const TriangleMesh& mesh, std::uint32_t triangle, float u, float v,
                             bool parametrised = true);
 
+/// Bound on the error along unit `n` of a position [m] that rounding alone makes, in what was interpolated and in the
+/// next intersection.
+float rounding_along(const Vec3& n, const Vec3& p);
+
 /// The point of a sphere in direction `outward` (unit) from its centre.
 SurfacePoint sphere_point(const Sphere& sphere, const Vec3& outward, bool parametrised = true);
 

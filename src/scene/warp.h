@@ -50,6 +50,12 @@ inline Vec3 uniform_cone(double u0, double u1, double cos_max) {
     return spherical(1 - u0 * (1 - cos_max), 2 * kPi * u1);
 }
 
+/// Whether unit `w` lies in the cone around unit `axis`. By the chord: the cosine of a small angle has no digits left
+/// in floats, and of the directions that uniform_cone() draws some would lie outside.
+inline bool in_cone(const Vec3& w, const Vec3& axis, double cos_max) {
+    return Imath::V3d(w - axis).length2() <= 2 * (1 - cos_max);
+}
+
 /// Uniform on the unit disc: density 1 / pi per area.
 inline Vec2 uniform_disc(double u0, double u1) {
     const double r = std::sqrt(u0);

@@ -193,6 +193,30 @@ TEST(DirectionHistogram, KeepsDirectionsWhereRaysDoNotMeet) {
     EXPECT_LT(sum, 0.5) << "as narrow anywhere else";
 }
 
+TEST(LearnedDirectLight, StaysWithinItsMemory) {
+    test::SceneMaker m;
+    m.room({0, 0, 0}, {20, 3, 20}, make_diffuse(Rgb(0.5)));
+    for (int x = 0; x < 20; ++x) {
+        for (int z = 0; z < 20; ++z) {
+            const Vec3 at(static_cast<float>(x), 2.9f, static_cast<float>(z));
+            m.rectangle(at + Vec3(0.4f, 0, 0.4f), {0.2f, 0, 0}, {0, 0, 0.2f}, make_diffuse(Rgb(0.0)), Rgb(9.0));
+            m.rectangle(at, {0, -0.8f, 0}, {0.9f, 0, 0}, make_diffuse(Rgb(0.3))); // a baffle
+        }
+    }
+    m.camera({1, 1.5f, 1}, {19, 1, 19}, 70).window(32, 24);
+    const auto scene = m.build();
+    std::size_t told = 0, last = 0;
+    for (const std::size_t most : {50'000, 200'000, 800'000, 3'200'000}) {
+        const auto learned = learn_direct_light(*scene, {.paths = 32'768, .most_bytes = most}, {});
+        if (!learned) continue; // so little is known of 400 lamps that it is no help
+        ++told;
+        EXPECT_LE(learned->bytes(), most);
+        EXPECT_GT(learned->bytes(), last);
+        last = learned->bytes();
+    }
+    EXPECT_GE(told, 2u);
+}
+
 class LearnedDirectLight_Window : public testing::Test {
   protected:
     static std::unique_ptr<Scene> make() {

@@ -40,8 +40,7 @@ std::optional<Vec3> AimedRay::sample(SampleSource& source) const {
 double AimedRay::density(const Vec3& w, double pdf) const {
     double sum = rays_ * pdf;
     for (std::size_t i = 0; i < cones_.size(); ++i)
-        if (static_cast<double>(w.dot(cones_[i].axis)) >= cones_[i].cos_half_angle)
-            sum += chances_[i] / cones_[i].solid_angle();
+        if (in_cone(w, cones_[i].axis, cones_[i].cos_half_angle)) sum += chances_[i] / cones_[i].solid_angle();
     return sum;
 }
 

@@ -35,7 +35,7 @@ Vec3 SpotMixture::sample(SampleSource& source) const {
 double SpotMixture::density(const Vec3& w, double pdf) const {
     double sum = 0;
     for (const Cone& cone : cones_)
-        if (static_cast<double>(w.dot(cone.axis)) >= cone.cos_half_angle) sum += cone.irradiance * cone.pdf;
+        if (in_cone(w, cone.axis, cone.cos_half_angle)) sum += cone.irradiance * cone.pdf;
     return (1 - aimed_) * pdf + (sum > 0 ? aimed_ * sum / irradiance_ : 0);
 }
 

@@ -3,6 +3,7 @@
 
 #include "photonmap/surface/surface_region.h"
 #include "sampling/paths/gather_coverage.h"
+#include "scene/geometry.h"
 #include "scene/scene.h"
 
 #include <algorithm>
@@ -12,7 +13,8 @@ namespace keyhole {
 /// Whether the middle of a region and `p`, a place of the same surface, see each other `lift` [m] above it. What is
 /// lower than that doesn't part them.
 inline bool in_sight(const Scene& scene, const SurfaceRegion& region, float lift, const Vec3& p) {
-    const Vec3 above = region.normal * lift;
+    // Far from the origin positions are no more accurate than that.
+    const Vec3 above = region.normal * std::max(lift, 2 * rounding_along(region.normal, region.position));
     return p == region.position || scene.visible(region.position + above, p + above);
 }
 

@@ -2,6 +2,7 @@
 
 #include "photonmap/surface/disc_area.h"
 #include "photonmap/surface/sight.h"
+#include "scene/geometry.h"
 
 #include <algorithm>
 #include <array>
@@ -185,7 +186,8 @@ float SurfacePatches::free_height(const SurfaceRegion& region, double r) const {
     SurfacePoint from;
     from.p = region.position;
     from.ng = region.normal;
-    from.offset = kOffSurface * static_cast<float>(r);
+    // Far from the origin rounding is the larger one, and the surface itself would be met.
+    from.offset = std::max(kOffSurface * static_cast<float>(r), 2 * rounding_along(region.normal, region.position));
     for (int layer = 0; layer < kMostLayers; ++layer) {
         const auto hit = scene_->trace(from, region.normal);
         if (!hit || hit->site != Site::surface) return kNone;

@@ -63,7 +63,7 @@ const LearnedDirectLight::Share* LearnedDirectLight::Cell::share_of(std::uint32_
 double LearnedDirectLight::Cell::pdf(std::uint32_t emitter, const Vec3& p, const Vec3& w, double point_pdf) const {
     const Share* share = share_of(emitter);
     if (share == nullptr) return 0;
-    return share->probability * (share->directions.empty() ? point_pdf : share->directions.pdf(p, w));
+    return share->probability * (share->directions == nullptr ? point_pdf : share->directions->pdf(p, w));
 }
 
 /// An emitter's share is the root of the second moment that its samples have when they are drawn as they will be.
@@ -84,14 +84,15 @@ std::vector<LearnedDirectLight::Share> LearnedDirectLight::make_shares(std::span
         if (!rays.empty()) {
             const Share* model = like != nullptr ? like->share_of(share.emitter) : nullptr;
             const auto behind = wider.find(share.emitter);
-            share.directions = {DirectionHistogram(rays, model != nullptr ? model->directions.own().plane()
-                                                                          : DirectionHistogram::meeting_plane(rays)),
-                                behind != wider.end() ? behind->second : nullptr};
+            share.directions = std::make_shared<NestedHistogram>(
+                DirectionHistogram(rays, model != nullptr ? model->directions->own().plane()
+                                                          : DirectionHistogram::meeting_plane(rays)),
+                behind != wider.end() ? behind->second : nullptr);
         }
         for (std::size_t i = begin; i < end; ++i) {
             const FoundLight& f = *sorted[i];
             double pdf = f.point_pdf;
-            if (!share.directions.empty()) pdf = (pdf + share.directions.pdf(f.at.p, f.towards)) / 2;
+            if (share.directions) pdf = (pdf + share.directions->pdf(f.at.p, f.towards)) / 2;
             share.probability += f.value * f.value / (f.density * pdf);
         }
         sum += share.probability = std::sqrt(share.probability);
@@ -172,10 +173,10 @@ EmitterPoint LearnedDirectLight::sample(const SurfacePoint& at, SampleSource& so
 
 SurfacePoint LearnedDirectLight::point_by_share(const Share* share, const SurfacePoint& at, std::uint32_t emitter,
                                                 SampleSource& source) const {
-    if (share == nullptr || share->directions.empty())
+    if (share == nullptr || share->directions == nullptr)
         return point_of(emitter, scene_->emitter(emitter).sample_point(source).point);
     const auto [u0, u1] = source.take<2>();
-    return point_of(emitter, infinite_point(share->directions.sample(at.p, u0, u1)));
+    return point_of(emitter, infinite_point(share->directions->sample(at.p, u0, u1)));
 }
 
 double LearnedDirectLight::probability(const SurfacePoint& at, std::uint32_t emitter) const {
@@ -224,8 +225,8 @@ std::vector<EmitterChance> LearnedDirectLight::chances(const SurfacePoint& at, i
     std::vector<EmitterChance> list;
     for (const Share& share : cell.shares) {
         EmitterChance chance{share.emitter, probability(cell, &share, by_tree(cell, at, &share, share.emitter))};
-        for (int i = 0; i < directions && !share.directions.empty(); ++i)
-            chance.towards.push_back(share.directions.sample(at.p, (i + 0.5) / directions, kronecker(0.5, i, kR2[1])));
+        for (int i = 0; i < directions && share.directions; ++i)
+            chance.towards.push_back(share.directions->sample(at.p, (i + 0.5) / directions, kronecker(0.5, i, kR2[1])));
         list.push_back(std::move(chance));
     }
     std::ranges::stable_sort(list, std::greater<>(), &EmitterChance::probability);
@@ -236,7 +237,8 @@ std::size_t LearnedDirectLight::bytes() const {
     std::size_t sum = tree_.bytes() + cells_.capacity() * sizeof(Cell) + bytes_of_wider_;
     for (const Cell& cell : cells_) {
         sum += cell.shares.capacity() * sizeof(Share);
-        for (const Share& share : cell.shares) sum += share.directions.bytes();
+        for (const Share& share : cell.shares)
+            if (share.directions) sum += sizeof(NestedHistogram) + share.directions->bytes();
     }
     return sum;
 }

@@ -54,9 +54,9 @@ class LearnedDirectLight final : public DirectLightSampler {
     struct Share {
         std::uint32_t emitter;
         double probability = 0;
-        double up_to = 0;             ///< sum of the probabilities so far
-        double by_tree = 0;           ///< probability that the light tree has for the middle of the cell
-        NestedHistogram directions{}; ///< to an environment; empty: by the emitter
+        double up_to = 0;   ///< sum of the probabilities so far
+        double by_tree = 0; ///< probability that the light tree has for the middle of the cell
+        std::shared_ptr<const NestedHistogram> directions{}; ///< to an environment; null: by the emitter
     };
     struct Cell {
         double plain = 1;     ///< share of samples by the light tree

@@ -20,8 +20,8 @@ constexpr int kVertices = 3, kShadowRays = 2;
 /// Learning ends early where so much was found and second moments would stay above this share of the light tree's.
 constexpr std::size_t kEnoughFound = 4096;
 constexpr double kNoGain = 0.85;
-/// No more is looked for where so much was found; and about what is kept of each find.
-constexpr std::size_t kMostFound = std::size_t{1} << 19, kBytesOfFound = 8;
+/// No more is looked for where so much was found.
+constexpr std::size_t kMostFound = std::size_t{1} << 19;
 
 /// What a round of paths has found, by how many samples.
 struct Round {
@@ -130,6 +130,17 @@ class Spent {
     double start_;
 };
 
+/// From as much of what was found as the memory allows [bytes].
+std::shared_ptr<const LearnedDirectLight> learn_within(const Scene& scene, std::span<const FoundLight> found,
+                                                       std::size_t most) {
+    auto learned = std::make_shared<const LearnedDirectLight>(scene, found);
+    while (learned->bytes() > most && !found.empty()) {
+        found = found.first(found.size() / 2);
+        learned = std::make_shared<const LearnedDirectLight>(scene, found);
+    }
+    return learned;
+}
+
 } // namespace
 
 bool has_choice_of_direct_light(const Scene& scene) {
@@ -142,15 +153,14 @@ std::shared_ptr<const LearnedDirectLight> learn_direct_light(const Scene& scene,
     if (!has_choice_of_direct_light(scene) || learning.paths <= 0) return nullptr;
     const Spent spent(context);
     context.begin("direct light", static_cast<std::uint64_t>(learning.paths), "paths");
-    const std::size_t most = std::min(kMostFound, learning.most_bytes / kBytesOfFound);
     Memory memory;
     std::shared_ptr<const LearnedDirectLight> learned;
     for (std::int64_t done = 0, paths = std::min(kFirstPaths, learning.paths); paths > 0;) {
         const double before = spent.seconds();
         memory.add(look(scene, learned.get(), learning, {done, done + paths}, context), learned);
-        if (!memory.found.empty()) learned = std::make_shared<LearnedDirectLight>(scene, memory.found);
+        if (!memory.found.empty()) learned = learn_within(scene, memory.found, learning.most_bytes);
         if (memory.found.size() > kEnoughFound && learned->second_moment_ratio() > kNoGain) break;
-        if (memory.found.size() > most) break;
+        if (memory.found.size() > kMostFound || (learned && learned->bytes() > learning.most_bytes / 2)) break;
         done += paths;
         const std::int64_t least = paths / 2;
         const double now = spent.seconds(), for_paths = (learning.seconds - now) / std::max(now - before, 1e-6);
