@@ -84,10 +84,12 @@ std::vector<LearnedDirectLight::Share> LearnedDirectLight::make_shares(std::span
         if (!rays.empty()) {
             const Share* model = like != nullptr ? like->share_of(share.emitter) : nullptr;
             const auto behind = wider.find(share.emitter);
-            share.directions = std::make_shared<NestedHistogram>(
-                DirectionHistogram(rays, model != nullptr ? model->directions->own().plane()
-                                                          : DirectionHistogram::meeting_plane(rays)),
-                behind != wider.end() ? behind->second : nullptr);
+            const bool has_model = model != nullptr && model->directions;
+            DirectionHistogram own(rays, has_model ? model->directions->own().plane()
+                                                   : DirectionHistogram::meeting_plane(rays));
+            if (!own.empty()) // what was found may all have been nothing
+                share.directions =
+                    std::make_shared<NestedHistogram>(std::move(own), behind != wider.end() ? behind->second : nullptr);
         }
         for (std::size_t i = begin; i < end; ++i) {
             const FoundLight& f = *sorted[i];
