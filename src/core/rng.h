@@ -66,6 +66,7 @@ enum class StreamPurpose : std::uint64_t {
     sampling_density,
     lobe_techniques,
     each_emitter,
+    emission_trial,
 };
 
 /// PCG32 (O'Neill 2014). One for each chain and each pixel, never for each thread, so that a picture does not

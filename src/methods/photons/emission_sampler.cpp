@@ -5,10 +5,12 @@
 #include "methods/photons/learn_light_paths.h"
 #include "methods/photons/memory_plan.h"
 #include "methods/photons/photon_sampler.h"
+#include "methods/photons/trials/emission_trial.h"
 #include "photonmap/emission.h"
 #include "session/stage_clock.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace keyhole {
 namespace {
@@ -16,6 +18,9 @@ namespace {
 /// Effective share of photons that are seen, from which on importance is left out: to ask for it and to learn where
 /// light paths begin takes three quarters of a light path's time, and it would let nearly all photons in.
 constexpr double kNearlyAll = 0.6;
+/// Share of the visible power in caustics that were not found from the eye, from which on light paths are kept for
+/// them, and from which on all begin by power.
+constexpr double kHidden = 0.01, kMostlyHidden = 0.33;
 
 class EmissionSampler final : public PhotonSampler {
   public:
@@ -56,12 +61,22 @@ class EmissionSampler final : public PhotonSampler {
     Guides guide(std::uint64_t seed, RenderStats& stats, const RunContext& context) {
         Guides guides = make_guides(c_, seed, memory().importons, stats, context);
         if (learned_) return guides;
-        const double seen =
-            share_of_photons_seen(c_.scene, guides.both(), c_.storage(), c_.settings.light_paths, seed, context);
-        stats.values["photons that are seen, effective share"] = seen;
-        by_importance_ = seen < kNearlyAll || !c_.user_paths.empty();
+        const FirstPhotons plain = weigh_first_photons(
+            c_.scene, guides.both(),
+            {.paths = c_.settings.light_paths, .photons = 0, .rule = c_.storage(), .seed = seed}, context);
+        stats.values["photons that are seen, effective share"] = plain.share_seen();
+        by_importance_ = plain.share_seen() < kNearlyAll || !c_.user_paths.empty();
         if (!by_importance_) return {};
         learned_ = learn_light_paths(c_, stats, context);
+        if (!learned_->emission) return guides;
+        EmissionTrial trial = try_emission(c_.scene, guides.both(), c_.storage(), *learned_->emission, seed, context);
+        const double hidden = std::accumulate(trial.hidden.begin(), trial.hidden.end(), 0.0);
+        stats.values["second moment of photons as learned"] = trial.second_moment;
+        stats.values["caustics that nothing was learned of"] = hidden;
+        if (trial.second_moment > 1 || hidden > kMostlyHidden)
+            *learned_ = {};
+        else if (hidden > kHidden)
+            learned_->emission->add_hidden(trial.hidden);
         return guides;
     }
 

@@ -1,13 +1,14 @@
 #include "sampling/guidance/learned/learned_emission.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace keyhole {
 
 namespace {
 
 /// Of all first edges, those that aim at no target.
-constexpr double kPlain = 0.2;
+constexpr double kPlain = 0.2, kPlainWhereHidden = 0.5;
 /// Of these, those whose emitter is chosen by power: one whose light is hard to find from the eye is seldom seen, and
 /// may matter all the same.
 constexpr double kPlainEmitters = 0.5;
@@ -42,6 +43,15 @@ void LearnedEmission::choose_emitters(std::vector<SeenLight>& seen) {
         for (const SeenLight& s : seen) shares[s.emitter] += (1 - kPlainEmitters) * s.weight / limited;
     }
     choice_ = EmitterDistribution(shares);
+}
+
+void LearnedEmission::add_hidden(std::span<const double> hidden) {
+    const double sum = std::accumulate(hidden.begin(), hidden.end(), 0.0);
+    std::vector<double> shares(hidden.size());
+    for (std::size_t i = 0; i < shares.size(); ++i)
+        shares[i] = 0.5 * choice_.probability(static_cast<std::uint32_t>(i)) + 0.5 * hidden[i] / sum;
+    choice_ = EmitterDistribution(shares);
+    plain_ = std::max(plain_, kPlainWhereHidden);
 }
 
 FirstEdge LearnedEmission::sample_plain(double u, SampleSource& source) const {

@@ -5,6 +5,7 @@
 #include "sampling/guidance/learned/look_for_light.h"
 #include "sampling/paths/walk.h"
 
+#include <span>
 #include <vector>
 
 namespace keyhole {
@@ -22,6 +23,10 @@ class LearnedEmission {
     /// Whether it pays: where light comes from infinity, or from many lamps. Among few of these, paths from the eye
     /// find too little of the light that is hardest to find for what is to be gained.
     static bool can_learn(const Scene& scene);
+
+    /// Keeps half of all edges for what can't be learned from the eye's side: as emitters have power, and as these
+    /// bring `hidden` light (one number each, with a positive sum). To be called before anything is sampled.
+    void add_hidden(std::span<const double> hidden);
 
     /// The first edge of a light path. None where nothing emits.
     std::optional<EmittedLight> sample(SampleSource& source) const;
