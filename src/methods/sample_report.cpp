@@ -84,8 +84,9 @@ void report_lost_light(const RunningStats& luminance, const Scene& scene, Render
     const bool no_extent = std::ranges::any_of(scene.emitters(), [](const auto& e) { return e->is_delta(); });
     if (no_extent && scene.traits().delta)
         stats.warn(Doubt::caustics, "light from emitters without extent that comes through specular surfaces is "
-                                    "missing, or what is seen of it in others: paths from the eye can't find it. Use "
-                                    "auto or ipm");
+                                    "missing, or what is seen of it in others: paths from the eye can't find it. "
+                                    "Methods with photon maps can, such as ipm; a longer time lets auto choose them "
+                                    "where that light is worth it");
 }
 
 } // namespace keyhole

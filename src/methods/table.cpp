@@ -32,7 +32,9 @@ std::string names_of(bool Method::*is) {
 }
 
 bool can_do(const Settings& s, const Method& method) {
-    return method.keeps_photons || (s.save_map.empty() && !s.equalise && s.plan != Plan::all);
+    if (method.keeps_photons) return true;
+    // With one scattering there is direct light alone, and nothing for chains.
+    return (method.samples_pixels || s.max_depth > 1) && s.save_map.empty() && !s.equalise && s.plan != Plan::all;
 }
 
 RenderResult render_by_method(const RenderTask& task) {

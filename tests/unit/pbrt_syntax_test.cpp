@@ -52,6 +52,21 @@ TEST(PbrtSyntax, MatricesMayHaveBrackets) {
     EXPECT_EQ(parse("LookAt 0 0 0 0 0 1 0 1 0 Scale 1 1 1").size(), 2u);
 }
 
+TEST(PbrtSyntax, OptionsHaveAValueWithOrWithoutAType) {
+    for (const char* text :
+         {"Option \"disablepixeljitter\" true", "Option \"rendercoordsys\" \"world\"", "Option \"seed\" [ 7 ]",
+          "Option \"bool wavefront\" [true]", "Option \"integer seed\" 3"}) {
+        const auto directives = parse(std::string(text) + " WorldBegin");
+        ASSERT_EQ(directives.size(), 2u) << text;
+        EXPECT_EQ(directives[1].name, "WorldBegin");
+    }
+    EXPECT_THAT(error_of("Option \"seed\" WorldBegin"), HasSubstr("expected a value"));
+    EXPECT_THAT(error_of("Option \"seed\" [ 1 2 ]"), HasSubstr("expected ']'"));
+    EXPECT_THAT(error_of("Option \"seed\""), HasSubstr("expected a value"));
+}
+
+TEST(PbrtSyntax, AByteOrderMarkIsPassedOver) { EXPECT_EQ(parse("\xEF\xBB\xBFWorldBegin").at(0).name, "WorldBegin"); }
+
 TEST(PbrtSyntax, OlderNamesOfTypesAreTranslated) {
     const auto p =
         parse("Material \"matte\" \"color Kd\" [1 1 1] \"bool b\" \"false\" \"point p\" [1 2 3]")[0].parameters;

@@ -2,6 +2,8 @@
 
 #include "core/shared_work.h"
 
+#include <algorithm>
+
 namespace keyhole {
 namespace {
 
@@ -76,8 +78,11 @@ EmissionTrial try_emission(const Scene& scene, const EmissionGuide& guide, const
             parts[static_cast<std::size_t>(b)].add(visible, light->x0.emitter, ratio, by_power);
         }
     });
+    // Without the part that found most: one path in thousands may have all of a second moment.
+    const auto most = std::ranges::max_element(parts, {}, &VisibleSums::learned);
     VisibleSums all = none;
-    for (const VisibleSums& part : parts) all += part;
+    for (auto part = parts.begin(); part != parts.end(); ++part)
+        if (part != most) all += *part;
     if (!(all.plain > 0)) return {1, all.hidden};
     for (double& h : all.hidden) h /= all.power;
     return {all.learned / all.plain, std::move(all.hidden)};

@@ -23,7 +23,7 @@ const std::map<std::string_view, Form>& forms() {
         using Names = std::initializer_list<std::string_view>;
         std::map<std::string_view, Form> forms{
             {"Rotate", {4, 0, 0, false}},          {"LookAt", {9, 0, 0, false}}, {"TransformTimes", {2, 0, 0, false}},
-            {"MediumInterface", {0, 1, 2, false}}, {"Option", {0, 0, 0, true}},  {"Texture", {0, 3, 3, true}}};
+            {"MediumInterface", {0, 1, 2, false}}, {"Option", {0, 1, 1, false}}, {"Texture", {0, 3, 3, true}}};
         for (const auto name : Names{"AttributeBegin", "AttributeEnd", "Identity", "ObjectEnd", "ReverseOrientation",
                                      "TransformBegin", "TransformEnd", "WorldBegin", "WorldEnd"}) // the last: v3
             forms[name] = {};
@@ -121,6 +121,7 @@ std::optional<Directive> DirectiveReader::next() {
                              fmt::format("{}: found {}, expected a name in quotes", directive.title(), describe(word)));
         directive.words.push_back(unescape(take().text));
     }
+    if (directive.name == "Option") pass_over_value(directive);
     while (form->second.parameters && lexer_.peek().kind == Token::Kind::string) {
         Parameter parameter = read_parameter(directive);
         const auto same = std::ranges::find(directive.parameters, parameter.name, &Parameter::name);
@@ -173,6 +174,19 @@ void DirectiveReader::read_numbers(Directive& directive, std::size_t count) {
     if (token.kind != Token::Kind::close)
         throw InputError(lexer_.position(token), fmt::format("{}: found {} after {} numbers, expected ']'",
                                                              directive.title(), describe(token), count));
+}
+
+/// One value, in brackets or not, which the name before it has without a type: Option "disablepixeljitter" true.
+void DirectiveReader::pass_over_value(const Directive& directive) {
+    Token token = take();
+    const bool bracketed = token.kind == Token::Kind::open;
+    if (bracketed) token = take();
+    if ((token.kind != Token::Kind::word && token.kind != Token::Kind::string) || form_of(token) != forms().end())
+        throw InputError(lexer_.position(token),
+                         fmt::format("{}: found {}, expected a value", directive.title(), describe(token)));
+    if (bracketed && take().kind != Token::Kind::close)
+        throw InputError(lexer_.position(last_),
+                         fmt::format("{}: found {}, expected ']'", directive.title(), describe(last_)));
 }
 
 Parameter DirectiveReader::read_parameter(const Directive& directive) {

@@ -82,6 +82,7 @@ class DirectiveReader {
     Token take();
     double read_number(const Directive& directive);
     void read_numbers(Directive& directive, std::size_t count);
+    void pass_over_value(const Directive& directive);
     Parameter read_parameter(const Directive& directive);
     void read_values(const Directive& directive, Parameter& parameter);
     void read_value(const Directive& directive, Parameter& parameter, const Token& token);

@@ -20,7 +20,10 @@ struct Token {
 /// Splits a text into tokens. White space separates; `#` begins a comment that ends with its line.
 class Lexer {
   public:
-    Lexer(std::string text, std::string file) : text_(std::move(text)), file_(std::move(file)) {}
+    Lexer(std::string text, std::string file) : text_(std::move(text)), file_(std::move(file)) {
+        // A byte-order mark, which some editors write.
+        if (text_.starts_with("\xEF\xBB\xBF")) text_.erase(0, 3);
+    }
     Lexer(const Lexer&) = delete;
     Lexer& operator=(const Lexer&) = delete;
 
