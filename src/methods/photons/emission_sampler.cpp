@@ -21,8 +21,8 @@ constexpr double kNearlyAll = 0.6;
 /// Share of the visible power in caustics that were not found from the eye, from which on light paths are kept for
 /// them, and from which on all begin by power.
 constexpr double kHidden = 0.01, kMostlyHidden = 0.33;
-/// Second moment of what begins as it was learned, over that by power, from which on it doesn't pay. The trial knows it
-/// roughly: 0.02 to 1.5 in the dining-room, by seed, and 5 to 8 where the sun shines through glass.
+/// Second moment of what begins as it was learned, over that by power, from which on it doesn't pay. The trial finds
+/// 0.08 to 0.13 in the dining-room, and 5 to 8 where the sun shines through glass.
 constexpr double kDoesNotPay = 2;
 
 class EmissionSampler final : public PhotonSampler {
