@@ -32,7 +32,8 @@ double mean_indirect(Scene& scene) {
     s.light_paths = 100'000;
     s.cache_rays = 128;
     double sum = 0;
-    for (const float y : render(scene, s, {}).picture.layers.at("indirect").data) sum += static_cast<double>(y);
+    const RenderResult result = render(scene, s, {});
+    for (const float y : result.picture.layers.at("indirect").data) sum += static_cast<double>(y);
     return sum;
 }
 
