@@ -200,10 +200,11 @@ Emission trace_and_store(const Scene& scene, const EmissionGuide& guide, const E
 
 double Emission::scale() const { return emission_scale(paths - paths / kPilotEvery); }
 
-FirstPhotons weigh_first_photons(const Scene& scene, const EmissionGuide& guide, const EmissionOptions& options,
-                                 const RunContext& context) {
-    if (scene.emitter_distribution().empty()) return {};
-    return {learn_from_pilot(scene, guide, options, context).weights, std::min(kPilot, options.paths)};
+double share_of_photons_seen(const Scene& scene, const EmissionGuide& guide, const StorageRule& rule,
+                             std::int64_t paths, std::uint64_t seed, const RunContext& context) {
+    if (scene.emitter_distribution().empty()) return 0;
+    const EmissionOptions options{.paths = std::min(kPilot, paths), .photons = 0, .rule = rule, .seed = seed};
+    return learn_from_pilot(scene, guide, options, context).weights.share_seen(options.paths);
 }
 
 EmittedPhotons emit_photons(const Scene& scene, const EmissionGuide& guide, const EmissionOptions& options,

@@ -43,17 +43,10 @@ struct EmittedPhotons : Photons, Emission {
     std::size_t bytes = 0; ///< of the stores
 };
 
-/// What the first few thousand of so many paths would bring to what is seen, by the visible power that the guide gives
-/// to their photons; none is stored.
-struct FirstPhotons {
-    PhotonWeights weights;
-    std::int64_t paths = 0;
-
-    /// Paths as good as these that bring the same each, over these: PhotonWeights::share_seen().
-    double share_seen() const { return weights.share_seen(paths); }
-};
-FirstPhotons weigh_first_photons(const Scene& scene, const EmissionGuide& guide, const EmissionOptions& options,
-                                 const RunContext& context);
+/// How much of plain light tracing brings what is seen: PhotonWeights::share_seen() of the first few thousand of so
+/// many paths, by the visible power that the guide gives to their photons.
+double share_of_photons_seen(const Scene& scene, const EmissionGuide& guide, const StorageRule& rule,
+                             std::int64_t paths, std::uint64_t seed, const RunContext& context);
 
 /// Traces light paths and stores a photon at every vertex where a map can be asked (see docs/photon-maps.md): in the
 /// global map unless light came straight from the emitter, and, if it came through specular vertices only or from

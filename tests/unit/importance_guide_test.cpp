@@ -53,8 +53,7 @@ double share_seen(const Scene& scene) {
     Importons importons = trace_importance(scene, {.samples = 30'000, .max_scatterings = 8, .seed = 1}, {});
     const ImportanceGuide at_d1(PhotonMap(std::move(importons.first)), 0.3f, patches, &scene, {});
     const ImportanceGuide at_d2(PhotonMap(std::move(importons.second)), 0.3f, patches, &scene, {});
-    const EmissionOptions options{.paths = 8192, .photons = 0, .rule = {.max_scatterings = 8}, .seed = 2};
-    return weigh_first_photons(scene, {&at_d2, &at_d1}, options, {}).share_seen();
+    return share_of_photons_seen(scene, {&at_d2, &at_d1}, {.max_scatterings = 8}, 8192, 2, {});
 }
 
 /// In a box that is in view as a whole nearly every photon counts; of the light of a room behind a slit little does,

@@ -64,11 +64,10 @@ class EmissionSampler final : public PhotonSampler {
     Guides guide(std::uint64_t seed, RenderStats& stats, const RunContext& context) {
         Guides guides = make_guides(c_, seed, memory().importons, stats, context);
         if (learned_) return guides;
-        const FirstPhotons plain = weigh_first_photons(
-            c_.scene, guides.both(),
-            {.paths = c_.settings.light_paths, .photons = 0, .rule = c_.storage(), .seed = seed}, context);
-        stats.values["photons that are seen, effective share"] = plain.share_seen();
-        by_importance_ = plain.share_seen() < kNearlyAll || !c_.user_paths.empty();
+        const double seen =
+            share_of_photons_seen(c_.scene, guides.both(), c_.storage(), c_.settings.light_paths, seed, context);
+        stats.values["photons that are seen, effective share"] = seen;
+        by_importance_ = seen < kNearlyAll || !c_.user_paths.empty();
         if (!by_importance_) return {};
         learned_ = learn_light_paths(c_, stats, context);
         if (!learned_->emission) return guides;

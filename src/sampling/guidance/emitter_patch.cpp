@@ -68,9 +68,7 @@ double EmitterPatch::pdf(const SurfacePoint& point) const {
     if (point.primitive != center_.primitive) return 0;
     if (const Sphere* sphere = sphere_of(*scene_, center_)) {
         const Vec3 axis = (center_.p - sphere->center).normalized();
-        // By the chord: the cosine of a small angle has no digits left.
-        const double chord2 = Imath::V3d((point.p - sphere->center).normalized() - axis).length2();
-        return chord2 <= 2 * (1 - cosine_) ? 1 / area_ : 0.0;
+        return in_cone((point.p - sphere->center).normalized(), axis, cosine_) ? 1 / area_ : 0.0;
     }
     const auto s = static_cast<float>(scale_);
     const Vec2 b = (barycentric(point.p) - center_barycentric_ * (1 - s)) / s;
