@@ -72,8 +72,8 @@ namespace methods {
 /// Names of the methods that `is` holds for, separated by commas.
 std::string names_of(bool Method::*is);
 
-/// Whether the method can do what the settings ask for: save photons, or weigh them by pixels; and whether they leave it
-/// anything to do.
+/// Whether the method can do what the settings ask for: save photons, or weigh them by pixels; and whether they leave
+/// it anything to do.
 bool can_do(const Settings& settings, const Method& method);
 
 /// The method that the settings name, without render()'s care for renders that are stopped before they have a picture.

@@ -35,8 +35,7 @@ TEST_P(Picture_IsTheSameOnAnyNumberOfThreads, BitForBit) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, Picture_IsTheSameOnAnyNumberOfThreads,
-                         testing::Values("mps", "ipm", "pm", "cps", "mlt", "path", "bdpt", "pssmlt", "mmlt",
-                                         "rjmlt"),
+                         testing::Values("mps", "ipm", "pm", "cps", "mlt", "path", "bdpt", "pssmlt", "mmlt", "rjmlt"),
                          [](const auto& info) { return std::string(info.param); });
 
 } // namespace
