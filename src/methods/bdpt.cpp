@@ -68,7 +68,8 @@ RenderResult render_bdpt(const RenderTask& task) {
     }
     pixels.report(result.stats);
     report_samples(pixels.luminances(), result.stats);
-    report_lost_light(pixels.luminances(), scene, result.stats);
+    report_black(pixels.luminances(), scene, result.stats);
+    report_lost_caustics(scene, result.stats);
     result.picture = work.finish(result.stats);
     return result;
 }

@@ -138,6 +138,7 @@ RenderResult render_mlt(const RenderTask& task) {
     reports.finish(stats);
     pixels.report(stats);
     report_eye_samples(pixels.luminances(), scene, stats);
+    report_lost_caustics(scene, stats);
     result.picture = work.finish(stats);
     return result;
 }

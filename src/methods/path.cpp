@@ -34,7 +34,8 @@ RenderResult render_path(const RenderTask& task) {
     }
     pixels.report(result.stats);
     report_eye_samples(pixels.luminances(), scene, result.stats);
-    report_lost_light(pixels.luminances(), scene, result.stats);
+    report_black(pixels.luminances(), scene, result.stats);
+    report_lost_caustics(scene, result.stats);
     result.picture = work.finish(result.stats);
     return result;
 }

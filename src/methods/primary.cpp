@@ -5,6 +5,7 @@
 #include "methods/chain_report.h"
 #include "methods/method.h"
 #include "methods/primary_report.h"
+#include "methods/sample_report.h"
 #include "sampling/primary/p_large.h"
 #include "sampling/primary/primary_chains.h"
 #include "session/passes.h"
@@ -166,6 +167,7 @@ template <StageOneOf start> RenderResult render_primary(const RenderTask& task) 
         if (whole) work.end_unit(stats);
     }
     reports.finish(stats);
+    report_lost_caustics(scene, stats);
     result.picture = work.finish(stats);
     return result;
 }

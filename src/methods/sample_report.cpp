@@ -73,7 +73,7 @@ void report_eye_samples(const RunningStats& luminance, const Scene& scene, Rende
     report_small_emitters(luminance, scene, stats);
 }
 
-void report_lost_light(const RunningStats& luminance, const Scene& scene, RenderStats& stats) {
+void report_black(const RunningStats& luminance, const Scene& scene, RenderStats& stats) {
     if (luminance.count() > 0 && !(luminance.mean() > 0))
         stats.warn(Doubt::samples,
                    scene.emitters().empty()
@@ -81,12 +81,15 @@ void report_lost_light(const RunningStats& luminance, const Scene& scene, Render
                        : "no sample carried light: the picture is black. If light reaches what is seen, it comes where "
                          "paths from the eye don't find it: try ipm or mps. Surfaces emit on their outside alone: "
                          "'flip' turns them, 'two_sided' makes both sides emit");
+}
+
+void report_lost_caustics(const Scene& scene, RenderStats& stats) {
     const bool no_extent = std::ranges::any_of(scene.emitters(), [](const auto& e) { return e->is_delta(); });
     if (no_extent && scene.traits().delta)
         stats.warn(Doubt::caustics, "light from emitters without extent that comes through specular surfaces is "
-                                    "missing, or what is seen of it in others: paths from the eye can't find it. "
-                                    "Methods with photon maps can, such as ipm; a longer time lets auto choose them "
-                                    "where that light is worth it");
+                                    "missing, or what is seen of it in others: no path that is joined to the eye can "
+                                    "carry it. Photons of light paths can, such as ipm's; a longer time lets auto "
+                                    "choose them where that light is worth it");
 }
 
 } // namespace keyhole

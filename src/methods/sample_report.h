@@ -15,9 +15,11 @@ void report_samples(const RunningStats& luminance, RenderStats& stats);
 /// meets them: of such the samples themselves know nothing.
 void report_eye_samples(const RunningStats& luminance, const Scene& scene, RenderStats& stats);
 
-/// Of methods that find all light by paths traced from the eye, joined to the light or not: warns where they found
-/// none, and where there is light that they can't find, what comes from emitters without extent through specular
-/// surfaces.
-void report_lost_light(const RunningStats& luminance, const Scene& scene, RenderStats& stats);
+/// Warns where methods that find all light by paths traced from the eye, joined to the light or not, found none.
+void report_black(const RunningStats& luminance, const Scene& scene, RenderStats& stats);
+
+/// Warns of light that methods can't find whose paths are traced from the eye or joined to it: what comes from emitters
+/// without extent through specular surfaces, if not from everywhere, then onto what is seen in others.
+void report_lost_caustics(const Scene& scene, RenderStats& stats);
 
 } // namespace keyhole

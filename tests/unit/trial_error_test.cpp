@@ -100,6 +100,33 @@ TEST(TrialErrors, OfNarrowerPixelsAreLessOnlyBeyondChance) {
     EXPECT_NEAR(variance_less(halves(0.3, 0, 1, 1), halves(0.1, 0, 1, 2)), 0.06, 0.02);
 }
 
+/// Columns 8 pixels wide of shadow, which have the factor `dark`, and of light, which have `lit`.
+TrialPictures shadowed(TrialPictures m, double dark, double lit) {
+    for (Image* image : {&m.first, &m.second})
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth; ++x) *image->at(x, y) *= static_cast<float>(x % 16 < 8 ? dark : lit);
+    return m;
+}
+
+TEST(TrialErrors, TellWhatPhotonsBlur) {
+    const TrialPictures samples = shadowed(halves(0.4, 0, 1, 1), 0.4, 1.6), photons = halves(0.05, 0.05, 1, 2);
+    // Relative to the mean of both.
+    const double truth = (0.6 * 0.6 / (0.7 * 0.7) + 0.6 * 0.6 / (1.3 * 1.3)) / 2;
+    EXPECT_GT(blur(shadowed(photons, 1, 1), samples), 0.7 * truth);
+    EXPECT_LT(blur(shadowed(photons, 1, 1), samples), 1.3 * truth);
+    const double half = blur(shadowed(photons, 0.7, 1.3), samples);
+    EXPECT_GT(half, 0.1 * truth);
+    EXPECT_LT(half, 0.4 * truth);
+    EXPECT_LT(blur(shadowed(photons, 0.4, 1.6), samples), 0.002) << "the same light, and noise";
+}
+
+TEST(TrialErrors, DontBlamePhotonsForLightThatSamplesMiss) {
+    const TrialPictures photons = halves(0.05, 0.05, 1, 2);
+    EXPECT_EQ(blur(photons, halves(0.4, 0, 0.6, 1)), 0) << "half of the picture lacks .4";
+    EXPECT_EQ(blur(photons, shadowed(halves(0.4, 0, 1, 1), 0.4, 1)), 0) << "columns do";
+    EXPECT_EQ(blur(photons, {Image(kWidth, kHeight, 1), Image(kWidth, kHeight, 1)}), 0);
+}
+
 /// One pixel in 200 has met light that is rare: in a picture of ten times the samples one in 20 will.
 TEST(TrialErrors, CountBrightSamplesThatAreRare) {
     std::vector<TrialPictures> methods{halves(0.05, 0, 1, 1), halves(0.05, 0, 1, 2)};

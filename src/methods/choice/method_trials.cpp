@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 namespace keyhole {
 namespace {
@@ -35,6 +36,11 @@ constexpr std::int64_t kTrialSeed = std::int64_t{1} << 20;
 /// What photons and records err falls as this power of the effort at least: often faster while they are few, but two
 /// renders don't tell what both have wrong.
 constexpr double kSlope = 0.85;
+/// What they blur falls as this power. Beside the edge of a shadow the squared error is as wide as the radius of
+/// lookups, whose area falls as photons are more: those of with_effort().
+constexpr double kBlurSlope = 0.35;
+/// Share of the light from which on it matters that photons blur caustics.
+constexpr double kCausticLight = 0.1;
 /// Of the grain that a trial shows, what stays at least where pixels of the picture are smaller.
 constexpr double kLeastGrain = 0.3;
 /// Of trials by work: seconds that a window of their size is for, and samples of its pixels.
@@ -87,8 +93,16 @@ Settings trial_settings(const TrialContext& c, const Method& method, double effo
 
 struct TrialRender {
     Image luminance, direct;
+    double caustic; ///< share of the light
     TrialCost of;
 };
+
+/// The share of a picture's light that is in a layer.
+double share_of(const Image& layer, const Image& picture) {
+    const auto sum = [](const Image& i) { return std::accumulate(i.data.begin(), i.data.end(), 0.0); };
+    const double all = sum(picture);
+    return all > 0 ? sum(layer) / all : 0;
+}
 
 /// A render of the scene's window; none if it leaves holes. @throws Interrupted
 std::optional<TrialRender> render_trial(const TrialContext& c, Settings settings, double effort,
@@ -103,8 +117,11 @@ std::optional<TrialRender> render_trial(const TrialContext& c, Settings settings
     settings.spp = std::max<std::int64_t>(1, static_cast<std::int64_t>(r.stats.samples));
     const Experience cost = in_time ? Experience(settings, effort, pixels, r.stats, start - context.seconds_left())
                                     : Experience::in_rays(settings, effort, pixels, r.stats);
-    return TrialRender{luminance_of(r.picture),
+    Image all = luminance_of(r.picture);
+    const double caustic = share_of(luminance_of(r.picture, "caustic"), all);
+    return TrialRender{std::move(all),
                        luminance_of(r.picture, "direct"),
+                       caustic,
                        {.cost = cost,
                         .taken = in_time ? start - context.seconds_left() : cost.total(),
                         .samples = r.stats.samples,
@@ -173,7 +190,8 @@ std::optional<TriedMethod> try_with(const TrialContext& c, Settings s, double sc
                       .by_samples = samples,
                       .of = std::move(second->of),
                       .error = {}};
-    if (s.method == &methods::path) {
+    const bool caustics = first->caustic > kCausticLight && (s.method->samples_pixels || s.method->keeps_photons);
+    if (s.method == &methods::path || caustics) {
         narrow_pixels(s, scale);
         auto third = render(s, false);
         s.seed = seed_of_render(c.settings, kTrialSeed);
@@ -216,8 +234,9 @@ double predict_by_trial(const TriedMethod& t, const TrialContext& c, double left
     const double samples = static_cast<double>(s.spp * s.passes) / t.of.samples;
     const double growth = effort / t.of.cost.effort;
     const double of_samples = grain_that_counts(c.settings, *t.method) * t.by_samples / samples;
-    return t.method->trial.doubt * (e.grain * (of_samples + (1 - t.by_samples) / growth) +
-                                    (e.blotches + e.missing) * std::pow(growth, -kSlope));
+    return t.method->trial.doubt *
+           (e.grain * (of_samples + (1 - t.by_samples) / growth) +
+            (e.blotches + e.missing) * std::pow(growth, -kSlope) + e.blur * std::pow(growth, -kBlurSlope));
 }
 
 /// The squared error in the time that is left, told from that of a trial. What isn't led through the openings that were
@@ -242,9 +261,18 @@ double work_asked_for(const TrialContext& c, std::span<const TriedMethod> tried)
 /// What the variance of a sample has of differences within a pixel of the small window that a pixel of the picture,
 /// which is smaller, doesn't have: the same for all methods that sample pixels.
 double variance_within_pixels(std::span<const TriedMethod> tried) {
-    const auto path = std::ranges::find_if(tried, [](const TriedMethod& t) { return t.narrow.has_value(); });
-    if (path == tried.end()) return 0;
+    const auto path = std::ranges::find(tried, &methods::path, &TriedMethod::method);
+    if (path == tried.end() || !path->narrow) return 0;
     return variance_less(path->pictures, *path->narrow) * path->of.samples;
+}
+
+/// What photons blur, by the method that samples pixels best.
+double blur_of(const TriedMethod& photons, std::span<const TriedMethod> tried) {
+    const TriedMethod* best = nullptr;
+    const auto error = [](const TriedMethod& t) { return t.error.grain + t.error.blotches + t.error.missing; };
+    for (const TriedMethod& t : tried)
+        if (t.method->samples_pixels && t.narrow && (best == nullptr || error(t) < error(*best))) best = &t;
+    return best != nullptr && photons.narrow ? blur(*photons.narrow, *best->narrow) : 0;
 }
 
 /// Errors of all, for so much time or work, and the best first.
@@ -256,8 +284,9 @@ void rank(std::vector<TriedMethod>& tried, const TrialContext& c, double left) {
     }
     const std::vector<TrialError> errors = trial_errors(pictures);
     const double within = variance_within_pixels(tried);
+    for (std::size_t i = 0; i < tried.size(); ++i) tried[i].error = errors[i];
     for (std::size_t i = 0; i < tried.size(); ++i) {
-        tried[i].error = errors[i];
+        if (tried[i].method->keeps_photons) tried[i].error.blur = blur_of(tried[i], tried);
         double& grain = tried[i].error.grain;
         if (tried[i].method->keeps_photons || tried[i].method->samples_pixels)
             grain = std::max(kLeastGrain * grain, grain - within / tried[i].of.samples);

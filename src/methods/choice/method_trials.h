@@ -34,9 +34,10 @@ struct TrialCost {
 struct TriedMethod {
     const Method* method;
     TrialPictures pictures;
-    std::optional<TrialPictures> narrow; ///< of path tracing, with pixels as small as those of the picture
-    double by_samples = 1;               ///< share of the grain that only samples of pixels make less
-    TrialCost of;                        ///< of one of the two renders
+    /// With pixels as small as those of the picture: of path tracing, and where light is caustic.
+    std::optional<TrialPictures> narrow;
+    double by_samples = 1; ///< share of the grain that only samples of pixels make less
+    TrialCost of;          ///< of one of the two renders
     TrialError error;
     double predicted = 0; ///< squared relative error that the render would leave (the measure of relmse_trim)
 };

@@ -84,19 +84,19 @@ struct Grid {
     }
 };
 
-template <class F> Grid combined(const TrialPictures& m, const F& f) {
-    Grid g{m.first.width, m.first.height, {}};
+template <class F> Grid combined(const Image& a, const Image& b, const F& f) {
+    Grid g{a.width, a.height, {}};
     const auto finite = [](float v) { return std::isfinite(v) ? static_cast<double>(v) : 0.0; };
-    for (std::size_t i = 0; i < m.first.data.size(); ++i)
-        g.values.push_back(f(finite(m.first.data[i]), finite(m.second.data[i])));
+    for (std::size_t i = 0; i < a.data.size(); ++i) g.values.push_back(f(finite(a.data[i]), finite(b.data[i])));
     return g;
 }
 Grid mean_of(const TrialPictures& m) {
-    return combined(m, [](double a, double b) { return (a + b) / 2; });
+    return combined(m.first, m.second, [](double a, double b) { return (a + b) / 2; });
 }
-Grid difference_of(const TrialPictures& m) {
-    return combined(m, [](double a, double b) { return a - b; });
+Grid difference_of(const Image& a, const Image& b) {
+    return combined(a, b, [](double x, double y) { return x - y; });
 }
+Grid difference_of(const TrialPictures& m) { return difference_of(m.first, m.second); }
 
 /// Half the squared difference is the variance of one of two. Relative to `picture`; of pixels.
 Values relative_variances(const Grid& difference, const Grid& picture) {
@@ -183,6 +183,31 @@ double share_of_grain(const TrialPictures& part, const TrialPictures& whole) {
     const auto grain = [&](const TrialPictures& m) { return relative_variance(difference_of(m), picture); };
     const double all = grain(whole);
     return all > 0 ? std::min(1.0, grain(part) / all) : 1;
+}
+
+double blur(const TrialPictures& photons, const TrialPictures& samples) {
+    const Grid a = difference_of(photons.first, samples.first), b = difference_of(photons.second, samples.second);
+    Grid picture = mean_of(photons);
+    for (std::size_t i = 0; const double v : mean_of(samples).values) {
+        picture.values[i] = (picture.values[i] + v) / 2;
+        ++i;
+    }
+    picture = picture.smooth();
+    const double dark = kDark * typical(picture.values) * typical(picture.values);
+    Grid products{picture.width, picture.height, {}};
+    double excess = 0, all = 0;
+    for (std::size_t i = 0; i < picture.values.size(); ++i) {
+        const double p = picture.values[i], most = std::sqrt(p * p + dark);
+        // What differs by more than all of its light would decide by itself.
+        products.values.push_back(most > 0 ? std::clamp(a.values[i] * b.values[i] / (most * most), -1.0, 1.0) : 0);
+        excess += std::clamp((a.values[i] + b.values[i]) / 2, -most, most);
+        all += p;
+    }
+    RunningStats stats; // of blocks, for neighbours err alike
+    for (const double v : products.blocks(kBlock, kBlock).values) stats.add(v);
+    // The squares of light that only photons find add up to no more than it does.
+    const double found = all > 0 ? std::max(0.0, excess / all) : 0;
+    return std::max(0.0, stats.mean() - stats.standard_error() - found);
 }
 
 std::vector<TrialError> trial_errors(std::span<const TrialPictures> methods) {

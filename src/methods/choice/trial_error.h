@@ -25,6 +25,7 @@ struct TrialError {
     double grain = 0;    ///< independent from pixel to pixel
     double blotches = 0; ///< common to blocks of 4 x 4 pixels
     double missing = 0;  ///< of parts of the picture that are darker than another method finds them, beyond chance
+    double blur = 0;     ///< of light, by photons
 };
 
 /// The luminance of a layer: by default, of what is looked at.
@@ -36,6 +37,12 @@ double variance_less(const TrialPictures& wide, const TrialPictures& narrow);
 
 /// The share of the grain of two renders that a part of their light has: 0 to 1.
 double share_of_grain(const TrialPictures& part, const TrialPictures& whole);
+
+/// The squared error, relative to the picture, that both renders of a method with photons share for blurring light
+/// alike: the mean product of their differences from two renders by samples of pixels, which is that of what the
+/// methods disagree in, for noise is independent. At least 0, less a standard error and what light may explain that
+/// samples can't find. Where photons blur, they leave the mean of the picture alone.
+double blur(const TrialPictures& photons, const TrialPictures& samples);
 
 /// One for each of the methods. The picture that errors are relative to is the mean of all, weighted by how well the
 /// two renders of each agree. Two renders agree on what neither found: where all of a method's are darker than another

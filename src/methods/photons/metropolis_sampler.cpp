@@ -5,6 +5,7 @@
 #include "methods/photons/chain_importance.h"
 #include "methods/photons/memory_plan.h"
 #include "methods/photons/photon_report.h"
+#include "methods/sample_report.h"
 #include "photonmap/photon_sampling.h"
 #include "sampling/proposals/tuning.h"
 #include "session/stage_clock.h"
@@ -28,7 +29,10 @@ class MetropolisSampler final : public PhotonSampler {
         return run_chains(first, one, stats, context);
     }
 
-    void finish(RenderStats& stats) override { reports_.finish(stats); }
+    void finish(RenderStats& stats) override {
+        reports_.finish(stats);
+        report_lost_caustics(c_.scene, stats);
+    }
 
   private:
     /// Chains from the seeds of stage one, photons with the power that the rule gives them.
