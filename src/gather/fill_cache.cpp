@@ -25,18 +25,30 @@ constexpr int kLeastMore = 8;       // fewer rays are not worth a hemisphere
 constexpr std::array kSteps{kCoarsest, kCoarsest / 2, kCoarsest / 4, kCoarsest / 8, 1, 1};
 
 /// Pixels of one level in an order that jumps about, so that those of one batch are far from each other.
-std::vector<int> level_pixels(const ImageWindow& window, int step) {
-    std::vector<int> pixels;
-    for (int y = step / 2; y < window.height; y += step)
-        for (int x = step / 2; x < window.width; x += step) pixels.push_back(y * window.width + x);
-    // A stride near the golden section of their number, without a common divisor.
-    const std::size_t n = pixels.size();
-    auto stride = static_cast<std::size_t>(0.618 * static_cast<double>(n)) | 1;
-    while (n > 1 && std::gcd(stride, n) != 1) stride += 2;
-    std::vector<int> order(n);
-    for (std::size_t i = 0; i < n; ++i) order[i] = pixels[i * stride % n];
-    return order;
-}
+class LevelPixels {
+  public:
+    LevelPixels(const ImageWindow& window, int step)
+        : width_(static_cast<std::uint64_t>(window.width)), step_(static_cast<std::uint64_t>(step)),
+          across_(points(window.width)), size_(across_ * points(window.height)) {
+        // Near the golden section of their number, without a common divisor.
+        stride_ = static_cast<std::uint64_t>(0.618 * static_cast<double>(size_)) | 1;
+        while (size_ > 1 && std::gcd(stride_, size_) != 1) stride_ += 2;
+    }
+    std::uint64_t size() const { return size_; }
+    /// Its number in the window, row by row.
+    std::uint64_t operator[](std::uint64_t i) const {
+        const std::uint64_t k = i * stride_ % size_;
+        return place(k / across_) * width_ + place(k % across_);
+    }
+
+  private:
+    std::uint64_t points(int pixels) const {
+        return (static_cast<std::uint64_t>(pixels) + step_ - 1 - step_ / 2) / step_;
+    }
+    std::uint64_t place(std::uint64_t point) const { return step_ / 2 + point * step_; }
+
+    std::uint64_t width_, step_, across_, size_, stride_ = 1;
+};
 
 /// Fills level by level; batch by batch, since what a batch inserts tells the next what is still missing.
 class CacheFill {
@@ -46,12 +58,12 @@ class CacheFill {
           first_(std::max(kLeastMore, static_cast<int>(std::lround(kFirst * options.rays)))) {}
 
     void fill_level(int step, std::uint64_t level, const RunContext& context) {
-        const std::vector<int> pixels = level_pixels(rays_.scene().camera().window(), step);
+        const LevelPixels pixels(rays_.scene().camera().window(), step);
         for (std::size_t begin = 0; begin < pixels.size() && !context.stopped(); begin += kAhead) {
             std::vector<Candidate> candidates(std::min(kAhead, pixels.size() - begin));
             parallel_for(static_cast<std::int64_t>(candidates.size()), [&](std::int64_t k) {
                 const auto i = static_cast<std::size_t>(k);
-                candidates[i] = candidate(static_cast<std::uint64_t>(pixels[begin + i]), level);
+                candidates[i] = candidate(pixels[begin + i], level);
             });
             const std::size_t known = cache_.size();
             for (const Candidate& c : candidates) {

@@ -18,6 +18,8 @@ constexpr std::int64_t kPlaces = 256; // of the picture
 constexpr std::int64_t kSamples = 8;  // of each of two halves, as a pixel has them
 /// Renders shorter than this [s], or with fewer samples, have no time for a trial.
 constexpr double kLeastSeconds = 4, kLeastSamples = 32.0 * 4 * kSamples * kPlaces;
+/// Of the time that is left, at most: what takes longer isn't worth knowing.
+constexpr double kMostTime = 0.05;
 /// What noise and work together have to come down to. The trial is a small one.
 constexpr double kPays = 0.75;
 /// Of places, those with the largest noise, which are left out: seldom samples of what is bright.
@@ -99,8 +101,15 @@ double noise(const Trial& trial, const std::vector<double>& picture, double typi
 bool each_emitter_pays(Scene& scene, const Settings& settings, const RunContext& context) {
     if (!has_few_emitters(scene) || is_too_short(settings, scene.camera().window(), context)) return false;
     const Restore restore(scene);
-    const Trial one = try_emitters(scene, settings, false, context),
-                each = try_emitters(scene, settings, true, context);
+    const RunContext limited = context.with_reserve(1 - kMostTime);
+    Trial one, each;
+    try {
+        one = try_emitters(scene, settings, false, limited);
+        each = try_emitters(scene, settings, true, limited);
+    } catch (const Interrupted&) {
+        check_stop(context);
+        return false;
+    }
     std::vector<double> picture(static_cast<std::size_t>(kPlaces), 0);
     for (const Trial* trial : {&one, &each})
         for (const auto& half : trial->halves)
