@@ -134,8 +134,12 @@ bool GatherRays::is_fine(std::uint32_t place) const { return maps_.irradiance->a
 
 void GatherRays::add(const Rgb& throughput, const Rgb& light, const End& end, const Leg& leg, Arrival& arrival) const {
     arrival.indirect += throughput * light;
-    if (maps_.irradiance == nullptr || !maps_.irradiance->tells_lengths()) return;
-    const double all = luminance(throughput * light), direct = std::min(all, luminance(throughput * end.direct));
+    const double all = luminance(throughput * light);
+    if (maps_.irradiance == nullptr || !maps_.irradiance->tells_lengths()) { // all of it, however it is seen
+        for (float& reaching : arrival.reaching) reaching += static_cast<float>(all);
+        return;
+    }
+    const double direct = std::min(all, luminance(throughput * end.direct));
     const double known = end.place ? maps_.irradiance->share_that_reaches(*end.place, leg.longer()) : 1;
     for (int k = 1; k <= kLongerWays; ++k) {
         const double share = end.place ? maps_.irradiance->share_that_reaches(*end.place, leg.longer() + k) : 1;
@@ -193,7 +197,9 @@ Vertex GatherRays::widened(const Vertex& v, const Bsdf& part) const {
 Rgb GatherRays::lobe(const Vertex& v, const Vec3& back, const std::optional<std::uint32_t>& place, const Leg& leg,
                      SampleSource& source) const {
     const bool may_trace = maps_.lobes != nullptr && leg.traced_on == 0;
-    if (may_trace && !(place && maps_.lobes->by_photons(v.point.shape)))
+    // A place farther away than its estimate looks tells nothing of here.
+    const bool near = place && maps_.irradiance->is_near(*place, {v.point.p, facing(v.point.ng, back)});
+    if (may_trace && !(near && maps_.lobes->by_photons(v.point.shape)))
         return lobe_traced_on(v, back, place, leg, source);
     const Vertex wide = widened(v, v.bsdf);
     return direct_light(scene_, wide, back, 1, source) +
@@ -342,8 +348,11 @@ bool GatherRays::may_be_partly_occluded(std::uint32_t place, const SurfaceRegion
 
 double GatherRays::area_near(std::uint32_t place, const SurfaceRegion& region) const {
     const float r = maps_.irradiance->radius(place);
-    const double share = maps_.irradiance->area_share(place);
-    return share > 0 ? kPi * static_cast<double>(r) * r * share * share_in_reach(maps_.coverage, region, r) : 0;
+    // A place farther away than that lies on other surfaces, such as the leg of a chair.
+    const double area = maps_.irradiance->is_near(place, region)
+                            ? kPi * static_cast<double>(r) * r * maps_.irradiance->area_share(place)
+                            : maps_.patches->area(region, r);
+    return area > 0 ? area * share_in_reach(maps_.coverage, region, r) : 0;
 }
 
 double GatherRays::variance_of_photons(const Vertex& v, const Vec3& back) const {

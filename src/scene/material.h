@@ -25,6 +25,8 @@ class Material {
     virtual Bsdf bsdf(const SurfacePoint& point) const = 0;
     /// What any BSDF of this material may have; the renderer leaves out what no material needs.
     virtual BsdfTraits traits() const = 0;
+    /// Share of the places around a point whose BSDF has a finite part; null where places don't differ in that.
+    virtual FloatTexture finite_share() const { return nullptr; }
     /// Word that names the kind, as in scene files.
     virtual const char* kind() const = 0;
     /// What scene files may say in a material although it belongs to the shapes that have it.

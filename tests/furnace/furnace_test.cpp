@@ -25,6 +25,7 @@ const FurnaceCase kFurnaces[] = {
     {"Diffuse", [] { return test::furnace(kRho); }, false},
     {"Varnished", [] { return test::varnished_furnace(kRho); }, true},
     {"WithoutLoss", [] { return test::furnace(kRho, true); }, true}, // a mirror and a glass ball that swallow nothing
+    {"Patchy", [] { return test::patchy_furnace(kRho); }, true},
 };
 
 struct MethodCase {

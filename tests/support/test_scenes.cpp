@@ -25,6 +25,19 @@ SceneMaker& SceneMaker::sphere(const Vec3& center, float radius, const MaterialP
     return *this;
 }
 
+SceneMaker& SceneMaker::box(const Vec3& lower, const Vec3& upper, const MaterialPtr& m) {
+    Shape s;
+    TriangleMesh mesh;
+    for (int i = 0; i < 8; ++i)
+        mesh.positions.emplace_back((i & 1 ? upper : lower).x, (i & 2 ? upper : lower).y, (i & 4 ? upper : lower).z);
+    mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                      {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    s.geometry = mesh;
+    s.material = m;
+    d_.shapes.push_back(std::move(s));
+    return *this;
+}
+
 SceneMaker& SceneMaker::room(const Vec3& lower, const Vec3& upper, const MaterialPtr& m, const Rgb& radiance) {
     const Vec3 e = upper - lower, x(e.x, 0, 0), y(0, e.y, 0), z(0, 0, e.z);
     rectangle(lower, z, x, m, radiance);            // floor, faces up
@@ -224,6 +237,21 @@ std::unique_ptr<Scene> varnished_furnace(double rho) {
     m.room({-1, -1, -1}, {1, 1, 1}, make_diffuse(Rgb(rho)), Rgb(1.0))
         .sphere({-0.5f, 0.1f, -0.5f}, 0.35f, white)
         .sphere({0.4f, 0, 0}, 0.35f, white)
+        .camera({0, 0, 0.9f}, {0, 0, -1}, 60)
+        .window(32, 32);
+    return m.build();
+}
+
+std::unique_ptr<Scene> patchy_furnace(double rho) {
+    SceneMaker m;
+    const auto white = make_diffuse(Rgb(1.0)),
+               half_mirror = make_mix(white, make_mirror(Rgb(1.0)), constant_texture(0.5)),
+               half_pane = make_mix(white, make_thin_dielectric(1.5), constant_texture(0.6));
+    m.room({-1, -1, -1}, {1, 1, 1}, make_diffuse(Rgb(rho)), Rgb(1.0))
+        .sphere({-0.45f, 0.2f, -0.4f}, 0.35f, half_mirror)
+        .sphere({0.4f, 0.2f, -0.2f}, 0.35f, white)
+        .alpha(0.5)
+        .rectangle({-0.6f, -0.8f, -0.3f}, {1.2f, 0, 0}, {0, 0.5f, -0.2f}, half_pane)
         .camera({0, 0, 0.9f}, {0, 0, -1}, 60)
         .window(32, 32);
     return m.build();

@@ -15,6 +15,8 @@ class SceneMaker {
     SceneMaker& rectangle(const Vec3& corner, const Vec3& u, const Vec3& v, const MaterialPtr& m,
                           const Rgb& radiance = Rgb(0.0), bool two_sided = false);
     SceneMaker& sphere(const Vec3& center, float radius, const MaterialPtr& m);
+    /// A solid [lower, upper], one shape.
+    SceneMaker& box(const Vec3& lower, const Vec3& upper, const MaterialPtr& m);
     /// Six walls of [lower, upper] that face inwards.
     SceneMaker& room(const Vec3& lower, const Vec3& upper, const MaterialPtr& m, const Rgb& radiance = Rgb(0.0));
     /// The opacity of the last shape.
@@ -64,6 +66,10 @@ std::unique_ptr<Scene> furnace(double rho, bool specular = false);
 
 /// furnace() with two balls of a white base under a smooth coat, which swallow nothing, either.
 std::unique_ptr<Scene> varnished_furnace(double rho);
+
+/// furnace() with what is white at some of its places only: a ball that is a mirror at the others, one with nothing
+/// there, and a screen that is a pane of glass.
+std::unique_ptr<Scene> patchy_furnace(double rho);
 
 /// Two diffuse rooms joined by a slit of the given width [m]; the light is in the far one. `thin`: what parts them is a
 /// plane, in which an opening lies as well.

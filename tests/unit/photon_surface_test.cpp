@@ -5,6 +5,7 @@
 #include "scene/ray_counter.h"
 #include "scene/warp.h"
 #include "support/chance.h"
+#include "support/test_scenes.h"
 
 #include <gtest/gtest.h>
 
@@ -210,6 +211,46 @@ TEST(SurfacePatches, CountsOneSideOfAThinSolid) {
     const RunningStats found = densities(*scene, 0.2 * static_cast<double>(kWidth), 0.1,
                                          [](double u) { return Vec3(static_cast<float>(0.2 + 0.6 * u), 0.01f, 0); });
     EXPECT_NEAR(found.mean(), 1, 0.06);
+}
+
+TEST(SurfacePatches, CountsOneSideOfABoard) {
+    test::SceneMaker m;
+    m.box({0, 0, -0.002f}, {1, 0.04f, 0}, make_diffuse(Rgb(0.5))).camera({0, 0, 1}, {0, 0.1f, 0}, 40).window(8, 8);
+    const auto scene = m.build();
+    const SurfacePatches patches(*scene);
+    const double r = 0.1, wide = 0.02,
+                 strip = 2 * (wide * std::sqrt(r * r - wide * wide) + r * r * std::asin(wide / r));
+    EXPECT_NEAR(patches.area({Vec3(0.5f, 0.02f, 0), kUp}, r), strip, 0.06 * strip);
+    EXPECT_NEAR(patches.area({Vec3(0.5f, 0.02f, -0.002f), -kUp}, r), strip, 0.06 * strip);
+    EXPECT_NEAR(patches.area({Vec3(0.5f, 0.02f, 0), kUp}, 0.01), kPi * 1e-4, 1e-9) << "away from edges";
+}
+
+/// The area that photons can lie on of a square about a region, over that of its disc.
+double share_that_holds(const MaterialPtr& material, double opacity) {
+    test::SceneMaker m;
+    m.rectangle({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, material).alpha(opacity);
+    m.camera({0, 0, 1}, {0, 0.1f, 0}, 40).window(8, 8);
+    const auto scene = m.build();
+    const SurfacePatches patches(*scene);
+    RunningStats shares;
+    for (int i = 0; i < 200; ++i)
+        shares.add(patches.area({Vec3(0.004f * static_cast<float>(i) - 0.4f, 0, 0), kUp}, 0.1) / (kPi * 0.01));
+    return shares.mean();
+}
+
+TEST(SurfacePatches, CountsPlacesThatHoldPhotons) {
+    const MaterialPtr white = make_diffuse(Rgb(0.5)), glass = make_glass(1.5);
+    const auto mix = [](const MaterialPtr& a, const MaterialPtr& b, double amount) {
+        return make_mix(a, b, constant_texture(amount));
+    };
+    EXPECT_NEAR(share_that_holds(white, 1), 1, 1e-6);
+    EXPECT_NEAR(share_that_holds(white, 0.4), 0.4, 0.02);
+    EXPECT_NEAR(share_that_holds(mix(white, glass, 0.3), 1), 0.7, 1e-6);
+    EXPECT_NEAR(share_that_holds(mix(white, mix(glass, white, 0.25), 0.4), 1), 0.7, 1e-6);
+    EXPECT_NEAR(share_that_holds(mix(white, make_diffuse(Rgb(0.1)), 0.4), 1), 1, 1e-6);
+    EXPECT_NEAR(share_that_holds(mix(white, glass, 0.5), 0.6), 0.3, 0.02);
+    const SurfaceDefaults dim{constant_texture(0.5)};
+    EXPECT_NEAR(share_that_holds(with_surface(mix(white, glass, 0.3), dim), 1), 0.7, 1e-6);
 }
 
 TEST(SurfacePatches, LooksThroughWhatHoldsNoPhotons) {

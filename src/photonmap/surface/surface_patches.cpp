@@ -19,6 +19,7 @@ constexpr double kFlat = SurfaceRegion::kFlattening;
 constexpr std::size_t kMostInTree = 150'000;
 constexpr int kRing = 8; // rays that look for edges of a region
 constexpr double kRingRadius = 0.85;
+constexpr double kWhole = 0.999; // share of surface at a place that leaves no gap
 // Rays that measure a region at an edge: the first of these numbers of which so many hit its surface. With fewer hits
 // the mean of the reciprocal would be far too large.
 constexpr std::array kRays{32, 128, 512};
@@ -66,6 +67,30 @@ std::vector<Bounds> bounds_of(const std::vector<Shape>& shapes) {
     return boxes;
 }
 
+/// Which way the shapes in a region face.
+class Sides {
+  public:
+    /// Whether the shape has shown its other side before.
+    bool are_both(std::uint32_t shape, bool front) {
+        const auto end = known_.begin() + count_,
+                   same = std::find_if(known_.begin(), end, [&](const auto&k) { return k.first == shape; });
+        if (same != end) return same->second != front;
+        known_[static_cast<std::size_t>(count_++)] = {shape, front};
+        return false;
+    }
+
+  private:
+    std::array<std::pair<std::uint32_t, bool>, SurfacePatches::kMostTriangles> known_{};
+    int count_ = 0;
+};
+
+std::vector<FloatTexture> finite_shares(const std::vector<Shape>& shapes) {
+    std::vector<FloatTexture> shares;
+    shares.reserve(shapes.size());
+    for (const Shape& s : shapes) shares.push_back(s.material != nullptr ? s.material->finite_share() : nullptr);
+    return shares;
+}
+
 /// Box around the ellipsoid of a region.
 Bounds bounds_of(const SurfaceRegion& region, double r) {
     Vec3 half;
@@ -79,7 +104,7 @@ Bounds bounds_of(const SurfaceRegion& region, double r) {
 } // namespace
 
 SurfacePatches::SurfacePatches(const Scene& scene)
-    : shapes_(scene.shapes()), scene_(&scene),
+    : shapes_(scene.shapes()), scene_(&scene), shares_(finite_shares(shapes_)),
       tree_(scene.triangle_count() <= kMostInTree ? bounds_of(shapes_) : std::vector<Bounds>()),
       has_tree_(scene.triangle_count() <= kMostInTree) {
     if (has_tree_) add_patches();
@@ -103,13 +128,17 @@ double SurfacePatches::area(const SurfaceRegion& region, double r) const {
     if (!has_tree_) return area_by_rays(region, r);
     double sum = 0;
     int met = 0;
-    const bool all = tree_.overlapping(bounds_of(region, r), [&](std::uint32_t i) {
+    Sides sides;
+    const bool sums_tell = tree_.overlapping(bounds_of(region, r), [&](std::uint32_t i) {
         if (scene_ != nullptr && ++met > kMostTriangles) return false;
-        const auto* sphere = std::get_if<Sphere>(&shapes_[patches_[i].shape].geometry);
-        sum += sphere != nullptr ? cap_area(*sphere, region, r) : triangle_area(patches_[i], region, r);
-        return true;
+        const Patch& patch = patches_[i];
+        const auto* sphere = std::get_if<Sphere>(&shapes_[patch.shape].geometry);
+        const double area = sphere != nullptr ? cap_area(*sphere, region, r) : triangle_area(patch, region, r);
+        sum += std::abs(area);
+        if (scene_ == nullptr || area == 0) return true;
+        return !is_patchy(patch.shape) && !sides.are_both(patch.shape, area > 0);
     });
-    return all ? std::min(sum, kPi * r * r) : area_by_rays(region, r);
+    return sums_tell ? std::min(sum, kPi * r * r) : area_by_rays(region, r);
 }
 
 /// Area of the surface in the region over that of its projection, at a place of the disc (polar coordinates), where
@@ -139,7 +168,9 @@ double SurfacePatches::surface_over(const SurfaceRegion& region, double r, doubl
         }
         entered = hit->shape;
         into = cosine;
-        if (std::abs(cosine) > SurfaceRegion::kMinCosine && counts(*hit)) sum += 1 / std::abs(cosine);
+        if (!(std::abs(cosine) > SurfaceRegion::kMinCosine) || !counts(*hit)) continue;
+        const FloatTexture& share = shares_[hit->shape];
+        sum += (share != nullptr ? share->value(*hit) : 1.0) / std::abs(cosine);
     }
     return sum;
 }
@@ -165,7 +196,8 @@ double SurfacePatches::sampled_area(const SurfaceRegion& region, double r, const
 double SurfacePatches::area_by_rays(const SurfaceRegion& region, double r) const {
     const auto all = [](const SurfacePoint&) { return true; };
     int covered = 0;
-    while (covered < kRing && surface_over(region, r, kRingRadius * r, 2 * kPi * covered / kRing, all) > 0) ++covered;
+    while (covered < kRing && surface_over(region, r, kRingRadius * r, 2 * kPi * covered / kRing, all) > kWhole)
+        ++covered;
     return covered == kRing ? kPi * r * r : sampled_area(region, r, all);
 }
 
@@ -240,8 +272,8 @@ double SurfacePatches::triangle_area(const Patch& patch, const SurfaceRegion& re
     std::array<V3d, 3> p;
     for (std::size_t i = 0; i < 3; ++i) p[i] = V3d(mesh.positions[t[i]]) - V3d(region.position);
     const V3d cross = (p[1] - p[0]).cross(p[2] - p[0]);
-    const double cosine = std::abs(cross.dot(n)), twice_area = cross.length();
-    if (!(cosine > SurfaceRegion::kMinCosine * twice_area)) return 0; // two-sided: either orientation counts
+    const double facing = cross.dot(n), twice_area = cross.length();
+    if (!(std::abs(facing) > SurfaceRegion::kMinCosine * twice_area)) return 0;
 
     for (V3d& v : p) v += n * ((kFlat - 1) * v.dot(n));
     const V3d stretched = (p[1] - p[0]).cross(p[2] - p[0]);
@@ -253,7 +285,8 @@ double SurfacePatches::triangle_area(const Patch& patch, const SurfaceRegion& re
     const V3d s = (p[1] - p[0]).normalized(), u = plane_normal.cross(s);
     const auto flat = [&](const V3d& v) { return Imath::V2d(v.dot(s), v.dot(u)); };
     const double disc = std::sqrt(r * r - height * height);
-    return disc_triangle_area(flat(p[0]), flat(p[1]), flat(p[2]), disc) * (twice_area / twice_stretched);
+    const double inside = disc_triangle_area(flat(p[0]), flat(p[1]), flat(p[2]), disc) * (twice_area / twice_stretched);
+    return std::copysign(inside, facing);
 }
 
 } // namespace keyhole

@@ -10,10 +10,12 @@
 
 namespace keyhole {
 
-/// The surfaces of a scene that photons can lie on: those whose material has a finite part. A question costs the same
-/// however fine the meshes are: where more than kMostTriangles lie in a region, and everywhere in scenes too fine for a
-/// tree of their triangles, a few rays look instead of exact sums. Immutable and thread-safe; refers to the shapes and
-/// the scene, which must outlive it.
+/// The surfaces of a scene that photons can lie on: those whose material has a finite part. Where exact sums of
+/// triangles would take long, or not tell, a few rays look instead: where more than kMostTriangles lie in a region, so
+/// that a question costs the same however fine the meshes are; everywhere in scenes too fine for a tree of their
+/// triangles; on surfaces of which only some places can hold photons, for opacity or a mix of materials; and on solids
+/// so thin that both of their sides lie in a region, of which photons are found on one. Immutable and thread-safe;
+/// refers to the shapes and the scene, which must outlive it.
 class SurfacePatches {
   public:
     explicit SurfacePatches(const Scene& scene);
@@ -51,6 +53,9 @@ class SurfacePatches {
         std::uint32_t shape, triangle;
     };
     void add_patches();
+    /// Whether photons can lie at some of its places and not at others.
+    bool is_patchy(std::uint32_t shape) const { return shapes_[shape].alpha != nullptr || shares_[shape] != nullptr; }
+    /// Negative where its back faces the region's way.
     double triangle_area(const Patch& patch, const SurfaceRegion& region, double r) const;
     double area_by_rays(const SurfaceRegion& region, double r) const;
     template <class Counts>
@@ -61,8 +66,9 @@ class SurfacePatches {
     bool obstructed_by_rays(const SurfaceRegion& region, double r) const;
 
     const std::vector<Shape>& shapes_;
-    const Scene* scene_ = nullptr; // null: there are no rays
-    std::vector<Patch> patches_;   // of the tree's boxes
+    const Scene* scene_ = nullptr;     // null: there are no rays
+    std::vector<FloatTexture> shares_; // by shape: Material::finite_share()
+    std::vector<Patch> patches_;       // of the tree's boxes
     BoxTree tree_;
     bool has_tree_;
 };

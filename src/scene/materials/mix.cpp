@@ -17,6 +17,14 @@ class MixMaterial final : public Material {
         return (place_hash(point, salt_) < amount_->value(point) ? b_ : a_)->bsdf(point);
     }
     BsdfTraits traits() const override { return a_->traits() | b_->traits(); }
+    FloatTexture finite_share() const override {
+        const FloatTexture a = a_->finite_share(), b = b_->finite_share();
+        if (a == nullptr && b == nullptr && a_->traits().finite == b_->traits().finite) return nullptr;
+        const auto of = [](const FloatTexture& share, const Material& m) {
+            return share != nullptr ? share : constant_texture(m.traits().finite ? 1.0 : 0.0);
+        };
+        return mix_texture<double>(of(a, *a_), of(b, *b_), amount_);
+    }
     const char* kind() const override { return "mix"; }
     SurfaceDefaults surface() const override;
 

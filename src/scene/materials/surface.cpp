@@ -13,6 +13,7 @@ class SurfaceMaterial final : public Material {
 
     Bsdf bsdf(const SurfacePoint& point) const override { return material_->bsdf(point); }
     BsdfTraits traits() const override { return material_->traits(); }
+    FloatTexture finite_share() const override { return material_->finite_share(); }
     const char* kind() const override { return material_->kind(); }
     SurfaceDefaults surface() const override { return surface_; }
 
