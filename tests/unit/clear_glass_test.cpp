@@ -1,6 +1,7 @@
 // Clear glass: what light goes straight through, and that every path is direct light if and only if one looks through.
 #include "core/statistics.h"
 #include "sampling/paths/clear_glass.h"
+#include "sampling/paths/independent_paths.h"
 #include "sampling/paths/light_tracer.h"
 #include "sampling/paths/path_tracer.h"
 #include "scene/emitters/emitters.h"
@@ -231,6 +232,51 @@ TEST(ClearGlass, BringsTheSameLightWhetherEmittersAreSampledThroughItOrNot) {
         EXPECT_LT(error, 0.1 * blind.mean()) << depth;
         EXPECT_LT(seeing.variance(), 0.8 * blind.variance()) << depth;
     }
+}
+
+/// Adds up what whole paths bring, and asks whether they bring anything as they are.
+struct WholePaths {
+    const Scene& scene;
+    RunningStats light;
+    double sum = 0;
+    int through = 0, wrong = 0;
+
+    void trace(Technique technique, std::uint64_t stream) {
+        Rng rng(stream, StreamPurpose::test, static_cast<std::uint64_t>(light.count()));
+        const Vec2 image(static_cast<float>(rng.next()), static_cast<float>(rng.next()));
+        sum = 0;
+        trace_independent(technique, scene, image, {6, PathSet::stored}, rng, *this);
+        light.add(sum);
+    }
+    template <class MakePath> void contribution(const Rgb& value, PhotonKind /*kind*/, const MakePath& make_path) {
+        sum += luminance(value);
+        Path path = make_path();
+        through += path.x[1].specular() ? 1 : 0;
+        evaluate(scene, path, PathSet::stored);
+        wrong += path.target > 0 ? 0 : 1;
+    }
+};
+
+/// A window that is clear in a tenth of its places, and ground glass in the others: what lights the room is that the
+/// sun comes through those, which no ray from the eye would meet.
+TEST(ClearGlass, IsOnThePathsThatLookThroughIt) {
+    SceneMaker m = test::room_with_a_window();
+    const auto milky = make_diffuse_transmission(constant_texture(Rgb(0.1)), constant_texture(Rgb(0.1)));
+    m.rectangle({1, 1, -0.03f}, {1, 0, 0}, {0, 1, 0},
+                make_mix(make_thin_dielectric(kIndex), milky, constant_texture(0.9)));
+    m.emitter(make_distant_emitter(Vec3(0.1f, -0.6f, 1).normalized(), Rgb(3.0), 0.5));
+    m.camera({1.5f, 1.3f, 2.9f}, {1.5f, 0.9f, 0}, 70).window(32, 24);
+    const auto scene = m.build();
+    WholePaths path{*scene, {}}, bidirectional{*scene, {}};
+    for (int i = 0; i < 60'000; ++i) {
+        path.trace(Technique::path, 5);
+        bidirectional.trace(Technique::bidirectional, 6);
+    }
+    EXPECT_GT(path.through, 100);
+    EXPECT_EQ(path.wrong, 0);
+    const double error = std::hypot(path.light.standard_error(), bidirectional.light.standard_error());
+    EXPECT_NEAR(path.light.mean(), bidirectional.light.mean(), 4 * error);
+    EXPECT_LT(error, 0.05 * bidirectional.light.mean());
 }
 
 } // namespace

@@ -28,7 +28,8 @@ struct View {
 
 } // namespace
 
-Rgb straight_transmittance(const Scene& scene, const SurfacePoint& from, const SurfacePoint& x0, int most_faces) {
+Rgb straight_transmittance(const Scene& scene, const SurfacePoint& from, const SurfacePoint& x0, int most_faces,
+                           const std::function<void(const Vertex&)>& passed) {
     const bool infinite = x0.site == Site::infinite;
     View view{from, direction(from, x0)};
     for (int faces = 0;; ++faces) {
@@ -40,6 +41,7 @@ Rgb straight_transmittance(const Scene& scene, const SurfacePoint& from, const S
         auto hit = next_vertex(scene, view.from, view.w);
         if (!hit || hit->point.site == Site::infinite || !view.pass(scene, *hit)) break;
         if (!infinite && !view.light.straight(view.w, false)) break;
+        if (passed) passed(*hit);
     }
     return Rgb(0.0);
 }

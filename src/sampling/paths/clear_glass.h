@@ -8,6 +8,8 @@
 #include "sampling/paths/path_class.h"
 #include "scene/scene.h"
 
+#include <functional>
+
 namespace keyhole {
 
 /// What `v` is to light that goes through. Glass that shines is none: a view ends at the first emitter.
@@ -67,9 +69,10 @@ inline LightClass light_class(const Path& path) { return light_class(diffuse_ver
 constexpr int kMostFaces = 64;
 
 /// Share of light that comes straight from `x0`, a point on an emitter, to `from`: what media leave of it and what
-/// clear glass lets through; black if anything else stands in between, or more than `most_faces`.
+/// clear glass lets through; black if anything else stands in between, or more than `most_faces`. Tells `passed`, if
+/// any, of each vertex that it goes through, from `from` on, even if something else follows.
 Rgb straight_transmittance(const Scene& scene, const SurfacePoint& from, const SurfacePoint& x0,
-                           int most_faces = kMostFaces);
+                           int most_faces = kMostFaces, const std::function<void(const Vertex&)>& passed = {});
 
 /// What is seen straight along unit direction `w`, through clear glass, and the share of its light that comes.
 struct StraightView {

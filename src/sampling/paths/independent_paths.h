@@ -17,6 +17,24 @@ enum class Technique {
 /// light, in the convention of measure.h. Roulette counts as survived.
 double bidirectional_density(const Path& path);
 
+/// Tells `sink` of the paths of a set that trace_path() completes.
+template <class Sink> struct CompletePaths {
+    using LooksThroughGlass = std::true_type;
+
+    const Scene& scene;
+    const Vec2& image;
+    const PathSet& set;
+    Sink& sink;
+
+    static bool arrival(const EyeWalk& /*walk*/, const Rgb& /*throughput*/, int /*finite*/) { return true; }
+    void contribution(EyeWalk& walk, const Vertex& x0, const Rgb& value, LightClass light) {
+        const auto covered = [&] { return is_d2_covered(set, walk, x0); };
+        if (!set.contains(light, covered)) return;
+        sink.contribution(value, ask_stored_kind(light, covered),
+                          [&] { return complete_path(scene, walk, x0, image); });
+    }
+};
+
 /// Traces one sample from window point `image`. Tells `sink`:
 ///   sink.contribution(value, kind, make_path): an estimate of radiance by a path of `wanted` that make_path() returns,
 ///     measured, and the PhotonKind that it stores.
@@ -40,20 +58,8 @@ void trace_independent(Technique technique, const Scene& scene, const Vec2& imag
         connect_subpaths(scene, pair, image, wanted, adapter);
         return;
     }
-    struct {
-        const Scene& scene;
-        const Vec2& image;
-        const PathSet& set;
-        Sink& sink;
-        static bool arrival(const EyeWalk& /*walk*/, const Rgb& /*throughput*/, int /*finite*/) { return true; }
-        void contribution(EyeWalk& walk, const Vertex& x0, const Rgb& value, LightClass light) {
-            const auto covered = [&] { return is_d2_covered(set, walk, x0); };
-            if (!set.contains(light, covered)) return;
-            sink.contribution(value, ask_stored_kind(light, covered),
-                              [&] { return complete_path(scene, walk, x0, image); });
-        }
-    } adapter{scene, image, wanted.set, sink};
-    trace_path(scene, image, max_scatterings, source, adapter);
+    CompletePaths<Sink> paths{scene, image, wanted.set, sink};
+    trace_path(scene, image, max_scatterings, source, paths);
 }
 
 } // namespace keyhole

@@ -67,7 +67,7 @@ template <class Sink> struct PathTracing : WalkHooks {
     StraightLight view{};        ///< from there on
     bool of_each = kTakesEachEmitter && scene.takes_each_emitter();
 
-    /// Whether emitters are sampled through clear glass, too. Sinks that want the vertices of the path must do without.
+    /// Whether emitters are sampled through clear glass, too.
     static constexpr bool kLooksThroughGlass = requires { typename Sink::LooksThroughGlass; };
     /// Whether the first surface may have a sample of each emitter.
     static constexpr bool kTakesEachEmitter = requires { typename Sink::TakesEachEmitter; };
@@ -122,11 +122,14 @@ template <class Sink> struct PathTracing : WalkHooks {
     }
     void add_light(const Vertex& v, const WalkRay& ray, const std::optional<DirectLight>& light) {
         if (!light) return;
-        const int most_faces = kLooksThroughGlass ? max_scatterings - scatterings() - 1 : 0;
-        const Rgb clear = straight_transmittance(scene, v.point, light->x0.point, most_faces);
-        if (is_black(clear)) return;
         walk.count_last();
-        sink.contribution(walk, light->x0, ray.throughput * clear * light->value, walk.light_class(light->x0));
+        const std::size_t end = walk.size();
+        const int most_faces = kLooksThroughGlass ? max_scatterings - scatterings() - 1 : 0;
+        const Rgb clear = straight_transmittance(scene, v.point, light->x0.point, most_faces,
+                                                 [&](const Vertex& glass) { walk.push_back(glass); });
+        if (!is_black(clear))
+            sink.contribution(walk, light->x0, ray.throughput * clear * light->value, walk.light_class(light->x0));
+        while (walk.size() > end) walk.pop_back();
         walk.discount_last();
     }
 };
@@ -138,9 +141,9 @@ template <class Sink> struct PathTracing : WalkHooks {
 ///     `finite` non-specular ones; `throughput` is the RGB importance that arrives there (window density 1). False ends
 ///     the walk.
 ///   sink.contribution(walk, x0, value, light_class): `value` is an estimate of radiance at the image point, MIS weight
-///     included, by the path that joins the walk to emitter vertex x0; of a sink with a type LooksThroughGlass
-///     perhaps by way of vertices in clear glass that are left out. One with a type TakesEachEmitter is told of several
-///     emitters at the first surface that is not specular.
+///     included, by the path that joins the walk to emitter vertex x0; of a sink with a type LooksThroughGlass next to
+///     vertices in clear glass that the emitter was sampled through, which the walk ends with. One with a type
+///     TakesEachEmitter is told of several emitters at the first surface that is not specular.
 template <class Sink>
 void trace_path(const Scene& scene, const Vec2& image, int max_scatterings, SampleSource& source, Sink& sink) {
     EyeWalk walk;
