@@ -191,9 +191,10 @@ LoadedScene load_for(const RenderOptions& options, std::vector<std::string>& war
         if (!quality) throw InputError("found quality '" + options.quality + "', expected draft, good or final");
         loaded.settings = with_quality(loaded.settings, *quality, named);
     }
-    if (!options.save_map.empty() && !loaded.settings.method->keeps_photons)
-        throw InputError(fmt::format("--save-map: found method {}, expected one that keeps photons: {}",
-                                     loaded.settings.method->name, names_of(&Method::keeps_photons)));
+    for (const auto& [option, file] : {std::pair{"--save-map", &options.save_map}, {"--load-map", &options.load_map}})
+        if (!file->empty() && !loaded.settings.method->keeps_photons)
+            throw InputError(fmt::format("{}: found method {}, expected one that keeps photons: {}", option,
+                                         loaded.settings.method->name, names_of(&Method::keeps_photons)));
     if (options.group != nullptr && options.in_time())
         throw InputError("found --timeout or --cpu-time, which end one process; expected --passes, a number that all "
                          "processes know beforehand");

@@ -66,6 +66,7 @@ TEST_F(Program, BadInputExitsWithTwoAndOneLine) {
                                   "render scene.yaml --stats missing/s.json",
                                   "render scene.yaml -q -v",
                                   "render scene.yaml --method path --save-map a.photons",
+                                  "render scene.yaml --method path --load-map a.photons",
                                   "render scene.yaml -t -1",
                                   "render scene.yaml --timeout -1",
                                   "render scene.yaml --cpu-time nan",
