@@ -197,9 +197,7 @@ Vertex GatherRays::widened(const Vertex& v, const Bsdf& part) const {
 Rgb GatherRays::lobe(const Vertex& v, const Vec3& back, const std::optional<std::uint32_t>& place, const Leg& leg,
                      SampleSource& source) const {
     const bool may_trace = maps_.lobes != nullptr && leg.traced_on == 0;
-    // A place farther away than its estimate looks tells nothing of here.
-    const bool near = place && maps_.irradiance->is_near(*place, {v.point.p, facing(v.point.ng, back)});
-    if (may_trace && !(near && maps_.lobes->by_photons(v.point.shape)))
+    if (may_trace && !(place && maps_.lobes->by_photons(v.point.shape)))
         return lobe_traced_on(v, back, place, leg, source);
     const Vertex wide = widened(v, v.bsdf);
     return direct_light(scene_, wide, back, 1, source) +
@@ -348,11 +346,10 @@ bool GatherRays::may_be_partly_occluded(std::uint32_t place, const SurfaceRegion
 
 double GatherRays::area_near(std::uint32_t place, const SurfaceRegion& region) const {
     const float r = maps_.irradiance->radius(place);
-    // A place farther away than that lies on other surfaces, such as the leg of a chair.
-    const double area = maps_.irradiance->is_near(place, region)
-                            ? kPi * static_cast<double>(r) * r * maps_.irradiance->area_share(place)
-                            : maps_.patches->area(region, r);
-    return area > 0 ? area * share_in_reach(maps_.coverage, region, r) : 0;
+    // A place farther away than that lies on other surfaces, perhaps on the leg of a chair. Rays could tell the area
+    // here, but take twice the time of all others; and where no photon came near there is little light.
+    const double share = maps_.irradiance->is_near(place, region) ? maps_.irradiance->area_share(place) : 1;
+    return share > 0 ? kPi * static_cast<double>(r) * r * share * share_in_reach(maps_.coverage, region, r) : 0;
 }
 
 double GatherRays::variance_of_photons(const Vertex& v, const Vec3& back) const {

@@ -213,16 +213,38 @@ TEST(SurfacePatches, CountsOneSideOfAThinSolid) {
     EXPECT_NEAR(found.mean(), 1, 0.06);
 }
 
+/// One shape, or a shape for each side.
 TEST(SurfacePatches, CountsOneSideOfABoard) {
+    const MaterialPtr white = make_diffuse(Rgb(0.5));
+    for (const bool whole : {true, false}) {
+        test::SceneMaker m;
+        if (whole)
+            m.box({0, 0, -0.002f}, {1, 0.04f, 0}, white);
+        else
+            m.rectangle({0, 0, 0}, {1, 0, 0}, {0, 0.04f, 0}, white)
+                .rectangle({0, 0, -0.002f}, {0, 0.04f, 0}, {1, 0, 0}, white);
+        const auto scene = m.camera({0, 0, 1}, {0, 0.1f, 0}, 40).window(8, 8).build();
+        const SurfacePatches patches(*scene);
+        const double r = 0.1, half = 0.02;
+        const double strip = 2 * (half * std::sqrt(r * r - half * half) + r * r * std::asin(half / r));
+        EXPECT_NEAR(patches.area({Vec3(0.5f, 0.02f, 0), kUp}, r), strip, 0.06 * strip);
+        EXPECT_NEAR(patches.area({Vec3(0.5f, 0.02f, -0.002f), -kUp}, r), strip, 0.06 * strip);
+        EXPECT_NEAR(patches.area({Vec3(0.5f, 0.02f, 0), kUp}, 0.01), kPi * 1e-4, 1e-9) << "away from edges";
+    }
+}
+
+/// A box on a floor, and a floor whose triangles are wound either way.
+TEST(SurfacePatches, AddsUpWhatEnclosesNoSolid) {
+    const MaterialPtr white = make_diffuse(Rgb(0.5));
     test::SceneMaker m;
-    m.box({0, 0, -0.002f}, {1, 0.04f, 0}, make_diffuse(Rgb(0.5))).camera({0, 0, 1}, {0, 0.1f, 0}, 40).window(8, 8);
+    m.rectangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, white).rectangle({1, 0, 0}, {0, 1, 0}, {1, 0, 0}, white);
+    m.box({0.3f, 0.3f, 0}, {0.6f, 0.6f, 0.5f}, white).camera({0, 0, 1}, {0, 0.1f, 0}, 40).window(8, 8);
     const auto scene = m.build();
     const SurfacePatches patches(*scene);
-    const double r = 0.1, wide = 0.02,
-                 strip = 2 * (wide * std::sqrt(r * r - wide * wide) + r * r * std::asin(wide / r));
-    EXPECT_NEAR(patches.area({Vec3(0.5f, 0.02f, 0), kUp}, r), strip, 0.06 * strip);
-    EXPECT_NEAR(patches.area({Vec3(0.5f, 0.02f, -0.002f), -kUp}, r), strip, 0.06 * strip);
-    EXPECT_NEAR(patches.area({Vec3(0.5f, 0.02f, 0), kUp}, 0.01), kPi * 1e-4, 1e-9) << "away from edges";
+    const std::uint64_t before = rays_traced();
+    EXPECT_NEAR(patches.area({Vec3(0.28f, 0.45f, 0), kUp}, 0.1), kPi * 0.01, 1e-6);
+    EXPECT_NEAR(patches.area({Vec3(0.99f, 0.5f, 0), kUp}, 0.1), kPi * 0.01, 1e-6);
+    EXPECT_EQ(rays_traced(), before);
 }
 
 /// The area that photons can lie on of a square about a region, over that of its disc.

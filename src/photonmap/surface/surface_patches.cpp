@@ -67,21 +67,22 @@ std::vector<Bounds> bounds_of(const std::vector<Shape>& shapes) {
     return boxes;
 }
 
-/// Which way the shapes in a region face.
+/// Surfaces of a region by the side that they show.
 class Sides {
   public:
-    /// Whether the shape has shown its other side before.
-    bool are_both(std::uint32_t shape, bool front) {
-        const auto end = known_.begin() + count_,
-                   same = std::find_if(known_.begin(), end, [&](const auto&k) { return k.first == shape; });
-        if (same != end) return same->second != front;
-        known_[static_cast<std::size_t>(count_++)] = {shape, front};
-        return false;
+    /// Whether a solid lies between this surface, `height` above the region's middle, and others: one that faces the
+    /// region's way above one that faces the other way, whatever shapes they are of.
+    bool enclose(bool faces_up, float height, double r) {
+        if (faces_up)
+            top_ = std::max(top_, height);
+        else
+            bottom_ = std::min(bottom_, height);
+        return top_ > bottom_ + kInContact * static_cast<float>(r);
     }
 
   private:
-    std::array<std::pair<std::uint32_t, bool>, SurfacePatches::kMostTriangles> known_{};
-    int count_ = 0;
+    static constexpr float kInContact = 1e-3f; // of a radius, in height: a box and the floor that it stands on
+    float top_ = -std::numeric_limits<float>::infinity(), bottom_ = std::numeric_limits<float>::infinity();
 };
 
 std::vector<FloatTexture> finite_shares(const std::vector<Shape>& shapes) {
@@ -133,10 +134,10 @@ double SurfacePatches::area(const SurfaceRegion& region, double r) const {
         if (scene_ != nullptr && ++met > kMostTriangles) return false;
         const Patch& patch = patches_[i];
         const auto* sphere = std::get_if<Sphere>(&shapes_[patch.shape].geometry);
-        const double area = sphere != nullptr ? cap_area(*sphere, region, r) : triangle_area(patch, region, r);
-        sum += std::abs(area);
-        if (scene_ == nullptr || area == 0) return true;
-        return !is_patchy(patch.shape) && !sides.are_both(patch.shape, area > 0);
+        const Part part = sphere != nullptr ? Part{cap_area(*sphere, region, r)} : triangle_part(patch, region, r);
+        sum += part.area;
+        if (scene_ == nullptr || part.area == 0) return true;
+        return !is_patchy(patch.shape) && (sphere != nullptr || !sides.enclose(part.faces_up, part.height, r));
     });
     return sums_tell ? std::min(sum, kPi * r * r) : area_by_rays(region, r);
 }
@@ -154,19 +155,17 @@ double SurfacePatches::surface_over(const SurfaceRegion& region, double r, doubl
              frame.t * static_cast<float>(distance * std::sin(angle)) + frame.n * static_cast<float>(height);
     const Vec3 top = from.p;
     double sum = 0;
-    std::uint32_t entered = SurfacePoint::kNone; // the solid that the ray is in, if it is
-    double into = 0;                             // the cosine with which it went in
+    double into = 0; // the cosine with which the ray went into the solid that it is in; 0: it is in none
     for (int layer = 0; layer < kMostLayers; ++layer) {
         const auto hit = scene_->trace(from, -frame.n);
         if (!hit || hit->site != Site::surface || !((hit->p - top).length() <= 2 * height)) break;
         from = *hit;
         const double cosine = hit->ng.dot(frame.n);
         if (!holds_photons(shapes_[hit->shape])) continue;
-        if (hit->shape == entered && into * cosine < 0) { // seen from within: no photon comes to that side
-            entered = SurfacePoint::kNone;
+        if (into * cosine < 0) { // seen from within: no photon comes to that side
+            into = 0;
             continue;
         }
-        entered = hit->shape;
         into = cosine;
         if (!(std::abs(cosine) > SurfaceRegion::kMinCosine) || !counts(*hit)) continue;
         const FloatTexture& share = shares_[hit->shape];
@@ -265,7 +264,7 @@ bool SurfacePatches::obstructed_by_rays(const SurfaceRegion& region, double r) c
 
 /// Stretched along the normal, the ellipsoid becomes a sphere, which cuts the triangle's plane in a disc; areas in that
 /// plane all shrink by one factor on the way back.
-double SurfacePatches::triangle_area(const Patch& patch, const SurfaceRegion& region, double r) const {
+SurfacePatches::Part SurfacePatches::triangle_part(const Patch& patch, const SurfaceRegion& region, double r) const {
     const auto& mesh = std::get<TriangleMesh>(shapes_[patch.shape].geometry);
     const auto& t = mesh.triangles[patch.triangle];
     const V3d n(region.normal);
@@ -273,20 +272,21 @@ double SurfacePatches::triangle_area(const Patch& patch, const SurfaceRegion& re
     for (std::size_t i = 0; i < 3; ++i) p[i] = V3d(mesh.positions[t[i]]) - V3d(region.position);
     const V3d cross = (p[1] - p[0]).cross(p[2] - p[0]);
     const double facing = cross.dot(n), twice_area = cross.length();
-    if (!(std::abs(facing) > SurfaceRegion::kMinCosine * twice_area)) return 0;
+    if (!(std::abs(facing) > SurfaceRegion::kMinCosine * twice_area)) return {};
+    const auto above = static_cast<float>(cross.dot(p[0]) / facing);
 
     for (V3d& v : p) v += n * ((kFlat - 1) * v.dot(n));
     const V3d stretched = (p[1] - p[0]).cross(p[2] - p[0]);
     const double twice_stretched = stretched.length();
     const V3d plane_normal = stretched / twice_stretched;
     const double height = p[0].dot(plane_normal);
-    if (std::abs(height) >= r) return 0;
+    if (std::abs(height) >= r) return {};
 
     const V3d s = (p[1] - p[0]).normalized(), u = plane_normal.cross(s);
     const auto flat = [&](const V3d& v) { return Imath::V2d(v.dot(s), v.dot(u)); };
     const double disc = std::sqrt(r * r - height * height);
-    const double inside = disc_triangle_area(flat(p[0]), flat(p[1]), flat(p[2]), disc) * (twice_area / twice_stretched);
-    return std::copysign(inside, facing);
+    const double inside = disc_triangle_area(flat(p[0]), flat(p[1]), flat(p[2]), disc);
+    return {inside * (twice_area / twice_stretched), facing > 0, above};
 }
 
 } // namespace keyhole

@@ -55,8 +55,13 @@ class SurfacePatches {
     void add_patches();
     /// Whether photons can lie at some of its places and not at others.
     bool is_patchy(std::uint32_t shape) const { return shapes_[shape].alpha != nullptr || shares_[shape] != nullptr; }
-    /// Negative where its back faces the region's way.
-    double triangle_area(const Patch& patch, const SurfaceRegion& region, double r) const;
+    /// What of a triangle lies in a region.
+    struct Part {
+        double area = 0;      ///< [m^2]
+        bool faces_up = true; ///< the region's way
+        float height = 0;     ///< of its plane over the region's middle [m]
+    };
+    Part triangle_part(const Patch& patch, const SurfaceRegion& region, double r) const;
     double area_by_rays(const SurfaceRegion& region, double r) const;
     template <class Counts>
     double surface_over(const SurfaceRegion& region, double r, double distance, double angle,
