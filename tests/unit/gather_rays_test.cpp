@@ -203,6 +203,28 @@ TEST(GatherRays, AreTracedOnFromSlatsThatAreFinerThanTheEstimate) {
     EXPECT_EQ(luminance(found.indirect), 0) << "a mean over slats";
 }
 
+/// What is known of a strip 2 mm wide, the next place of the map: photons on the metal beside it lie 80 times as wide.
+TEST(GatherRays, DontTakeAreasFromPlacesThatLieBeyondTheirOwnEstimates) {
+    const Rectangle strip{{0, 0, 0}, {0, 0, 1}, {0.002f, 0, 0}}, floor{{0.05f, 0, 0}, {0, 0, 1}, {0.95f, 0, 0}};
+    SceneDescription d;
+    for (const Rectangle& r : {strip, floor}) {
+        d.shapes.push_back(shape_of(r));
+        d.shapes.back().material =
+            make_conductor(constant_texture(Rgb(0.8)), constant_texture(0.5), constant_texture(0.5));
+    }
+    const Scene scene(std::move(d));
+    const SurfacePatches patches(scene);
+    Rng rng = make_rng(7);
+    PhotonSet photons;
+    throw_photons(strip, 100, rng, photons.pilots);
+    throw_photons(floor, 10'000, rng, photons.main_photons);
+    const double unknown = mean_below({scene, patches, photons, lookups()}, 0.16f, 0.25f, 0.2f, rng);
+    throw_photons(floor, 1000, rng, photons.pilots);
+    const double known = mean_below({scene, patches, photons, lookups()}, 0.16f, 0.25f, 0.2f, rng);
+    ASSERT_GT(known, 0);
+    EXPECT_NEAR(unknown, known, 0.3 * known);
+}
+
 /// No photon lies on the side that the ray meets, so that nothing is known there.
 TEST(GatherRays, FindLightThatComesThroughFromTheOtherSide) {
     SceneDescription d;
