@@ -38,9 +38,11 @@ RenderResult first_look(const Scene& scene, const Settings& settings) {
     RenderResult result = render_by_method({scene, s, {}, context, {}, findings});
     result.settings = settings;
     result.stats.complete = false;
-    result.stats.warnings = {fmt::format("{} was stopped before it had a picture: this is a sample a pixel by path "
-                                         "tracing, and {:.0f} % of the pixels have none",
-                                         settings.method->name, 100 * empty_pixels(result) / pixels(result.picture))};
+    const double empty = empty_pixels(result) / pixels(result.picture);
+    result.stats.warnings = {fmt::format(
+        "{} was stopped before it had a picture: this is a sample a pixel by path "
+        "tracing{}",
+        settings.method->name, empty > 0 ? fmt::format(", and {:.2g} % of the pixels have none", 100 * empty) : "")};
     return result;
 }
 
