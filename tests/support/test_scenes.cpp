@@ -1,6 +1,7 @@
 #include "support/test_scenes.h"
 
 #include "scene/emitters/emitters.h"
+#include "scene/load/load_mesh.h"
 
 namespace keyhole::test {
 
@@ -27,12 +28,7 @@ SceneMaker& SceneMaker::sphere(const Vec3& center, float radius, const MaterialP
 
 SceneMaker& SceneMaker::box(const Vec3& lower, const Vec3& upper, const MaterialPtr& m) {
     Shape s;
-    TriangleMesh mesh;
-    for (int i = 0; i < 8; ++i)
-        mesh.positions.emplace_back((i & 1 ? upper : lower).x, (i & 2 ? upper : lower).y, (i & 4 ? upper : lower).z);
-    mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                      {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
-    s.geometry = mesh;
+    s.geometry = make_box(lower, upper);
     s.material = m;
     d_.shapes.push_back(std::move(s));
     return *this;

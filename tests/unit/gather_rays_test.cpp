@@ -23,6 +23,20 @@ LookupOptions lookups(double least_alpha = 0) {
     return {.max_radius = kReach, .caustic_radius = kReach, .least_alpha = least_alpha};
 }
 
+MaterialPtr metal(double roughness) {
+    return make_conductor(constant_texture(Rgb(0.8)), constant_texture(roughness), constant_texture(roughness));
+}
+
+/// Rectangles of one material; nothing emits.
+Scene scene_of(const std::vector<Rectangle>& rectangles, const MaterialPtr& material) {
+    SceneDescription d;
+    for (const Rectangle& r : rectangles) {
+        d.shapes.push_back(shape_of(r));
+        d.shapes.back().material = material;
+    }
+    return Scene(std::move(d));
+}
+
 /// What a ray straight down from a point finds.
 GatherRays::Arrival below(const MappedGather& gather, const Vec3& point, Rng& rng) {
     return gather.along(point, {0, -1, 0}, rng);
@@ -77,7 +91,7 @@ class Floor {
 };
 
 TEST(GatherRays, SeeNoPhotonsFromBehindAWallInAShinyFloor) {
-    Floor floor(make_conductor(constant_texture(Rgb(0.8)), constant_texture(0.5), constant_texture(0.5)));
+    Floor floor(metal(0.5));
     floor.throw_on(0.5f, 1, 2000);
     const double alone = floor.seen_at(0.52f);
     ASSERT_GT(alone, 0);
@@ -164,7 +178,7 @@ TEST(GatherRays, DontTakeDirectLightFromASlabThatIsHigher) {
 /// From nearer than the estimate looks rays are traced on, and the estimate doesn't count: but no ray that is traced on
 /// finds the light that came here by way of a mirror alone.
 TEST(GatherRays, KeepCausticsWhereTheyAreTracedOn) {
-    const auto mirror = make_conductor(constant_texture(Rgb(0.8)), constant_texture(0), constant_texture(0));
+    const auto mirror = metal(0);
     const auto white = make_diffuse(Rgb(0.5));
     const auto plastic = make_coated_diffuse(constant_texture(Rgb(0.5)), constant_texture(0.4), constant_texture(0.4),
                                              1.5, constant_texture(0));
@@ -182,14 +196,9 @@ TEST(GatherRays, KeepCausticsWhereTheyAreTracedOn) {
 
 /// A row of slats 1 mm wide, 4 mm apart, has a fifth of the area of a floor.
 TEST(GatherRays, AreTracedOnFromSlatsThatAreFinerThanTheEstimate) {
-    SceneDescription d;
     std::vector<Rectangle> slats;
     for (int i = 0; i < 200; ++i) slats.push_back({{0.005f * static_cast<float>(i), 0, 0}, {0, 0, 1}, {0.001f, 0, 0}});
-    for (const Rectangle& slat : slats) {
-        d.shapes.push_back(shape_of(slat));
-        d.shapes.back().material = make_diffuse(Rgb(0.5));
-    }
-    const Scene scene(std::move(d));
+    const Scene scene = scene_of(slats, make_diffuse(Rgb(0.5)));
     const SurfacePatches patches(scene);
     Rng rng = make_rng(5);
     PhotonSet photons;
@@ -206,13 +215,7 @@ TEST(GatherRays, AreTracedOnFromSlatsThatAreFinerThanTheEstimate) {
 /// What is known of a strip 2 mm wide, the next place of the map: photons on the metal beside it lie 80 times as wide.
 TEST(GatherRays, DontTakeAreasFromPlacesThatLieBeyondTheirOwnEstimates) {
     const Rectangle strip{{0, 0, 0}, {0, 0, 1}, {0.002f, 0, 0}}, floor{{0.05f, 0, 0}, {0, 0, 1}, {0.95f, 0, 0}};
-    SceneDescription d;
-    for (const Rectangle& r : {strip, floor}) {
-        d.shapes.push_back(shape_of(r));
-        d.shapes.back().material =
-            make_conductor(constant_texture(Rgb(0.8)), constant_texture(0.5), constant_texture(0.5));
-    }
-    const Scene scene(std::move(d));
+    const Scene scene = scene_of({strip, floor}, metal(0.5));
     const SurfacePatches patches(scene);
     Rng rng = make_rng(7);
     PhotonSet photons;
@@ -227,11 +230,8 @@ TEST(GatherRays, DontTakeAreasFromPlacesThatLieBeyondTheirOwnEstimates) {
 
 /// No photon lies on the side that the ray meets, so that nothing is known there.
 TEST(GatherRays, FindLightThatComesThroughFromTheOtherSide) {
-    SceneDescription d;
     const Rectangle pane{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}};
-    d.shapes.push_back(shape_of(pane));
-    d.shapes.front().material = test::ground_glass();
-    const Scene scene(std::move(d));
+    const Scene scene = scene_of({pane}, test::ground_glass());
     const SurfacePatches patches(scene);
     Rng rng = make_rng(5);
     PhotonSet photons;
@@ -244,12 +244,8 @@ TEST(GatherRays, FindLightThatComesThroughFromTheOtherSide) {
 /// Irradiance [W/m^2] a little above the middle of a metal floor of roughness 0.02, on which 100 kW/m^2 fall from
 /// straight above, by rays that each look at the photons where they end.
 RunningStats irradiance_above_metal(double least_alpha) {
-    SceneDescription d;
     const Rectangle floor{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}};
-    d.shapes.push_back(shape_of(floor));
-    d.shapes.front().material =
-        make_conductor(constant_texture(Rgb(0.8)), constant_texture(0.02), constant_texture(0.02));
-    const Scene scene(std::move(d));
+    const Scene scene = scene_of({floor}, metal(0.02));
     const SurfacePatches patches(scene);
     Rng rng = make_rng(3);
     PhotonSet photons;

@@ -4,6 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <string>
+#include <utility>
+
 namespace keyhole {
 namespace {
 
@@ -38,11 +41,11 @@ RenderResult first_look(const Scene& scene, const Settings& settings) {
     RenderResult result = render_by_method({scene, s, {}, context, {}, findings});
     result.settings = settings;
     result.stats.complete = false;
-    const double empty = empty_pixels(result) / pixels(result.picture);
-    result.stats.warnings = {fmt::format(
-        "{} was stopped before it had a picture: this is a sample a pixel by path "
-        "tracing{}",
-        settings.method->name, empty > 0 ? fmt::format(", and {:.2g} % of the pixels have none", 100 * empty) : "")};
+    std::string warning = fmt::format(
+        "{} was stopped before it had a picture: this is a sample a pixel by path tracing", settings.method->name);
+    if (const double empty = empty_pixels(result); empty > 0)
+        warning += fmt::format(", and {:.2g} % of the pixels have none", 100 * empty / pixels(result.picture));
+    result.stats.warnings = {std::move(warning)};
     return result;
 }
 

@@ -98,9 +98,12 @@ Grid difference_of(const Image& a, const Image& b) {
 }
 Grid difference_of(const TrialPictures& m) { return difference_of(m.first, m.second); }
 
+/// What is added to the square of each pixel of a picture, so that errors are relative to it in its darkest ones.
+double least_square(const Grid& picture) { return kDark * typical(picture.values) * typical(picture.values); }
+
 /// Half the squared difference is the variance of one of two. Relative to `picture`; of pixels.
 Values relative_variances(const Grid& difference, const Grid& picture) {
-    const double dark = kDark * typical(picture.values) * typical(picture.values);
+    const double dark = least_square(picture);
     Values v;
     for (std::size_t i = 0; i < difference.values.size(); ++i) {
         const double d = difference.values[i], p = picture.values[i];
@@ -188,12 +191,11 @@ double share_of_grain(const TrialPictures& part, const TrialPictures& whole) {
 double blur(const TrialPictures& photons, const TrialPictures& samples) {
     const Grid a = difference_of(photons.first, samples.first), b = difference_of(photons.second, samples.second);
     Grid picture = mean_of(photons);
-    for (std::size_t i = 0; const double v : mean_of(samples).values) {
-        picture.values[i] = (picture.values[i] + v) / 2;
-        ++i;
-    }
+    const Grid of_samples = mean_of(samples);
+    for (std::size_t i = 0; i < picture.values.size(); ++i)
+        picture.values[i] = (picture.values[i] + of_samples.values[i]) / 2;
     picture = picture.smooth();
-    const double dark = kDark * typical(picture.values) * typical(picture.values);
+    const double dark = least_square(picture);
     Grid products{picture.width, picture.height, {}};
     double excess = 0, all = 0;
     for (std::size_t i = 0; i < picture.values.size(); ++i) {
@@ -222,7 +224,7 @@ std::vector<TrialError> trial_errors(std::span<const TrialPictures> methods) {
     for (const Parts& p : parts)
         for (std::size_t i = 0; i < least.size(); ++i)
             least[i] = std::max(least[i], p.means.values[i] - kStandardErrors * p.errors.values[i]);
-    const double whole = typical(picture.values);
+    const double dark = least_square(picture);
     for (std::size_t k = 0; k < methods.size(); ++k) {
         const Grid d = difference_of(methods[k]);
         const double trimmed = methods[k].rare_samples ? kTrimmedOfRare : kTrimmed;
@@ -235,7 +237,7 @@ std::vector<TrialError> trial_errors(std::span<const TrialPictures> methods) {
         for (std::size_t i = 0; i < least.size(); ++i) {
             const double most = parts[k].means.values[i] + kStandardErrors * parts[k].errors.values[i];
             const double lost = std::max(0.0, least[i] - most), p = std::max(in_parts.values[i], least[i]);
-            if (p > 0) missing += lost * lost / (p * p + kDark * whole * whole);
+            if (p > 0) missing += lost * lost / (p * p + dark);
         }
         errors[k].missing = missing / static_cast<double>(least.size());
     }
