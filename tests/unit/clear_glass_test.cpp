@@ -252,12 +252,13 @@ TEST(ClearGlass, BringsTheSameLightWhetherEmittersAreSampledThroughItOrNot) {
     }
 }
 
-/// A sun 40 degrees wide, which shadow rays find best, and the others do. Known to less than what a pane reflects, 8 %.
+/// A wide sun that comes from above, so that the camera doesn't see it and all light is that of the floor: found by
+/// shadow rays and by others. At such angles a pane keeps a seventh of it back, which is more than 4 errors.
 TEST(ClearGlass, TakesItsShareOfALightOnce) {
-    const auto scene = room_behind_milk_glass(0, make_distant_emitter(Vec3(0.1f, -0.3f, 1).normalized(), Rgb(3.0), 40));
-    const BothKinds both = trace_both(*scene, 2, 400'000);
+    const auto scene = room_behind_milk_glass(0, make_distant_emitter(Vec3(0.1f, -2, 1).normalized(), Rgb(3.0), 100));
+    const BothKinds both = trace_both(*scene, 2, 1'000'000);
     EXPECT_NEAR(both.seeing.mean(), both.blind.mean(), 4 * both.error());
-    EXPECT_LT(4 * both.error(), 0.06 * both.blind.mean());
+    EXPECT_LT(4 * both.error(), 0.09 * both.blind.mean());
 }
 
 /// Adds up what whole paths bring, and asks whether they bring anything as they are.
