@@ -51,8 +51,9 @@ struct PhotonQuality {
     std::optional<double> unconfirmed; ///< share of the picture with caustics that pilot photons don't confirm
     /// Squared errors relative to the picture, on average over it.
     struct Noise {
-        double samples; ///< of a picture of one sample a pixel, from where in the pixel it lies and all that it draws
-        double records; ///< from the rays that records of the irradiance cache had at first
+        double samples;  ///< of a picture of one sample a pixel, from where in the pixel it lies and all that it draws
+        double records;  ///< from the rays that records of the irradiance cache had at first
+        double rays = 0; ///< gather rays that a sample takes, on average
     };
     std::optional<Noise> noise;
 };

@@ -75,7 +75,7 @@ struct Settings {
     std::string save_map, load_map; ///< files of photons; empty: none. Not in the table: they belong to a run
     std::int64_t nearest = 60;
     std::int64_t light_samples = 4;
-    std::int64_t gather_rays = 4;
+    AutoNumber gather_rays;
     MisHeuristic mis = MisHeuristic::power;
     PathBuilderKind builder = PathBuilderKind::bidirectional;
     Failures failures = Failures::reject;
@@ -135,7 +135,7 @@ template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
           "rays per pixel for these, and for the alpha of a transparent film");
     visit("nearest", s.nearest, I{1}, I{10'000}, "photons in a radiance estimate");
     visit("light_samples", s.light_samples, I{1}, I{1} << 16, "samples of emitters per sample of a pixel");
-    visit("gather_rays", s.gather_rays, I{1}, I{1} << 16, "gather rays per sample of a pixel");
+    visit("gather_rays", s.gather_rays, 1.0, 65536.0, "gather rays per sample of a pixel; auto: by trial");
     visit("mis", s.mis, "how the techniques of bidirectional paths share them");
     visit("builder", s.builder, "how pssmlt makes paths");
     visit("failures", s.failures, "what pssmlt, mmlt and rjmlt do with proposals that make no path; exclude is biased");

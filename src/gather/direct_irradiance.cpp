@@ -1,6 +1,5 @@
 #include "gather/direct_irradiance.h"
 
-#include "gather/direct_light.h"
 #include "scene/bsdfs/diffuse.h"
 
 #include <limits>
@@ -39,23 +38,23 @@ class MeanDistance {
 } // namespace
 
 DirectIrradiance direct_irradiance(const Scene& scene, const SurfacePoint& point, const Bsdf& bsdf, const Vec3& n,
-                                   int samples, SampleSource& source) {
+                                   const LightSamples& samples, SampleSource& source) {
     const Vertex v = white_vertex(point, n);
     MeanDistance distance(point.p);
     const auto weight = [&](const SurfacePoint& emitter) { return bsdf.diffuse_weight(direction(point, emitter)); };
     Rgb sum(0.0);
-    for (int i = 0; i < samples; ++i) {
+    for (int i = 0; i < samples.number; ++i) {
         if (const auto light = sample_direct_light(scene, v, n, source)) {
             distance.add(light->x0.point, light->value);
-            const Rgb clear = straight_transmittance(scene, point, light->x0.point);
+            const Rgb clear = straight_transmittance(scene, point, light->x0.point, samples.most_faces);
             sum += clear * light->value * weight(light->x0.point);
         }
-        sample_emission(scene, v, n, source, [&](const SurfacePoint& emitter, const Rgb& value) {
+        sample_emission(scene, v, n, samples.most_faces, source, [&](const SurfacePoint& emitter, const Rgb& value) {
             distance.add(emitter, value);
             sum += value * weight(emitter);
         });
     }
-    return {sum * (kPi / samples), static_cast<float>(kReach * distance.get())};
+    return {sum * (kPi / samples.number), static_cast<float>(kReach * distance.get())};
 }
 
 } // namespace keyhole

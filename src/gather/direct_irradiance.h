@@ -1,7 +1,7 @@
 // Direct light at the precomputation points of an irradiance map.
 #pragma once
 
-#include "sampling/paths/walk.h"
+#include "gather/direct_light.h"
 
 namespace keyhole {
 
@@ -14,6 +14,6 @@ struct DirectIrradiance {
 /// Directions have the weights that the diffuse part of `bsdf` gives them (Bsdf::diffuse_weight()).
 /// Towards an emitter it changes with the distance, squared, and so it may be used within a quarter of that only.
 DirectIrradiance direct_irradiance(const Scene& scene, const SurfacePoint& point, const Bsdf& bsdf, const Vec3& n,
-                                   int samples, SampleSource& source);
+                                   const LightSamples& samples, SampleSource& source);
 
 } // namespace keyhole

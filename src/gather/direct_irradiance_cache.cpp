@@ -39,11 +39,11 @@ std::optional<SurfacePoint> surface_at(const Scene& scene, const Photon& place) 
 
 } // namespace
 
-DirectIrradianceCache::DirectIrradianceCache(const Scene& scene, std::span<const Photon> places, std::uint64_t seed,
-                                             const RunContext& context)
+DirectIrradianceCache::DirectIrradianceCache(const Scene& scene, std::span<const Photon> places, int most_faces,
+                                             std::uint64_t seed, const RunContext& context)
     : places_(places), entries_(places.size()) {
-    const auto samples =
-        static_cast<int>(std::clamp(kSamplesForEmitter * scene.emitters().size(), std::size_t{1}, kMostSamples));
+    const std::size_t number = std::clamp(kSamplesForEmitter * scene.emitters().size(), std::size_t{1}, kMostSamples);
+    const LightSamples samples{static_cast<int>(number), most_faces};
     const Range own = own_part(static_cast<std::int64_t>(places.size()), context);
     context.begin("direct irradiance", static_cast<std::uint64_t>(own.size()), "points");
     shared_blocks(entries_, context, [&](std::int64_t /*block*/, std::int64_t i) {
@@ -52,7 +52,7 @@ DirectIrradianceCache::DirectIrradianceCache(const Scene& scene, std::span<const
     context.end();
 }
 
-DirectIrradianceCache::Entry DirectIrradianceCache::at(const Scene& scene, std::uint32_t i, int samples,
+DirectIrradianceCache::Entry DirectIrradianceCache::at(const Scene& scene, std::uint32_t i, const LightSamples& samples,
                                                        std::uint64_t seed) const {
     const Photon& place = places_[i];
     const Vec3 n = place.normal().decode();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/progress.h"
+#include "gather/direct_light.h"
 #include "photonmap/photon.h"
 #include "scene/scene.h"
 
@@ -15,8 +16,9 @@ namespace keyhole {
 /// Direct light at the places of an irradiance map. Immutable and thread-safe once built.
 class DirectIrradianceCache {
   public:
-    /// `places` are those of the irradiance map, and must outlive this.
-    DirectIrradianceCache(const Scene& scene, std::span<const Photon> places, std::uint64_t seed,
+    /// `places` are those of the irradiance map, and must outlive this. Of clear glass on the way to emitters at most
+    /// `most_faces` are looked through.
+    DirectIrradianceCache(const Scene& scene, std::span<const Photon> places, int most_faces, std::uint64_t seed,
                           const RunContext& context);
 
     /// Irradiance that emitters bring to `position`, near place i [W/m^2]; none where it may change too fast for
@@ -32,7 +34,7 @@ class DirectIrradianceCache {
         SharedExponentRgb direct;
         float reach = 0; ///< [m]
     };
-    Entry at(const Scene& scene, std::uint32_t i, int samples, std::uint64_t seed) const;
+    Entry at(const Scene& scene, std::uint32_t i, const LightSamples& samples, std::uint64_t seed) const;
 
     std::span<const Photon> places_;
     std::vector<Entry> entries_;

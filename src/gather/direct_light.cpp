@@ -4,15 +4,16 @@
 
 namespace keyhole {
 
-Rgb next_event(const Scene& scene, const Vertex& v, const Vec3& back, int samples, SampleSource& source) {
+Rgb next_event(const Scene& scene, const Vertex& v, const Vec3& back, const LightSamples& samples,
+               SampleSource& source) {
     SharedNumbers numbers(source);
     Rgb sum(0.0);
-    for (int i = 0; i < samples; ++i) {
+    for (int i = 0; i < samples.number; ++i) {
         numbers.begin(static_cast<std::uint32_t>(i));
         const auto light = sample_direct_light(scene, v, back, numbers);
-        if (light) sum += light->value * straight_transmittance(scene, v.point, light->x0.point);
+        if (light) sum += light->value * straight_transmittance(scene, v.point, light->x0.point, samples.most_faces);
     }
-    return sum / samples;
+    return sum / samples.number;
 }
 
 std::optional<PartContinuation> continue_by_part(const Vertex& v, const Bsdf& part, const Vec3& back,
@@ -26,9 +27,11 @@ std::optional<PartContinuation> continue_by_part(const Vertex& v, const Bsdf& pa
                             whole.value * (cosine / whole.pdf_to_light), whole.pdf_to_light, s->pdf};
 }
 
-Rgb direct_light(const Scene& scene, const Vertex& v, const Vec3& back, int samples, SampleSource& source) {
+Rgb direct_light(const Scene& scene, const Vertex& v, const Vec3& back, const LightSamples& samples,
+                 SampleSource& source) {
     Rgb sum = next_event(scene, v, back, samples, source);
-    sample_emission(scene, v, back, source, [&](const SurfacePoint& /*emitter*/, const Rgb& value) { sum += value; });
+    sample_emission(scene, v, back, samples.most_faces, source,
+                    [&](const SurfacePoint& /*emitter*/, const Rgb& value) { sum += value; });
     return sum;
 }
 

@@ -7,10 +7,17 @@
 
 namespace keyhole {
 
-/// Direct light that `v` reflects towards `back` [W/(m^2 sr)], by next-event estimation: the mean of `samples`
-/// stratified samples of emitters, MIS-weighted against a direction of the BSDF, which the caller traces: by
-/// sample_emission(), or as a gather ray.
-Rgb next_event(const Scene& scene, const Vertex& v, const Vec3& back, int samples, SampleSource& source);
+/// Samples of emitters.
+struct LightSamples {
+    int number;
+    int most_faces = kMostFaces; ///< of clear glass that may stand in between
+};
+
+/// Direct light that `v` reflects towards `back` [W/(m^2 sr)], by next-event estimation: the mean of stratified samples
+/// of emitters, MIS-weighted against a direction of the BSDF, which the caller traces: by sample_emission(), or as a
+/// gather ray.
+Rgb next_event(const Scene& scene, const Vertex& v, const Vec3& back, const LightSamples& samples,
+               SampleSource& source);
 
 /// A direction drawn from a BSDF.
 struct DrawnDirection {
@@ -20,20 +27,22 @@ struct DrawnDirection {
 };
 /// What lies in that direction of emitters: as sample_emission().
 template <class Visit>
-void visit_emission(const Scene& scene, const Vertex& v, const DrawnDirection& drawn, const Visit& visit) {
-    const auto view = look_straight(scene, v.point, drawn.w);
+void visit_emission(const Scene& scene, const Vertex& v, const DrawnDirection& drawn, int most_faces,
+                    const Visit& visit) {
+    const auto view = look_straight(scene, v.point, drawn.w, most_faces);
     if (!view || !view->end.point.is_emitter()) return;
     visit(view->end.point,
           drawn.weight * view->transmittance * emission_with_mis(scene, v, view->end, drawn.w, drawn.pdf));
 }
 
 /// What a direction drawn from the BSDF meets of emitters, weighted against next_event(): `visit(const SurfacePoint&
-/// emitter, const Rgb& value)` if it carries anything.
+/// emitter, const Rgb& value)` if it carries anything, through at most `most_faces` of clear glass.
 template <class Visit>
-void sample_emission(const Scene& scene, const Vertex& v, const Vec3& back, SampleSource& source, const Visit& visit) {
+void sample_emission(const Scene& scene, const Vertex& v, const Vec3& back, int most_faces, SampleSource& source,
+                     const Visit& visit) {
     const auto next = continue_walk(v, back, From::eye, source);
     if (!next || is_specular(next->event)) return;
-    visit_emission(scene, v, {next->w, next->weight, next->pdf}, visit);
+    visit_emission(scene, v, {next->w, next->weight, next->pdf}, most_faces, visit);
 }
 
 /// A direction drawn from one part of a BSDF (Bsdf::glossy_part(), or a diffuse one), weighed two ways.
@@ -51,15 +60,16 @@ std::optional<PartContinuation> continue_by_part(const Vertex& v, const Bsdf& pa
 
 /// sample_emission() where directions are drawn from the diffuse part alone.
 template <class Visit>
-void sample_emission_by_diffuse_part(const Scene& scene, const Vertex& v, const Vec3& back, SampleSource& source,
-                                     const Visit& visit) {
+void sample_emission_by_diffuse_part(const Scene& scene, const Vertex& v, const Vec3& back, int most_faces,
+                                     SampleSource& source, const Visit& visit) {
     const Bsdf white(Frame(v.bsdf.shading_normal()), DiffuseBsdf{Rgb(1.0)});
     if (const auto next = continue_by_part(v, white, back, source))
-        visit_emission(scene, v, {next->w, next->whole, next->pdf}, visit);
+        visit_emission(scene, v, {next->w, next->whole, next->pdf}, most_faces, visit);
 }
 
 /// Direct light that `v` reflects towards `back` [W/(m^2 sr)], by both techniques, weighted against each other: the
-/// mean of `samples` stratified samples of emitters (next_event()), and one sample of the BSDF (sample_emission()).
-Rgb direct_light(const Scene& scene, const Vertex& v, const Vec3& back, int samples, SampleSource& source);
+/// mean of stratified samples of emitters (next_event()), and one sample of the BSDF (sample_emission()).
+Rgb direct_light(const Scene& scene, const Vertex& v, const Vec3& back, const LightSamples& samples,
+                 SampleSource& source);
 
 } // namespace keyhole

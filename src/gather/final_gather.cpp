@@ -29,7 +29,7 @@ FinalGather::Doubts FinalGather::doubt(const Vec2& image, bool confirm, SampleSo
     Sample out;
     out.confirm = confirm;
     draw(image, source, out);
-    return {luminance(out.direct + out.indirect + out.caustic), out.unconfirmed, out.of_records};
+    return {luminance(out.direct + out.indirect + out.caustic), out.unconfirmed, out.of_records, out.rays};
 }
 
 struct FinalGather::EyeWalk : SpecularWalkHooks {
@@ -96,9 +96,10 @@ void FinalGather::shade(const Vertex& v, const Vec3& back, const Rgb& throughput
     else if (v.bsdf.traits().glossy)
         light += gather_glossy(v, back, cached->radiance, scatterings, source);
     else
-        light.direct = direct_light(scene_, v, back, samples_.light, source);
+        light.direct = direct_light(scene_, v, back, light_samples(scatterings), source);
     out.direct += throughput * light.direct;
     out.indirect += throughput * light.indirect;
+    out.rays += light.rays;
     const Rgb caustic =
         throughput * rays_.caustic(v, back, luminance(light.direct + light.indirect), scatterings, source);
     out.caustic += caustic;
@@ -123,14 +124,16 @@ std::optional<FinalGather::Cached> FinalGather::ask_cache(const Vertex& v, const
 
 FinalGather::Light FinalGather::gather_all(const Vertex& v, const Vec3& back, int scatterings,
                                            SampleSource& source) const {
-    Light sum{next_event(scene_, v, back, samples_.light, source), Rgb(0.0)};
-    const AimedRay aimed(spots_, v, v.bsdf, back, luminance(sum.direct), samples_.rays);
-    for (int i = 0; i < samples_.rays; ++i) {
+    Light sum{next_event(scene_, v, back, light_samples(scatterings), source), Rgb(0.0)};
+    const int rays = std::max(1, static_cast<int>(std::lround(samples_.rays)));
+    const AimedRay aimed(spots_, v, v.bsdf, back, luminance(sum.direct), rays);
+    sum.rays = rays;
+    for (int i = 0; i < rays; ++i) {
         const auto first = continue_walk(v, back, From::eye, source);
         if (!first || is_specular(first->event)) continue;
         const auto arrival = rays_.trace(v, first->w, first->pdf, scatterings, source);
         sum.indirect += first->weight * arrival.indirect * (first->pdf / aimed.density(first->w, first->pdf));
-        sum.direct += first->weight * arrival.emitted / samples_.rays;
+        sum.direct += first->weight * arrival.emitted / rays;
     }
     sum.indirect += gather_aimed(aimed, v, v.bsdf, back, scatterings, source);
     return sum;
@@ -138,20 +141,23 @@ FinalGather::Light FinalGather::gather_all(const Vertex& v, const Vec3& back, in
 
 FinalGather::Light FinalGather::gather_glossy(const Vertex& v, const Vec3& back, const Rgb& besides, int scatterings,
                                               SampleSource& source) const {
-    Light sum{next_event(scene_, v, back, samples_.light, source), Rgb(0.0)};
+    Light sum{next_event(scene_, v, back, light_samples(scatterings), source), Rgb(0.0)};
     const double glossy = v.bsdf.glossy_probability(back);
-    sample_emission_by_diffuse_part(scene_, v, back, source, [&](const SurfacePoint& /*emitter*/, const Rgb& value) {
-        sum.direct += value * (1 - glossy);
-    });
+    sample_emission_by_diffuse_part(
+        scene_, v, back, rays_.faces_left(scatterings), source,
+        [&](const SurfacePoint& /*emitter*/, const Rgb& value) { sum.direct += value * (1 - glossy); });
     const Bsdf lobe = v.bsdf.glossy_part();
-    const int rays = std::max(1, static_cast<int>(std::lround(samples_.rays * glossy)));
+    // A coat of a few percent is worth a ray now and then.
+    const double rays = samples_.rays * glossy;
+    const int drawn = static_cast<int>(rays + source.take<1>()[0]);
     const AimedRay aimed(spots_, v, lobe, back, luminance(sum.direct + besides), rays);
-    for (int i = 0; i < rays; ++i) {
+    sum.rays = drawn;
+    for (int i = 0; i < drawn; ++i) {
         const auto first = continue_by_part(v, lobe, back, source);
         if (!first) continue;
         const auto arrival = rays_.trace(v, first->w, first->pdf, scatterings, source);
         sum.indirect += first->part * arrival.indirect * (first->part_pdf / aimed.density(first->w, first->part_pdf));
-        sum.direct += first->whole * arrival.emitted * (glossy / rays);
+        sum.direct += first->whole * arrival.emitted / samples_.rays;
     }
     sum.indirect += gather_aimed(aimed, v, lobe, back, scatterings, source);
     return sum;

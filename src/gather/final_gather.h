@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/pixel_sample.h"
+#include "gather/direct_light.h"
 #include "gather/gather_rays.h"
 #include "gather/irradiance_cache.h"
 #include "gather/spots/aimed_ray.h"
@@ -13,7 +14,8 @@ namespace keyhole {
 /// At each visible point.
 struct GatherSamples {
     int light; ///< of emitters
-    int rays;  ///< gather rays, where the cache doesn't serve; where it serves the diffuse part, its share of them
+    double
+        rays; ///< gather rays, where the cache doesn't serve; where it does, the glossy part has its share, on average
 };
 
 /// Thread-safe; immutable but for what it counts. All arguments by reference or pointer must outlive it.
@@ -32,6 +34,7 @@ class FinalGather {
         double all = 0;
         double unconfirmed = 0; ///< of caustics, by pilot photons (unconfirmed_share()), where they were asked
         double of_records = 0;  ///< standard error of the cached irradiance in it, by the records' first rays
+        int rays = 0;           ///< gather rays that were traced for it
     };
     /// Draws a sample and asks pilot photons about it, if `confirm`.
     Doubts doubt(const Vec2& image, bool confirm, SampleSource& source) const;
@@ -47,6 +50,7 @@ class FinalGather {
         bool confirm = false;   ///< whether to ask pilot photons
         double unconfirmed = 0; ///< luminance of caustics that they don't confirm
         double of_records = 0;  ///< standard error of the cached part of its luminance
+        int rays = 0;           ///< gather rays
     };
     /// A walk from the eye by specular events. At the first glass or coat on its way all of these are followed.
     struct EyeWalk;
@@ -64,9 +68,11 @@ class FinalGather {
 
     struct Light {
         Rgb direct, indirect; ///< caustics left out
+        int rays = 0;         ///< gather rays that found it
         Light& operator+=(const Light& o) {
             direct += o.direct;
             indirect += o.indirect;
+            rays += o.rays;
             return *this;
         }
     };
@@ -81,6 +87,8 @@ class FinalGather {
     /// What a lobe reflects of indirect light along a ray that is aimed at hot spots.
     Rgb gather_aimed(const AimedRay& aimed, const Vertex& v, const Bsdf& lobe, const Vec3& back, int scatterings,
                      SampleSource& source) const;
+
+    LightSamples light_samples(int scatterings) const { return {samples_.light, rays_.faces_left(scatterings)}; }
 
     const Scene& scene_;
     const GatherRays& rays_;

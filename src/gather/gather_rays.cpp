@@ -113,6 +113,8 @@ GatherRays::Arrival GatherRays::trace(const Vertex& from, const Vec3& w, double 
     return walk.arrival;
 }
 
+LightSamples GatherRays::at_end(const Leg& leg) const { return {1, faces_left(leg.scatterings + 1)}; }
+
 bool GatherRays::goes_on(const Leg& leg, const std::optional<std::uint32_t>& place, const SurfaceRegion& here) const {
     // Where the gather coverage ends, light from beyond it would be lost.
     if (leg.traced_on == kMostTracedOn || maps_.coverage != nullptr) return false;
@@ -152,7 +154,7 @@ void GatherRays::add(const Rgb& throughput, const Rgb& light, const End& end, co
 Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSource& source, End& end) const {
     if (!is_covered(maps_.coverage, v, back)) return Rgb(0.0);
     if (maps_.irradiance == nullptr || maps_.irradiance->places().empty()) {
-        const Rgb direct = direct_light(scene_, v, back, 1, source);
+        const Rgb direct = direct_light(scene_, v, back, at_end(leg), source);
         return direct + global(v, back, leg.longer());
     }
     const SurfaceRegion here{v.point.p, facing(v.point.ng, back)};
@@ -164,7 +166,7 @@ Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSou
     const bool on = goes_on(leg, place, here);
     const double share = place && !on ? maps_.irradiance->share_that_reaches(*place, leg.longer()) : 1;
     const Rgb f = v.bsdf.diffuse_reflectance(back);
-    const Rgb direct_here = direct(place, v, here, source);
+    const Rgb direct_here = direct(place, v, here, leg, source);
     Rgb sum = end.direct = f * direct_here;
     if (on)
         sum += traced_on(v, back, place, direct_here + known.irradiance, leg, source);
@@ -175,17 +177,17 @@ Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSou
     const double p = std::max(kLeastGlossy, v.bsdf.glossy_probability(back));
     if (!(source.next() < p)) return sum;
     const Vertex glossy = widened(v, v.bsdf.glossy_part());
-    sum += direct_light(scene_, glossy, back, 1, source) / p;
+    sum += direct_light(scene_, glossy, back, at_end(leg), source) / p;
     // What is traced on brings the indirect light of all parts.
     if (place && !on) sum += photons({false, leg.longer()}, *place, glossy, facing(v.point.ng, back), back, source) / p;
     return sum;
 }
 
 Rgb GatherRays::direct(const std::optional<std::uint32_t>& place, const Vertex& v, const SurfaceRegion& here,
-                       SampleSource& source) const {
+                       const Leg& leg, SampleSource& source) const {
     if (place && !is_fine(*place) && maps_.irradiance->is_near(*place, here, kInTheSameLight))
         if (const auto near = maps_.direct->direct(*place, v.point.p)) return *near;
-    return direct_irradiance(scene_, v.point, v.bsdf, here.normal, 1, source).irradiance;
+    return direct_irradiance(scene_, v.point, v.bsdf, here.normal, at_end(leg), source).irradiance;
 }
 
 Vertex GatherRays::widened(const Vertex& v, const Bsdf& part) const {
@@ -200,13 +202,13 @@ Rgb GatherRays::lobe(const Vertex& v, const Vec3& back, const std::optional<std:
     if (may_trace && !(place && maps_.lobes->by_photons(v.point.shape)))
         return lobe_traced_on(v, back, place, leg, source);
     const Vertex wide = widened(v, v.bsdf);
-    return direct_light(scene_, wide, back, 1, source) +
+    return direct_light(scene_, wide, back, at_end(leg), source) +
            photons_on_each_side({false, leg.longer()}, place, wide, back, source);
 }
 
 Rgb GatherRays::lobe_traced_on(const Vertex& v, const Vec3& back, const std::optional<std::uint32_t>& place,
                                const Leg& leg, SampleSource& source) const {
-    Rgb sum = next_event(scene_, v, back, 1, source);
+    Rgb sum = next_event(scene_, v, back, at_end(leg), source);
     if (const auto next = continue_walk(v, back, From::eye, source); next && !is_specular(next->event)) {
         const Arrival arrival = trace(v, next->w, next->pdf, {0, leg.scatterings + 1, leg.traced_on + 1}, source);
         sum += next->weight * (arrival.emitted + arrival.indirect);
@@ -241,7 +243,8 @@ std::optional<LobeNoise> GatherRays::lobe_noise(const Vertex& v, const Vec3& bac
     const Rgb first = lobe_traced_on(v, back, place, leg, source);
     const Rgb second = lobe_traced_on(v, back, place, leg, source);
     const Vertex wide = widened(v, v.bsdf);
-    const Rgb once = direct_light(scene_, wide, back, 1, source), again = direct_light(scene_, wide, back, 1, source);
+    const Rgb once = direct_light(scene_, wide, back, at_end(leg), source),
+              again = direct_light(scene_, wide, back, at_end(leg), source);
     return LobeNoise{variance(once, again) + variance_of_photons(wide, back), variance(first, second)};
 }
 

@@ -7,6 +7,7 @@
 #include "photonmap/pilot_surroundings.h"
 #include "sampling/paths/walk.h"
 
+#include <algorithm>
 #include <optional>
 
 namespace keyhole {
@@ -75,6 +76,8 @@ class GatherRays {
 
     const Scene& scene() const { return scene_; }
     int max_scatterings() const { return max_scatterings_; }
+    /// Of clear glass that may stand between emitters and the last of so many scatterings from the eye on.
+    int faces_left(int scatterings) const { return std::clamp(max_scatterings_ - scatterings, 0, kMostFaces); }
 
   private:
     /// Of light that comes on the side of `normal`.
@@ -86,6 +89,8 @@ class GatherRays {
     struct Leg;
     struct Walk;
     Arrival trace(const Vertex& from, const Vec3& w, double pdf, const Leg& start, SampleSource& source) const;
+    /// Of direct light where a leg ends.
+    LightSamples at_end(const Leg& leg) const;
     /// Whether what the estimate at the place of the middle of a region, if it has one, says of that isn't good enough
     /// for a ray from `leg.distance` away, so that it has to be traced on.
     bool goes_on(const Leg& leg, const std::optional<std::uint32_t>& place, const SurfaceRegion& here) const;
@@ -107,7 +112,7 @@ class GatherRays {
     Rgb traced_on(const Vertex& v, const Vec3& back, const std::optional<std::uint32_t>& place, const Rgb& irradiance,
                   const Leg& leg, SampleSource& source) const;
     /// Irradiance that emitters bring, weighed as the diffuse part weighs it: that of the place, if it does for `v`.
-    Rgb direct(const std::optional<std::uint32_t>& place, const Vertex& v, const SurfaceRegion& here,
+    Rgb direct(const std::optional<std::uint32_t>& place, const Vertex& v, const SurfaceRegion& here, const Leg& leg,
                SampleSource& source) const;
     /// `v` with a part of its BSDF, no narrower than LookupOptions::least_alpha.
     Vertex widened(const Vertex& v, const Bsdf& part) const;

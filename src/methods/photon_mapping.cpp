@@ -193,7 +193,7 @@ RenderResult render_photons(const RenderTask& task) {
     if (!settings.save_map.empty() && !passes.has_saved_photons())
         stats.warnings.emplace_back("no photons were saved: those of the first pass were not made here");
     sampler->finish(stats);
-    warn_of_photons(stats, work.passes());
+    warn_of_photons(stats, work.passes(), settings.max_depth);
     passes.pixels().report(stats);
     report_eye_samples(passes.pixels().luminances(), scene, stats);
     result.picture = work.finish(stats);

@@ -47,12 +47,12 @@ struct ImageOptions {
     Filter filter = Filter::bilinear;
     double scale = 1;    ///< factor on the value
     bool invert = false; ///< 1 - value, after the scale
-    int channel = -1;    ///< of three, the one that is the value; -1: their mean
+    int channel = -1;    ///< of three, the one that is the value; 3: alpha, always linear; -1: the mean of the three
     TextureMapping mapping{};
 };
 
 /// A picture, its first row at v = 1. The mean of the channels, or one of them, where T is double. A file named several
-/// times is decoded and kept once: 1 byte a channel for 8-bit files, 2 for 16-bit ones, 4 for floats, alpha left out.
+/// times is decoded and kept once: 1 byte a channel for 8-bit files, 2 for 16-bit ones, 4 for floats, alpha apart.
 /// @throws InputError for a file that can't be read.
 template <class T>
 std::shared_ptr<const Texture<T>> image_texture(const std::string& path, const ImageOptions& options);

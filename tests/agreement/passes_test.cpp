@@ -15,7 +15,7 @@ class Passes : public testing::TestWithParam<const char*> {
         Settings s;
         s.method = &method_named(GetParam());
         s.spp = 1;
-        s.gather_rays = 1;
+        s.gather_rays.value = 1;
         s.irradiance_cache = false; // interpolation has an error of its own
         s.photon_memory = 256 * 1024;
         s.light_paths = 10'000;

@@ -40,7 +40,7 @@ Settings settings(const std::string& method) {
     Settings s;
     s.method = &method_named(method);
     s.spp = s.method->samples_pixels ? 4 : 1;
-    s.gather_rays = 1;
+    s.gather_rays.value = 1;
     s.mutations = method == "mlt" ? 12'000 : method == "pssmlt" ? 20'000 : method == "mps" ? 140'000 : 40'000;
     s.chains = 100;
     s.light_paths = 20'000;

@@ -77,7 +77,7 @@ std::vector<std::string> warnings(int spots, std::int64_t passes) {
     RenderStats stats;
     stats.photons_caustic = map.main_photons().photons().size();
     report_false_spots(gather, 1, stats);
-    warn_of_photons(stats, passes);
+    warn_of_photons(stats, passes, 24);
     return stats.warnings;
 }
 

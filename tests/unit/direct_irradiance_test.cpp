@@ -23,7 +23,7 @@ DirectIrradiance light_of_the_middle(const Scene& scene, int samples) {
     above.site = Site::point;
     const auto floor = scene.trace(above, {0, -1, 0});
     Rng rng(1, StreamPurpose::test, 0);
-    return direct_irradiance(scene, *floor, floor->material->bsdf(*floor), {0, 1, 0}, samples, rng);
+    return direct_irradiance(scene, *floor, floor->material->bsdf(*floor), {0, 1, 0}, {samples}, rng);
 }
 
 TEST(DirectIrradiance, IsTheIrradianceUnderARectangle) {

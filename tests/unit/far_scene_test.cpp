@@ -56,7 +56,7 @@ TEST(ImmenseGround, LendsNoLightToWhatLiesBelowATable) {
         places.emplace_back(Vec3(x, 0.1f, 0.3f), Vec3(0, 1, 0), Vec3(0, 1, 0), Rgb(1.0));
         places.emplace_back(Vec3(x, 1.1f, 0.3f), Vec3(0, -1, 0), Vec3(0, -1, 0), Rgb(1.0));
     }
-    const DirectIrradianceCache cache(*scene, places, 1, {});
+    const DirectIrradianceCache cache(*scene, places, kMostFaces, 1, {});
     for (std::uint32_t i = 0; i < places.size(); ++i) {
         const auto direct = cache.direct(i, places[i].position());
         ASSERT_TRUE(direct) << "its surface was not found";

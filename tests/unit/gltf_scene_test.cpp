@@ -157,6 +157,32 @@ TEST_F(GltfScene, OpaqueUnlessItSaysSo) {
     EXPECT_EQ(scene.description.shapes.at(0).emission, nullptr);
 }
 
+/// Two pixels, red with alpha 1 and green with alpha 0.2.
+constexpr const char* kPngWithAlpha =
+    "data:image/png;base64,"
+    "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAYAAAD0In+KAAAAD0lEQVR42mP4z8DwHwiNARAsAzG+Ux4kAAAAAElFTk"
+    "SuQmCC";
+
+TEST_F(GltfScene, OpacityIsTheAlphaOfTextures) {
+    const auto alpha_at = [&](const std::string& mode, float u) -> double {
+        const LoadedScene scene = read(R"("scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+          "samplers": [{"magFilter": 9728}], "textures": [{"source": 0, "sampler": 0}],
+          "images": [{"uri": ")" + std::string(kPngWithAlpha) +
+                                       R"("}], "materials": [{"alphaMode": ")" + mode +
+                                       R"(", "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.5],
+          "baseColorTexture": {"index": 0}}}])");
+        const FloatTexture alpha = scene.description.shapes.at(0).alpha;
+        SurfacePoint point;
+        point.uv = {u, 0.5f};
+        return alpha != nullptr ? alpha->value(point) : 1;
+    };
+    EXPECT_NEAR(alpha_at("BLEND", 0.25f), 0.5, 1e-6);
+    EXPECT_NEAR(alpha_at("BLEND", 0.75f), 0.1, 1e-6);
+    EXPECT_EQ(alpha_at("MASK", 0.25f), 1);
+    EXPECT_EQ(alpha_at("MASK", 0.75f), 0);
+    EXPECT_EQ(alpha_at("OPAQUE", 0.75f), 1);
+}
+
 TEST_F(GltfScene, BrokenFilesAreErrors) {
     const std::string start = R"("scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0)";
     EXPECT_THAT(error_of(start + R"(, "extensions": {"KHR_lights_punctual": {"light": 3}}}], "materials": [{}])"),

@@ -49,9 +49,9 @@ TEST(ImageFiles, TgaIsReadAsOpenImageIoDoes) {
         for (const auto& [kind, bits] : {std::pair(2, 24), std::pair(2, 32), std::pair(3, 8)}) {
             const int alpha = bits == 32 ? 8 : 0, pixel = bits / 8;
             const std::string plain = d.write("a.tga", tga_header(kind, bits, origin | alpha) + counting(15 * pixel));
-            expect_same(read_tga_image(plain), read_other_image(plain));
+            expect_same(read_tga_image(plain, ImagePart::colors), read_other_image(plain));
             const std::string runs = d.write("b.tga", tga_header(kind + 8, bits, origin | alpha) + packed(pixel));
-            expect_same(read_tga_image(runs), read_other_image(runs));
+            expect_same(read_tga_image(runs, ImagePart::colors), read_other_image(runs));
         }
     }
 }
@@ -60,7 +60,7 @@ TEST(ImageFiles, TruncatedTgaIsAnError) {
     const ScratchDirectory d;
     for (const std::string& whole : {tga_header(2, 24, 0) + counting(45), tga_header(10, 24, 0) + packed(3)})
         for (std::size_t n = 0; n < whole.size(); ++n)
-            EXPECT_THROW(read_tga_image(d.write("cut.tga", whole.substr(0, n))), InputError) << n;
+            EXPECT_THROW(read_tga_image(d.write("cut.tga", whole.substr(0, n)), ImagePart::colors), InputError) << n;
 }
 
 TEST(ImageFiles, JpegIsReadAsOpenImageIoDoes) {

@@ -13,7 +13,7 @@ class MappedGather {
           irradiance_(global_.pilots(), global_.main_photons(),
                       {.k = options.nearest, .max_radius = options.max_radius, .patches = &patches, .scene = &scene},
                       {}),
-          direct_(scene, irradiance_.places(), {}, {}) {}
+          direct_(scene, irradiance_.places(), kMostFaces, {}, {}) {}
 
     GatherRays rays(const LobeTechniques* lobes = nullptr, const HotSpots* spots = nullptr) const {
         return {scene_,

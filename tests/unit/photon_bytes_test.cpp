@@ -40,7 +40,7 @@ TEST_P(PhotonBytes, AreAtMost32WithIndexIrradianceAndDirectLight) {
     // Few photons in an estimate: what they cost is time.
     const IrradianceMap irradiance(global.pilots(), global.main_photons(),
                                    {.k = 4, .max_radius = 0.02f, .patches = &patches, .scene = scene.get()}, {});
-    const DirectIrradianceCache direct(*scene, irradiance.places(), {}, {});
+    const DirectIrradianceCache direct(*scene, irradiance.places(), kMostFaces, {}, {});
     const double per_photon = (allocated() - before) / static_cast<double>(n);
     RecordProperty("bytes_per_photon_with_index", std::to_string(with_index));
     RecordProperty("bytes_per_photon", std::to_string(per_photon));

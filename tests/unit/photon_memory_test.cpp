@@ -12,7 +12,7 @@ Settings settings_for(const char* method, std::int64_t memory) {
     s.method = &method_named(method);
     s.photon_memory = memory;
     s.spp = 1;
-    s.gather_rays = 1;
+    s.gather_rays.value = 1;
     s.brightness_samples = 20'000;
     s.mutations = 60'000;
     s.light_paths = 60'000;

@@ -19,7 +19,7 @@ Settings small_settings(const std::string& method) {
     Settings s;
     s.method = &method_named(method);
     s.spp = 1;
-    s.gather_rays = 1;
+    s.gather_rays.value = 1;
     s.brightness_samples = 20'000;
     s.mutations = 20'000;
     s.light_paths = 20'000;

@@ -205,6 +205,18 @@ TEST_F(SceneYaml, GroupsPlaceTheirShapesInsideTheirTransform) {
     EXPECT_STREQ(shapes[2].material->kind(), "mirror");
 }
 
+/// Each twice in the one before it: 2^40 of them.
+TEST_F(SceneYaml, GroupsThatHoldNothingAreReadOnce) {
+    std::string groups = "groups:\n  g40: []\n";
+    for (int i = 0; i < 40; ++i) {
+        const std::string next = "{type: instance, group: g" + std::to_string(i + 1) + "}";
+        groups += "  g" + std::to_string(i) + ": [" + next + ", " + next + "]\n";
+    }
+    const auto scene = load(kCamera + kMaterials + groups +
+                            "shapes: [{type: sphere, material: white}, {type: instance, group: g0}]\n");
+    EXPECT_EQ(scene.description.shapes.size(), 1u);
+}
+
 TEST_F(SceneYaml, IncludesConcatenateAndAreOverruled) {
     std::filesystem::create_directory(directory.path("parts"));
     directory.write("parts/room.yaml", "include: common.yaml\nfilm: {resolution: [10, 20]}\n"
@@ -252,6 +264,14 @@ TEST_F(SceneYaml, ObjQuadIsTwoFlatTriangles) {
     const auto smooth = load_mesh("{type: mesh, material: white, smooth: true, file: " + kData + "quad.obj}");
     ASSERT_EQ(smooth.normals.size(), smooth.positions.size());
     expect_near(smooth.normals[0], {0, 0, 1});
+}
+
+TEST_F(SceneYaml, ObjNumbersMayBeginWithTheirPoint) {
+    directory.write("points.obj", "v 0 0 0\nv 1 0 0\nv .5 1 -.25\nv 0\t.125 .0\nf 1 2 3\nf 1 2 4\n");
+    const auto mesh = load_mesh("{type: mesh, material: white, file: points.obj}");
+    ASSERT_EQ(mesh.triangles.size(), 2u);
+    expect_near(mesh.positions.at(mesh.triangles[0][2]), {0.5f, 1, -0.25f});
+    expect_near(mesh.positions.at(mesh.triangles[1][2]), {0, 0.125f, 0});
 }
 
 TEST_F(SceneYaml, PlyNormalsAreKeptUnlessNotSmooth) {

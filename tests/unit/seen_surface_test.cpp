@@ -32,7 +32,7 @@ Picture picture_by(Scene& scene, const char* method) {
     s.importons = 2'000;
     s.light_paths = 4'000;
     s.photons = 2'000;
-    s.gather_rays = 1;
+    s.gather_rays.value = 1;
     s.irradiance_cache = false;
     s.chains = 10;
     s.mutations = 1'000;

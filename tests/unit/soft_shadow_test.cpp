@@ -40,7 +40,7 @@ class UnderALamp {
         RunningStats stats;
         for (std::uint64_t i = 0; i < 20'000; ++i) {
             Rng rng(1, StreamPurpose::test, i);
-            stats.add(estimate(*scene_, floor_, Vec3(0, 1, 0), samples, rng).x);
+            stats.add(estimate(*scene_, floor_, Vec3(0, 1, 0), {samples}, rng).x);
         }
         return stats;
     }

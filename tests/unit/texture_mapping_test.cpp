@@ -120,6 +120,11 @@ TEST(DirectionMix, GoesByTheCosineOfTheNormal) {
     EXPECT_NEAR(pbrt_value("Rotate 90 1 0 0", pbrt, at({0, 0, 0}, {0, 1, 0})), 0.2, 1e-6);
 }
 
+TEST(Noise, BeyondAllNumbersStaysAColour) {
+    const std::string wild = "{type: marble, octaves: 64, roughness: 1e12, variation: 1e12, scale: 1e12}";
+    EXPECT_GE(yaml_value(wild, at({3.14f, 42.3f, 7.6f})), 0);
+}
+
 TEST(Noise, IsThatOfTheFormula) {
     // Half the noise and a half, so that it is a reflectance. What is expected was found by a program of its own.
     const auto sum = [](const std::string& texture, const Vec3& p) {

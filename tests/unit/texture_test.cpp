@@ -33,6 +33,33 @@ std::string small_pfm() {
 /// A binary PPM, 8 bits a channel: what OpenImageIO reads without any compression.
 std::string small_ppm() { return std::string("P6\n2 1\n255\n") + std::string("\x00\x80\xff\xff\x40\x00", 6); }
 
+/// Each has the one before it twice: to ask them all would take 2^60 questions.
+TEST(Texture_OfConstants, IsAConstantHoweverDeepItIsNested) {
+    FloatTexture t = constant_texture(0.5);
+    for (int i = 0; i < 60; ++i) t = scale_texture<double>(mix_texture<double>(t, t, t), constant_texture(1.0));
+    EXPECT_TRUE(t->is_constant());
+    EXPECT_NEAR(t->value(at(0.1f, 0.2f)), 0.5, 1e-12);
+    MaterialPtr m = make_diffuse(Rgb(0.5));
+    for (int i = 0; i < 60; ++i) m = make_mix(m, m, constant_texture(0.5));
+    EXPECT_TRUE(m->traits().diffuse);
+    EXPECT_EQ(m->surface().alpha, nullptr);
+}
+
+TEST(ImageTexture_Alpha, IsAChannelOfItsOwnAndOneWhereThereIsNone) {
+    const ScratchDirectory scratch;
+    // A header, then one pixel: blue, green, red, alpha.
+    std::string tga(18, '\0');
+    tga[2] = 2, tga[12] = 1, tga[14] = 1, tga[16] = 32, tga[17] = 8;
+    tga += "\x10\x20\x40\x33";
+    const std::string file = scratch.write("a.tga", tga);
+    EXPECT_NEAR(image_texture<double>(file, {.channel = 3})->value(at(0.5f, 0.5f)), 0.2, 1e-6);
+    EXPECT_NEAR(image_texture<double>(file, {.encoding = Encoding::linear, .channel = 0})->value(at(0.5f, 0.5f)),
+                64 / 255.0, 1e-6);
+    const FloatTexture none = image_texture<double>(scratch.write("b.pfm", small_pfm()), {.channel = 3});
+    EXPECT_TRUE(none->is_constant());
+    EXPECT_EQ(none->value(at(0.5f, 0.5f)), 1);
+}
+
 TEST(ImageTexture_Rows, RunFromTheTop) {
     const ScratchDirectory scratch;
     const auto t = image_texture<double>(scratch.write("a.pfm", small_pfm()), {.filter = Filter::nearest});

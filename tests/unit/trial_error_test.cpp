@@ -162,6 +162,10 @@ TEST(TrialErrors, OfBlackPicturesAreThatEverythingIsMissing) {
     EXPECT_GT(e[0].missing, 0.5);
     EXPECT_TRUE(std::isfinite(e[0].grain + e[0].blotches));
     EXPECT_EQ(e[1].missing, 0);
+    // Nor does it help that nobody else is sure.
+    const std::vector<TrialPictures> unsure{methods[0], halves(0, 4, 1, 6)};
+    EXPECT_GT(trial_errors(unsure)[0].missing, 0.5);
+    EXPECT_EQ(trial_errors(unsure)[1].missing, 0);
     const std::vector<TrialError> alone = trial_errors(std::span(methods).first(1));
     EXPECT_EQ(alone[0].grain + alone[0].blotches + alone[0].missing, 0);
 }

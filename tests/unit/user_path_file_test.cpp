@@ -171,6 +171,35 @@ TEST(UserPathFile, DefaultsReachEveryPathAndItsOwnWordsWin) {
     EXPECT_EQ(file.paths[1].points.at(2).p, Imath::V3d(-1, 1, 0.5));
 }
 
+TEST(UserPathFile, WhatIsWrittenOfStrangeNamesAndOpeningsIsReadAgain) {
+    const ScratchDirectory scratch;
+    const std::string through = "through: {corner: [0, 0, 0], u: [1, 0, 0], v: [0, 1, 0]}";
+    const std::string bounces = "points: [[0, 1.95, 0], {bounces: 1, " + through + "}, [1, 1, 1]]";
+    const UserPathFile out = load_user_paths(scratch.write(
+        "p.yaml", "paths:\n"
+                  "  - {name: \"a\\bb\\n---\\n'c\\x7f\\\\\", " +
+                      kGood +
+                      "}\n"
+                      "  - {name: \"a\\nb\", " +
+                      kGood + "}\n  - {name: a b, " + kGood +
+                      "}\n"
+                      "  - {name: flat, points: [[0, 0, 0], {through: {corner: [0, 0, 0], u: [1.00000001, 1, 0], "
+                      "v: [1, 1.00000001, 0]}}, [1, 0, 0]]}\n"
+                      // Two entries that look like two numbers of bounces of one.
+                      "  - {name: \"x, 1 bounces\", weight: 2, " +
+                      bounces +
+                      "}\n"
+                      "  - {name: \"x, 2 bounces\", weight: 3, points: [[0, 1.95, 0], {bounces: 2, " +
+                      through + "}, [2, 1, 1]]}\n"));
+    const UserPathFile in = load_user_paths(scratch.write("q.yaml", user_paths_text(out, "again")));
+    ASSERT_EQ(in.paths.size(), out.paths.size());
+    for (std::size_t i = 0; i < in.paths.size(); ++i) {
+        EXPECT_EQ(in.paths[i].name, out.paths[i].name);
+        EXPECT_EQ(in.paths[i].weight, out.paths[i].weight);
+        EXPECT_EQ(in.paths[i].points.back().p, out.paths[i].points.back().p);
+    }
+}
+
 TEST(UserPathFile, WhatIsWrittenIsReadAgain) {
     const ScratchDirectory scratch;
     UserPathFile out{{test::user_path("a: \"b\"", {{0, 1.95f, 0}, {0.5f, 0, 0.5f}}, 0.1),

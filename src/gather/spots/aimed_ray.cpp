@@ -13,7 +13,8 @@ constexpr double kWorthARay = 0.25;
 
 } // namespace
 
-AimedRay::AimedRay(const HotSpots* spots, const Vertex& v, const Bsdf& lobe, const Vec3& back, double besides, int rays)
+AimedRay::AimedRay(const HotSpots* spots, const Vertex& v, const Bsdf& lobe, const Vec3& back, double besides,
+                   double rays)
     : rays_(rays) {
     if (spots == nullptr || spots->size() == 0) return;
     cones_ = spots->cones_from(v.point.p, cache_normal(v, back));

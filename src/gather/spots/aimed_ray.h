@@ -16,8 +16,8 @@ class AimedRay {
     /// @param spots null: there are none
     /// @param lobe of the BSDF at `v`, or all of that
     /// @param besides luminance that leaves `v` towards `back` besides what gather rays bring [W/(m^2 sr)]
-    /// @param rays that are drawn from the lobe
-    AimedRay(const HotSpots* spots, const Vertex& v, const Bsdf& lobe, const Vec3& back, double besides, int rays);
+    /// @param rays that are drawn from the lobe, on average
+    AimedRay(const HotSpots* spots, const Vertex& v, const Bsdf& lobe, const Vec3& back, double besides, double rays);
 
     /// A direction; none where no ray is worth its time.
     std::optional<Vec3> sample(SampleSource& source) const;
@@ -26,7 +26,7 @@ class AimedRay {
     double density(const Vec3& w, double pdf) const;
 
   private:
-    int rays_;
+    double rays_;
     std::vector<SpotCone> cones_;
     std::vector<double> chances_; // with which one is drawn in each cone
 };

@@ -115,18 +115,26 @@ double relative_variance(const Grid& difference, const Grid& picture, double tri
     return mean(without_largest(relative_variances(difference, picture), trimmed));
 }
 
-/// The mean of all, each weighted by the reciprocal of its variance relative to itself. One that hardly finds anything
-/// where others see light agrees with itself as well: it has no say.
-Grid common_picture(std::span<const TrialPictures> methods) {
+/// Which of the methods find the light of most of the picture. One that hardly finds anything where others see light
+/// agrees with itself as well.
+std::vector<bool> finds_light(std::span<const TrialPictures> methods) {
     Values brightness;
     for (const TrialPictures& m : methods) brightness.push_back(typical(mean_of(m).values));
     const double brightest = std::ranges::max(brightness);
+    std::vector<bool> finds;
+    for (std::size_t k = 0; k < methods.size(); ++k)
+        finds.push_back(mean(mean_of(methods[k]).values) > 0 && brightness[k] >= kFindsLight * brightest);
+    return finds;
+}
+
+/// The mean of those that find light, each weighted by the reciprocal of its variance relative to itself.
+Grid common_picture(std::span<const TrialPictures> methods, const std::vector<bool>& finds) {
     Grid sum{methods[0].first.width, methods[0].first.height, Values(methods[0].first.data.size(), 0.0)};
     double weights = 0;
     for (std::size_t k = 0; k < methods.size(); ++k) {
+        if (!finds[k]) continue;
         const TrialPictures& m = methods[k];
         const Grid own = mean_of(m);
-        if (!(mean(own.values) > 0) || brightness[k] < kFindsLight * brightest) continue;
         const double weight = 1 / (relative_variance(difference_of(m), own.smooth()) + 1e-9);
         weights += weight;
         for (std::size_t i = 0; i < sum.values.size(); ++i) sum.values[i] += weight * own.values[i];
@@ -215,7 +223,8 @@ double blur(const TrialPictures& photons, const TrialPictures& samples) {
 std::vector<TrialError> trial_errors(std::span<const TrialPictures> methods) {
     std::vector<TrialError> errors(methods.size());
     if (methods.empty()) return errors;
-    const Grid picture = common_picture(methods), smooth = picture.smooth();
+    const std::vector<bool> finds = finds_light(methods);
+    const Grid picture = common_picture(methods, finds), smooth = picture.smooth();
     const Grid in_blocks = picture.blocks(kBlock, kBlock), in_parts = Parts::part_means(picture);
     std::vector<Parts> parts;
     for (const TrialPictures& m : methods) parts.emplace_back(m);
@@ -236,7 +245,9 @@ std::vector<TrialError> trial_errors(std::span<const TrialPictures> methods) {
         double missing = 0;
         for (std::size_t i = 0; i < least.size(); ++i) {
             const double most = parts[k].means.values[i] + kStandardErrors * parts[k].errors.values[i];
-            const double lost = std::max(0.0, least[i] - most), p = std::max(in_parts.values[i], least[i]);
+            // The other may be none too sure; but this one knows nothing of its own errors.
+            const double others = finds[k] ? least[i] : std::max(least[i], in_parts.values[i]);
+            const double lost = std::max(0.0, others - most), p = std::max(in_parts.values[i], least[i]);
             if (p > 0) missing += lost * lost / (p * p + dark);
         }
         errors[k].missing = missing / static_cast<double>(least.size());

@@ -2,9 +2,9 @@
 
 #include "core/statistics.h"
 #include "gather/fill_cache.h"
+#include "gather/gather_effort.h"
 #include "methods/photons/memory_plan.h"
 #include "methods/photons/photon_report.h"
-#include "methods/photons/radii.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +17,10 @@ namespace {
 constexpr double kForSamples = 0.25;
 /// Rays that records get in the end over those they have first, at most.
 constexpr double kMostMoreRays = 16;
+/// Gather rays of a sample at least and at most, if their number is to be found.
+constexpr double kFewestGatherRays = 1, kMostGatherRays = 8, kUsualGatherRays = 4;
+/// What a sample of a pixel costs besides gather rays, in these: by time 0.5 to 4.
+constexpr double kCostBesides = 1;
 /// Roughness that a lobe has at least where one of kUsualRays rays of a record ends.
 constexpr double kLeastAlpha = 0.2, kUsualRays = 300;
 
@@ -46,23 +50,8 @@ PassGather::PassGather(const SamplerContext& c, const RenderPlan& plan, std::int
       caustic_(std::move(photons.caustic)) {
     const Settings& s = c.settings;
     const Radii radii(c.scene, pass);
-    // An estimate made beforehand is asked from a little way off. Once regions get as small as that, each is made where
-    // it is asked.
-    const float photons_in_region = static_cast<float>(s.nearest) * radii.shrink * radii.shrink;
-    if (plan.photons && photons_in_region > 2.0f * kPilotEvery) {
-        irradiance_.emplace(global_.pilots(), global_.main_photons(),
-                            IrradianceOptions{.k = static_cast<int>(s.nearest),
-                                              .max_radius = radii.global,
-                                              .shrink = radii.shrink,
-                                              .patches = &c.patches,
-                                              .coverage = c.coverage,
-                                              .by_length = c.scene.traits().delta && length_matters(s),
-                                              .scene = &c.scene},
-                            context);
-        report_lookups(*irradiance_, photons_in_region, stats);
-        direct_irradiance_.emplace(c.scene, irradiance_->places(), seed, context);
-    }
     if (plan.photons) {
+        estimate_irradiance(c, radii, seed, stats, context);
         caustic_surroundings_.emplace(caustic_.pilots(), c.patches, static_cast<int>(s.nearest), radii.caustic,
                                       radii.shrink);
         stats.photon_bytes = std::max<std::uint64_t>(
@@ -81,18 +70,58 @@ PassGather::PassGather(const SamplerContext& c, const RenderPlan& plan, std::int
     if (irradiance_ && photons.everywhere && c.coverage == nullptr && c.scene.traits().glossy)
         maps.lobes = &lobes_.emplace(rays(), seed, context);
     rays_.emplace(rays());
-    const GatherSamples samples{.light = static_cast<int>(s.light_samples),
-                                .rays = plan.gather ? static_cast<int>(s.gather_rays) : 1};
+    GatherSamples samples{.light = static_cast<int>(s.light_samples),
+                          .rays = plan.gather ? s.gather_rays.value.value_or(0) : kFewestGatherRays};
+    const auto find_rays = [&](const IrradianceCache* cache) {
+        if (!(samples.rays > 0)) samples.rays = gather_rays_that_pay(cache, samples);
+    };
     if (plan.cache) {
         const CacheOptions options = cache_options(s, static_cast<double>(radii.shrink), seed);
         RaysOfRecords decide;
         if (context.by_time && context.communicator == nullptr)
-            decide = [&](const PlacedRecords& placed) { return rays_worth_their_time(placed, samples, context); };
+            decide = [&](const PlacedRecords& placed) {
+                find_rays(&placed.cache);
+                return rays_worth_their_time(placed, samples, context);
+            };
         spots_ = find_hot_spots(*rays_, options, context);
         if (spots_.size() > 0) maps.spots = &spots_, rays_.emplace(rays());
         cache_ = fill_cache(*rays_, spots_, options, context.with_reserve(kForSamples), decide);
     }
-    gather_.emplace(*rays_, cache_ ? &*cache_ : nullptr, &spots_, samples);
+    find_rays(cache());
+    gather_.emplace(*rays_, cache(), &spots_, samples);
+}
+
+void PassGather::estimate_irradiance(const SamplerContext& c, const Radii& radii, std::uint64_t seed,
+                                     RenderStats& stats, const RunContext& context) {
+    const Settings& s = c.settings;
+    // An estimate made beforehand is asked from a little way off. Once regions get as small as that, each is made where
+    // it is asked.
+    const float photons_in_region = static_cast<float>(s.nearest) * radii.shrink * radii.shrink;
+    if (!(photons_in_region > 2.0f * kPilotEvery)) return;
+    irradiance_.emplace(global_.pilots(), global_.main_photons(),
+                        IrradianceOptions{.k = static_cast<int>(s.nearest),
+                                          .max_radius = radii.global,
+                                          .shrink = radii.shrink,
+                                          .patches = &c.patches,
+                                          .coverage = c.coverage,
+                                          .by_length = c.scene.traits().delta && length_matters(s),
+                                          .scene = &c.scene},
+                        context);
+    report_lookups(*irradiance_, photons_in_region, stats);
+    // Of paths by a visible point and one place.
+    const int faces = std::clamp(static_cast<int>(s.max_depth) - 2, 0, kMostFaces);
+    direct_irradiance_.emplace(c.scene, irradiance_->places(), faces, seed, context);
+}
+
+double PassGather::gather_rays_that_pay(const IrradianceCache* cache, GatherSamples samples) const {
+    if (cache != nullptr && !rays_->scene().traits().glossy) return kUsualGatherRays; // where it has no record
+    const auto effort = [&](double rays) {
+        samples.rays = rays;
+        const auto noise = noise_of(FinalGather(*rays_, cache, &spots_, samples), window_, seed_);
+        return noise ? GatherEffort{rays, noise->samples, kCostBesides + noise->rays} : GatherEffort{rays, 0, 1};
+    };
+    const GatherEffort few = effort(kFewestGatherRays);
+    return best_gather_rays(few, effort(kMostGatherRays));
 }
 
 /// The squared error of the picture is C / R + A / S with R rays of records and S samples of pixels, which share the

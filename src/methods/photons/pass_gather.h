@@ -7,6 +7,7 @@
 #include "gather/irradiance_cache.h"
 #include "methods/photons/photon_sampler.h"
 #include "methods/photons/plan.h"
+#include "methods/photons/radii.h"
 #include "photonmap/irradiance/irradiance_map.h"
 #include "photonmap/photons.h"
 #include "photonmap/pilot_surroundings.h"
@@ -41,6 +42,11 @@ class PassGather {
     void report(RenderStats& stats, bool check_for_false_spots) const;
 
   private:
+    /// At pilot photons, where these estimates are not too small to be made beforehand.
+    void estimate_irradiance(const SamplerContext& c, const Radii& radii, std::uint64_t seed, RenderStats& stats,
+                             const RunContext& context);
+    /// By noise and by the number of rays of few samples: the same for any number of threads.
+    double gather_rays_that_pay(const IrradianceCache* cache, GatherSamples samples) const;
     int rays_worth_their_time(const PlacedRecords& placed, const GatherSamples& samples,
                               const RunContext& context) const;
 

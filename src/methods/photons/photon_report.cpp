@@ -89,7 +89,7 @@ std::optional<PhotonQuality::Noise> noise_of(const FinalGather& gather, const Im
     constexpr int kSamples = 8, kPixels = kSamplesForNoise / kSamples;
     constexpr double kWidth = 0.25;
     struct Pixel {
-        double mean = 0, variance = 0, of_records = 0;
+        double mean = 0, variance = 0, of_records = 0, rays = 0;
     };
     std::vector<Pixel> pixels(kPixels);
     parallel_for(kPixels, [&](std::int64_t i) {
@@ -104,12 +104,16 @@ std::optional<PhotonQuality::Noise> noise_of(const FinalGather& gather, const Im
             const FinalGather::Doubts sample = gather.doubt(at, false, rng);
             seen.add(sample.all);
             pixel.of_records += sample.of_records / kSamples;
+            pixel.rays += static_cast<double>(sample.rays) / kSamples;
         }
         pixel.mean = seen.mean();
         pixel.variance = seen.variance();
     });
-    double mean = 0;
-    for (const Pixel& p : pixels) mean += p.mean / kPixels;
+    double mean = 0, rays = 0;
+    for (const Pixel& p : pixels) {
+        mean += p.mean / kPixels;
+        rays += p.rays / kPixels;
+    }
     const auto relative = [&](double squared, const Pixel& p) {
         return squared / (p.mean * p.mean + kDark * mean * mean);
     };
@@ -119,10 +123,11 @@ std::optional<PhotonQuality::Noise> noise_of(const FinalGather& gather, const Im
         records.push_back(relative(p.of_records * p.of_records, p));
     }
     if (!(mean > 0)) return std::nullopt;
-    return PhotonQuality::Noise{mean_of_most(samples), mean_of_most(records)};
+    return PhotonQuality::Noise{mean_of_most(samples), mean_of_most(records), rays};
 }
 
-void warn_of_photons(RenderStats& stats, std::int64_t passes) {
+void warn_of_photons(RenderStats& stats, std::int64_t passes, std::int64_t max_depth) {
+    if (max_depth == 1) return; // all light is direct
     const PhotonQuality& q = stats.photon_quality;
     const auto lookups = q.lookups.value_or(PhotonQuality::Lookups{0, 0, 1});
     const auto cache = q.cache.value_or(PhotonQuality::Cache{});
@@ -137,7 +142,7 @@ void warn_of_photons(RenderStats& stats, std::int64_t passes) {
         stats.warn(Doubt::photons, fmt::format("the brightest 0.1 % of the photons carry {:.0f} % of the power: expect "
                                                "blotches. Try more passes, or another method",
                                                100 * brightest));
-    if (lookups.share < kLeastFound)
+    if (lookups.share < kLeastFound && max_depth > 2) // of two scatterings the second is lit directly, or by caustics
         stats.warn(Doubt::lookups, fmt::format("the photon map is too sparse where it is asked: {:.1f} photons within "
                                                "reach of a lookup, {:.0f} % of those asked for. Try more photons",
                                                lookups.found, 100 * lookups.share));

@@ -36,7 +36,7 @@ std::optional<PhotonQuality::Noise> noise_of(const FinalGather& gather, const Im
 
 /// Warns by what the last of `passes` left in `stats`: few photons with most of the power, maps too sparse where they
 /// are asked, spots of light that pilot photons don't confirm, an irradiance cache that is noisy or without answers, no
-/// photons at all.
-void warn_of_photons(RenderStats& stats, std::int64_t passes);
+/// photons at all; as far as paths of at most `max_depth` scatterings ask them.
+void warn_of_photons(RenderStats& stats, std::int64_t passes, std::int64_t max_depth);
 
 } // namespace keyhole

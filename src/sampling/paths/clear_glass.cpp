@@ -46,9 +46,9 @@ Rgb straight_transmittance(const Scene& scene, const SurfacePoint& from, const S
     return Rgb(0.0);
 }
 
-std::optional<StraightView> look_straight(const Scene& scene, const SurfacePoint& from, const Vec3& w) {
+std::optional<StraightView> look_straight(const Scene& scene, const SurfacePoint& from, const Vec3& w, int most_faces) {
     View view{from, w};
-    for (int faces = 0; faces <= kMostFaces; ++faces) {
+    for (int faces = 0; faces <= most_faces; ++faces) {
         auto hit = next_vertex(scene, view.from, view.w);
         if (!hit) return std::nullopt;
         if (view.pass(scene, *hit)) continue;

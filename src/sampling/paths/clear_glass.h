@@ -74,12 +74,14 @@ constexpr int kMostFaces = 64;
 Rgb straight_transmittance(const Scene& scene, const SurfacePoint& from, const SurfacePoint& x0,
                            int most_faces = kMostFaces, const std::function<void(const Vertex&)>& passed = {});
 
-/// What is seen straight along unit direction `w`, through clear glass, and the share of its light that comes.
+/// What is seen straight along unit direction `w`, through clear glass, at most so many faces of it, and the share of
+/// its light that comes.
 struct StraightView {
     Vertex end;
     Rgb transmittance;
 };
 /// None where nothing is, or no light comes straight from there.
-std::optional<StraightView> look_straight(const Scene& scene, const SurfacePoint& from, const Vec3& w);
+std::optional<StraightView> look_straight(const Scene& scene, const SurfacePoint& from, const Vec3& w,
+                                          int most_faces = kMostFaces);
 
 } // namespace keyhole

@@ -21,14 +21,16 @@ std::vector<std::string> picture_channels(const Imf::ChannelList& channels, cons
 
 } // namespace
 
-TextureImage read_exr_image(const std::string& path) {
+TextureImage read_exr_image(const std::string& path, ImagePart part) {
     try {
         Imf::InputFile file(path.c_str(), 1);
         const Imath::Box2i& window = file.header().dataWindow();
         const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
         const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
         check_image_size(path, width, height);
-        const auto names = picture_channels(file.header().channels(), path);
+        const Imf::ChannelList& channels = file.header().channels();
+        if (part == ImagePart::alpha && channels.findChannel("A") == nullptr) return opaque_image();
+        const auto names = part == ImagePart::alpha ? std::vector<std::string>{"A"} : picture_channels(channels, path);
         TextureImage image;
         auto& texels = image.allocate<TextureImage::Floats>(static_cast<int>(width), static_cast<int>(height),
                                                             static_cast<int>(names.size()));

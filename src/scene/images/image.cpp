@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <map>
 #include <mutex>
+#include <utility>
 
 namespace keyhole {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 /// Images that somebody holds, by canonical path.
 struct Cache {
     std::mutex mutex;
-    std::map<std::string, std::weak_ptr<const TextureImage>> images;
+    std::map<std::pair<std::string, ImagePart>, std::weak_ptr<const TextureImage>> images;
 };
 
 Cache& cache() {
@@ -24,14 +25,16 @@ Cache& cache() {
     return instance;
 }
 
-TextureImage read_image(const std::string& path) {
+TextureImage read_image(const std::string& path, ImagePart part) {
     std::string extension = std::filesystem::path(path).extension().string();
     std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
-    if (extension == ".exr") return read_exr_image(path);
-    if (extension == ".pfm") return read_pfm_image(path);
-    if (extension == ".tga") return read_tga_image(path);
-    if (extension == ".jpg" || extension == ".jpeg") return read_jpeg_image(path);
-    return read_other_image(path);
+    if (extension == ".exr") return read_exr_image(path, part);
+    if (extension == ".tga") return read_tga_image(path, part);
+    const bool pfm = extension == ".pfm", jpeg = extension == ".jpg" || extension == ".jpeg";
+    if (part == ImagePart::alpha && (pfm || jpeg)) return opaque_image();
+    if (pfm) return read_pfm_image(path);
+    if (jpeg) return read_jpeg_image(path);
+    return read_other_image(path, part);
 }
 
 } // namespace
@@ -48,25 +51,25 @@ void check_image_size(const std::string& path, std::int64_t width, std::int64_t 
                                  path, width, height, kMaxImageSide, kMaxImagePixels));
 }
 
-std::shared_ptr<const TextureImage> load_image(const std::string& path) {
+std::shared_ptr<const TextureImage> load_image(const std::string& path, ImagePart part) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error))
         throw InputError(fmt::format("{}: found no such file, expected an image", path));
-    const std::string key = std::filesystem::weakly_canonical(path, error).string();
+    const std::pair key{std::filesystem::weakly_canonical(path, error).string(), part};
     // Readers run one at a time: scenes have few images, and two threads must not decode the same one.
     const std::lock_guard lock(cache().mutex);
     auto& entry = cache().images[key];
     auto image = entry.lock();
-    if (image == nullptr) entry = image = std::make_shared<const TextureImage>(read_image(path));
+    if (image == nullptr) entry = image = std::make_shared<const TextureImage>(read_image(path, part));
     return image;
 }
 
 std::vector<LoadedImage> loaded_images() {
     std::vector<LoadedImage> list;
     const std::lock_guard lock(cache().mutex);
-    for (const auto& [path, entry] : cache().images)
+    for (const auto& [key, entry] : cache().images)
         if (const auto image = entry.lock())
-            list.push_back({path, image->width, image->height, image->channels, image->bytes()});
+            list.push_back({key.first, image->width, image->height, image->channels, image->bytes()});
     return list;
 }
 

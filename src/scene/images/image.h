@@ -13,7 +13,10 @@
 
 namespace keyhole {
 
-/// One or three channels, row by row from the top, without alpha. Integers hold what the file holds, of 255 or 65535;
+/// What of a file's picture is read: its colours, or their alpha as one channel.
+enum class ImagePart { colors, alpha };
+
+/// One or three channels, row by row from the top. Integers hold what the file holds, of 255 or 65535;
 /// floats are linear.
 struct TextureImage {
     using Bytes = std::vector<std::uint8_t>;
@@ -44,15 +47,22 @@ constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 28;
 void check_image_size(const std::string& path, std::int64_t width, std::int64_t height);
 
 /// The image of a file, from a cache while anybody holds it: EXR, PFM, TGA and JPEG, and what OpenImageIO reads, which
-/// is loaded when first needed, because it costs a third of a second and 130 MB.
+/// is loaded when first needed, because it costs a third of a second and 130 MB. The alpha of a file without any is one
+/// texel of 1.
 /// @throws InputError "path: what is wrong"
-std::shared_ptr<const TextureImage> load_image(const std::string& path);
+std::shared_ptr<const TextureImage> load_image(const std::string& path, ImagePart part = ImagePart::colors);
 
 // The readers behind load_image(), by kind of file.
-TextureImage read_exr_image(const std::string& path);
+TextureImage read_exr_image(const std::string& path, ImagePart part);
 TextureImage read_pfm_image(const std::string& path);
-TextureImage read_tga_image(const std::string& path);
+TextureImage read_tga_image(const std::string& path, ImagePart part);
 TextureImage read_jpeg_image(const std::string& path);
-TextureImage read_other_image(const std::string& path);
+TextureImage read_other_image(const std::string& path, ImagePart part = ImagePart::colors);
+/// The alpha of a file without any.
+inline TextureImage opaque_image() {
+    TextureImage image;
+    image.allocate<TextureImage::Bytes>(1, 1, 1)[0] = 255;
+    return image;
+}
 
 } // namespace keyhole

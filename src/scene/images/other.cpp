@@ -43,11 +43,11 @@ ReadImage* load_module() {
 
 } // namespace
 
-TextureImage read_other_image(const std::string& path) {
+TextureImage read_other_image(const std::string& path, ImagePart part) {
     static ReadImage* const read = load_module();
     TextureImage image;
     std::string error;
-    if (!read(path, image, error)) throw InputError(path + ": " + error);
+    if (!read(path, part, image, error)) throw InputError(path + ": " + error);
     return image;
 }
 

@@ -67,12 +67,13 @@ std::vector<std::uint8_t> unpack(const std::string& path, const std::vector<std:
 
 } // namespace
 
-TextureImage read_tga_image(const std::string& path) {
+TextureImage read_tga_image(const std::string& path, ImagePart part) {
     std::ifstream stream(path, std::ios::binary);
     const std::vector<std::uint8_t> file{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
     if (file.size() < kHeaderBytes) throw InputError(path + ": found no TGA header, expected 18 bytes of it");
     const Header h = parse_header(file);
-    if (!is_plain(file, h)) return read_other_image(path);
+    if (!is_plain(file, h) || (part == ImagePart::alpha && h.bits == 32)) return read_other_image(path, part);
+    if (part == ImagePart::alpha) return opaque_image();
     check_image_size(path, h.width, h.height);
     const std::vector<std::uint8_t> raw = unpack(path, file, h);
 

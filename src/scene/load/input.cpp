@@ -127,8 +127,9 @@ std::string read_text_file(const std::string& path, std::size_t most_bytes) {
 }
 
 std::string read_packed_file(const std::string& path, std::size_t most_unpacked) {
-    const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
     std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error)) throw InputError("found no readable file, expected a mesh");
+    const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
     const auto size = std::filesystem::file_size(path, error);
     if (file == nullptr || error) throw InputError("found no readable file, expected a mesh");
     std::string bytes(size + 1, '\0'); // one more, that the end of a file that isn't packed is found at once

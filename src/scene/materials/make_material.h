@@ -52,7 +52,7 @@ MaterialPtr make_material(const char* kind, const BsdfTraits& traits, F model, c
                                                                  !is_isotropic(same));
 }
 
-inline double clamp01(double x) { return std::clamp(x, 0.0, 1.0); }
+inline double clamp01(double x) { return x > 0 ? std::min(x, 1.0) : 0.0; } // what is not a number: 0
 inline Rgb clamp01(const Rgb& c) { return {clamp01(c.x), clamp01(c.y), clamp01(c.z)}; }
 
 /// Roughness of a surface; none where it is smooth.

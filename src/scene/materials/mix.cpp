@@ -11,12 +11,13 @@ namespace {
 class MixMaterial final : public Material {
   public:
     MixMaterial(MaterialPtr a, MaterialPtr b, FloatTexture amount)
-        : a_(std::move(a)), b_(std::move(b)), amount_(std::move(amount)), salt_(1 + std::max(salt(*a_), salt(*b_))) {}
+        : a_(std::move(a)), b_(std::move(b)), amount_(std::move(amount)), salt_(1 + std::max(salt(*a_), salt(*b_))),
+          traits_(a_->traits() | b_->traits()), surface_(mixed_surface()) {}
 
     Bsdf bsdf(const SurfacePoint& point) const override {
         return (place_hash(point, salt_) < amount_->value(point) ? b_ : a_)->bsdf(point);
     }
-    BsdfTraits traits() const override { return a_->traits() | b_->traits(); }
+    BsdfTraits traits() const override { return traits_; }
     FloatTexture finite_share() const override {
         const FloatTexture a = a_->finite_share(), b = b_->finite_share();
         if (a == nullptr && b == nullptr && a_->traits().finite == b_->traits().finite) return nullptr;
@@ -26,7 +27,7 @@ class MixMaterial final : public Material {
         return mix_texture<double>(of(a, *a_), of(b, *b_), amount_);
     }
     const char* kind() const override { return "mix"; }
-    SurfaceDefaults surface() const override;
+    SurfaceDefaults surface() const override { return surface_; }
 
   private:
     /// Mixes of mixes must choose independently.
@@ -34,10 +35,13 @@ class MixMaterial final : public Material {
         const auto* mix = dynamic_cast<const MixMaterial*>(&m);
         return mix != nullptr ? mix->salt_ : 0;
     }
+    SurfaceDefaults mixed_surface() const;
 
     MaterialPtr a_, b_;
     FloatTexture amount_;
     std::uint32_t salt_;
+    BsdfTraits traits_; // kept, for a mix of mixes may have each of them many times
+    SurfaceDefaults surface_;
 };
 
 /// The opacity of the material that is at a place.
@@ -55,7 +59,7 @@ class MixedOpacity final : public Texture<double> {
     std::uint32_t salt_;
 };
 
-SurfaceDefaults MixMaterial::surface() const {
+SurfaceDefaults MixMaterial::mixed_surface() const {
     const FloatTexture a = a_->surface().alpha, b = b_->surface().alpha;
     if (a == nullptr && b == nullptr) return {};
     return {std::make_shared<MixedOpacity>(a, b, amount_, salt_)};

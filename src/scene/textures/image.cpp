@@ -6,11 +6,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 namespace keyhole {
 namespace {
+
+constexpr int kAlphaChannel = 3;
 
 double decode(double x, const ImageOptions& options) {
     switch (options.encoding) {
@@ -150,6 +153,13 @@ template <class T> std::shared_ptr<const Texture<T>> read_image(Properties& p) {
     p.ignore({"maxanisotropy", "trilinear"});
     o.scale = p.number("scale", kFactor, o.scale);
     o.invert = p.boolean("invert", false);
+    if (!p.is_pbrt()) {
+        constexpr std::array<std::string_view, 5> kChannels{"mean", "red", "green", "blue", "alpha"};
+        const std::string channel = p.choice("channel", "a channel", {kChannels.begin(), kChannels.end()});
+        o.channel = static_cast<int>(std::ranges::find(kChannels, channel) - kChannels.begin()) - 1;
+        if (std::is_same_v<T, Rgb> && o.channel >= 0)
+            p.fail_at("channel", "found a channel of a texture of colours, expected it where a number is wanted");
+    }
     o.mapping = p.mapping();
     return p.make_at(file, [&] { return image_texture<T>(path, o); });
 }
@@ -159,8 +169,8 @@ template <class T> std::shared_ptr<const Texture<T>> read_image(Properties& p) {
 template <class T> TextureKinds<T> image_kinds() {
     return {{{"image", "imagemap"},
              "an image",
-             {"file", "encoding", "gamma", "wrap", "filter", "scale", "invert", "mapping", "transform", "repeat",
-              "rotate", "shift"},
+             {"file", "channel", "encoding", "gamma", "wrap", "filter", "scale", "invert", "mapping", "transform",
+              "repeat", "rotate", "shift"},
              read_image<T>}};
 }
 template TextureKinds<Rgb> image_kinds();
@@ -168,11 +178,17 @@ template TextureKinds<double> image_kinds();
 
 template <class T>
 std::shared_ptr<const Texture<T>> image_texture(const std::string& path, const ImageOptions& options) {
-    auto image = load_image(path);
+    ImageOptions o = options;
+    const bool alpha = o.channel == kAlphaChannel;
+    if (alpha) o.encoding = Encoding::linear;
+    const auto image = load_image(path, alpha ? ImagePart::alpha : ImagePart::colors);
     return std::visit(
         [&](const auto& texels) -> std::shared_ptr<const Texture<T>> {
             using Texels = std::decay_t<decltype(texels)>;
-            return std::make_shared<ImageTexture<T, Texels>>(image, options);
+            const auto texture = std::make_shared<ImageTexture<T, Texels>>(image, o);
+            // As the alpha of pictures without any.
+            if (texels.size() == 1 && o.wrap != Wrap::black) return constant_texture(texture->value({}));
+            return texture;
         },
         image->texels);
 }

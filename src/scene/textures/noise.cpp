@@ -79,7 +79,8 @@ Rgb marble(Imath::V3d p, const Octaves& octaves, double scale, double variation)
         base, base, base, Rgb(0.5), Rgb(0.6, 0.59, 0.58), base, base, Rgb(0.2, 0.2, 0.33), base};
     constexpr int kSegments = static_cast<int>(colors.size()) - 3;
     p *= scale;
-    const double t = 0.5 + 0.5 * std::sin(p.y + variation * fractal_noise(p, octaves));
+    const double wave = std::sin(p.y + variation * fractal_noise(p, octaves));
+    const double t = std::isfinite(wave) ? 0.5 + 0.5 * wave : 0.5; // noise beyond all numbers
     const int first = std::clamp(static_cast<int>(t * kSegments), 0, kSegments - 1);
     const double s = t * kSegments - first, r = 1 - s;
     const auto at = [&](int i) { return colors[static_cast<std::size_t>(first + i)]; };

@@ -26,7 +26,6 @@ template <class T> class ScaleTexture final : public Texture<T> {
     using Ptr = std::shared_ptr<const Texture<T>>;
     ScaleTexture(Ptr value, FloatTexture factor) : value_(std::move(value)), factor_(std::move(factor)) {}
     T value(const SurfacePoint& point) const override { return value_->value(point) * factor_->value(point); }
-    bool is_constant() const override { return value_->is_constant() && factor_->is_constant(); }
 
   private:
     Ptr value_;
@@ -43,7 +42,6 @@ template <class T> class MixTexture final : public Texture<T> {
         if (t == 1) return b_->value(point);
         return a_->value(point) * (1 - t) + b_->value(point) * t;
     }
-    bool is_constant() const override { return a_->is_constant() && b_->is_constant() && amount_->is_constant(); }
 
   private:
     Ptr a_, b_;
@@ -166,13 +164,19 @@ FloatTexture constant_texture(double value) { return std::make_shared<ConstantTe
 
 template <class T>
 std::shared_ptr<const Texture<T>> scale_texture(std::shared_ptr<const Texture<T>> value, FloatTexture factor) {
-    return std::make_shared<ScaleTexture<T>>(std::move(value), std::move(factor));
+    const bool constant = value->is_constant() && factor->is_constant();
+    const ScaleTexture<T> scaled(std::move(value), std::move(factor));
+    if (constant) return constant_texture(scaled.value({}));
+    return std::make_shared<ScaleTexture<T>>(scaled);
 }
 
 template <class T>
 std::shared_ptr<const Texture<T>> mix_texture(std::shared_ptr<const Texture<T>> a, std::shared_ptr<const Texture<T>> b,
                                               FloatTexture amount) {
-    return std::make_shared<MixTexture<T>>(std::move(a), std::move(b), std::move(amount));
+    const bool constant = a->is_constant() && b->is_constant() && amount->is_constant();
+    const MixTexture<T> mixed(std::move(a), std::move(b), std::move(amount));
+    if (constant) return constant_texture(mixed.value({}));
+    return std::make_shared<MixTexture<T>>(mixed);
 }
 
 template <class T>

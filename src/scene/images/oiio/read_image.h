@@ -6,7 +6,7 @@
 namespace keyhole {
 
 /// Reads a file. False: `error` says why. Never throws.
-using ReadImage = bool(const std::string& path, TextureImage& image, std::string& error) noexcept;
+using ReadImage = bool(const std::string& path, ImagePart part, TextureImage& image, std::string& error) noexcept;
 
 constexpr const char* kImageModule = "libkeyhole_oiio.so";
 constexpr const char* kReadImageSymbol = "keyhole_read_image";

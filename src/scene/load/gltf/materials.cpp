@@ -12,7 +12,7 @@ namespace keyhole::gltf {
 namespace {
 
 constexpr int kNearest = 9728, kClamp = 33071, kMirrored = 33648;
-constexpr int kGreen = 1, kBlue = 2;
+constexpr int kGreen = 1, kBlue = 2, kAlpha = 3;
 
 /// A texture times a colour.
 class TintedTexture final : public Texture<Rgb> {
@@ -23,6 +23,18 @@ class TintedTexture final : public Texture<Rgb> {
   private:
     ColorTexture texture_;
     Rgb tint_;
+};
+
+/// 1 where a texture isn't below a number, and 0 elsewhere.
+class MaskTexture final : public Texture<double> {
+  public:
+    MaskTexture(FloatTexture texture, double cutoff) : texture_(std::move(texture)), cutoff_(cutoff) {}
+    double value(const SurfacePoint& point) const override { return texture_->value(point) >= cutoff_ ? 1 : 0; }
+    bool is_constant() const override { return texture_->is_constant(); }
+
+  private:
+    FloatTexture texture_;
+    double cutoff_;
 };
 
 /// KHR_texture_transform, which counts v down from the first row, as a mapping that counts it up.
@@ -155,11 +167,12 @@ class Reader {
     FloatTexture opacity() const {
         const auto mode = value_or<std::string>(material_, "alphaMode", "OPAQUE");
         if (mode == "OPAQUE") return nullptr;
-        if (metal_.contains("baseColorTexture")) document_.warn("the alpha of textures is left out");
         const auto factor = value_or(metal_, "baseColorFactor", std::vector<double>{1, 1, 1, 1});
-        double alpha = factor.size() == 4 ? std::clamp(factor[3], 0.0, 1.0) : 1.0;
-        if (mode == "MASK") alpha = alpha >= value_or(material_, "alphaCutoff", 0.5) ? 1 : 0;
-        return alpha < 1 ? constant_texture(alpha) : nullptr;
+        FloatTexture alpha = constant_texture(factor.size() == 4 ? std::clamp(factor[3], 0.0, 1.0) : 1.0);
+        if (metal_.contains("baseColorTexture"))
+            alpha = scale_texture<double>(picture<double>(metal_["baseColorTexture"], Encoding::linear, kAlpha), alpha);
+        if (mode == "MASK") alpha = std::make_shared<MaskTexture>(alpha, value_or(material_, "alphaCutoff", 0.5));
+        return alpha->is_constant() && alpha->value({}) >= 1 ? nullptr : alpha;
     }
 
     void report_extensions() const {

@@ -161,7 +161,28 @@ class WithContent : public Assimp::DefaultIOSystem {
     const std::string& content_;
 };
 
+/// An OBJ file with a zero before each coordinate that begins with its point: Assimp's reader doesn't see those, and
+/// drops the vertex.
+std::string with_leading_zeros(const std::string& text) {
+    std::string s;
+    s.reserve(text.size());
+    bool coordinates = false; // in a line of them
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char before = i > 0 ? text[i - 1] : '\n';
+        if (before == '\n') coordinates = text[i] == 'v';
+        if (coordinates && text[i] == '.' && (before == ' ' || before == '\t')) s += '0';
+        s += text[i];
+    }
+    return s;
+}
+
 std::vector<MeshPart> read_parts(const std::string& path, const std::string& extension, const std::string* content) {
+    std::string text;
+    if (extension == ".obj" && content == nullptr) {
+        std::ifstream file(path, std::ios::binary);
+        text = with_leading_zeros({std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()});
+        content = &text;
+    }
     Assimp::Importer importer;
     if (content != nullptr) importer.SetIOHandler(new WithContent(path, *content)); // which the importer will own
     keep_readers_of(extension, importer);

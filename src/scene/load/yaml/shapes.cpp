@@ -111,12 +111,16 @@ void ShapeReader::read_instance(const YamlNode& node, const Placement& placement
 
 void ShapeReader::read_named_group(Group& group, const YamlNode& user, const Placement& placement) {
     if (group.open) fail(user, fmt::format("found the group '{}' within itself, expected no cycle", group.key->text));
-    group.used = group.open = true;
+    group.used = true;
+    if (group.empty) return; // or groups of many empty ones, each of many of the next, would take for ever
+    group.open = true;
+    const std::size_t before = shapes_.size();
     const struct Closer {
         Group& group;
         ~Closer() { group.open = false; } // after a mistake, too: the group may be placed again
     } closer{group};
     read_list_of_shapes(*group.shapes, placement);
+    group.empty = shapes_.size() == before;
 }
 
 ShapeReader::Placement ShapeReader::inherit(const MapReader& map, const Placement& placement) const {

@@ -62,7 +62,8 @@ class ShapeReader {
     struct Group {
         YamlPtr key, shapes;
         bool used = false;
-        bool open = false; ///< being read, so that an instance of it would be within itself
+        bool open = false;  ///< being read, so that an instance of it would be within itself
+        bool empty = false; ///< holds no shape
     };
 
     void add_group(const YamlNode::Entry& entry);

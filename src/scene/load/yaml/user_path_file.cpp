@@ -155,15 +155,23 @@ std::string_view entry_name(const UserPathSpec& path) {
 
 /// Whether two paths are of one entry: the second has one bounce more.
 bool follows(const UserPathSpec& path, const UserPathSpec& next) {
-    return bounces_of(path) > 0 && bounces_of(next) == bounces_of(path) + 1 && entry_name(path) != path.name &&
-           entry_name(path) == entry_name(next);
+    const std::string_view name = entry_name(path);
+    const bool same_entry = path.where.line == next.where.line && path.where.column == next.where.column;
+    return same_entry && bounces_of(path) > 0 && bounces_of(next) == bounces_of(path) + 1 && !name.empty() &&
+           name != path.name && name == entry_name(next) && name != next.name;
 }
 
-/// A word in YAML's single quotes.
+/// A word in YAML's double quotes, which know escapes for what no line may hold.
 std::string quoted(const std::string& word) {
-    std::string s = "'";
-    for (const char c : word) s += c == '\'' ? std::string("''") : std::string(1, c);
-    return s + "'";
+    std::string s = "\"";
+    for (const char c : word) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (byte < 0x20 || byte == 0x7f)
+            s += fmt::format("\\x{:02x}", byte);
+        else
+            s += c == '"' || c == '\\' ? std::string{'\\', c} : std::string(1, c);
+    }
+    return s + "\"";
 }
 
 /// Paths of one entry.
@@ -183,9 +191,10 @@ std::string entry_text(std::span<const UserPathSpec> paths) {
     const auto list = [](const Imath::V3d& p) { return fmt::format("[{:.7g}, {:.7g}, {:.7g}]", p.x, p.y, p.z); };
     for (const UserPathPoint& p : path.points) {
         if (p.bounce) continue;
+        // Of edges all digits, for those that are nearly parallel.
         if (const auto& o = p.through)
-            text +=
-                fmt::format("      - through: {{corner: {}, u: {}, v: {}}}\n", list(o->corner), list(o->u), list(o->v));
+            text += fmt::format("      - through: {{corner: {}, u: [{}, {}, {}], v: [{}, {}, {}]}}\n", list(o->corner),
+                                o->u.x, o->u.y, o->u.z, o->v.x, o->v.y, o->v.z);
         text += fmt::format("      - {}\n", list(p.p));
         if (&p != path.points.data() || bounces == 0) continue;
         text += paths.size() > 1 ? fmt::format("      - bounces: [{}, {}]\n", bounces, bounces_of(paths.back()))
