@@ -19,7 +19,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 MAIN = ("spp", "photons", "light_paths", "cache_rays", "gather_rays", "nearest", "cache_error")
-# What isn't told is as it is by default.
+# What isn't told is as it is by default; of gather rays, which are as many as pay, about that.
 DEFAULTS = {"spp": 16, "light_paths": 1_000_000, "cache_rays": 400, "gather_rays": 4, "nearest": 60, "cache_error": 0.3}
 
 

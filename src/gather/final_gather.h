@@ -13,9 +13,8 @@ namespace keyhole {
 
 /// At each visible point.
 struct GatherSamples {
-    int light; ///< of emitters
-    double
-        rays; ///< gather rays, where the cache doesn't serve; where it does, the glossy part has its share, on average
+    int light;   ///< of emitters
+    double rays; ///< gather rays where the cache doesn't serve, rounded; where it does the glossy part's share of them
 };
 
 /// Thread-safe; immutable but for what it counts. All arguments by reference or pointer must outlive it.
@@ -34,7 +33,7 @@ class FinalGather {
         double all = 0;
         double unconfirmed = 0; ///< of caustics, by pilot photons (unconfirmed_share()), where they were asked
         double of_records = 0;  ///< standard error of the cached irradiance in it, by the records' first rays
-        int rays = 0;           ///< gather rays that were traced for it
+        int rays = 0;           ///< gather rays that were drawn for it, apart from those aimed at spots
     };
     /// Draws a sample and asks pilot photons about it, if `confirm`.
     Doubts doubt(const Vec2& image, bool confirm, SampleSource& source) const;
@@ -68,7 +67,7 @@ class FinalGather {
 
     struct Light {
         Rgb direct, indirect; ///< caustics left out
-        int rays = 0;         ///< gather rays that found it
+        int rays = 0;         ///< gather rays that were drawn for it
         Light& operator+=(const Light& o) {
             direct += o.direct;
             indirect += o.indirect;

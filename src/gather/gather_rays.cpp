@@ -58,7 +58,7 @@ constexpr double kFine = 0.5;
 /// Where a ray comes from, as far as what it meets depends on that.
 struct GatherRays::Leg {
     float distance;  ///< from the vertex before [m]
-    int scatterings; ///< between the eye and the vertex it led to, that one included
+    int scatterings; ///< between the eye and the vertex that it leads to
     int traced_on;   ///< rays before it, each traced on from where the last one ended
 
     /// Vertices between the eye and the one it led to, d2, beyond d1.

@@ -43,6 +43,7 @@ TEST(Texture_OfConstants, IsAConstantHoweverDeepItIsNested) {
     for (int i = 0; i < 60; ++i) m = make_mix(m, m, constant_texture(0.5));
     EXPECT_TRUE(m->traits().diffuse);
     EXPECT_EQ(m->surface().alpha, nullptr);
+    EXPECT_EQ(m->finite_share(), nullptr);
 }
 
 TEST(ImageTexture_Alpha, IsAChannelOfItsOwnAndOneWhereThereIsNone) {

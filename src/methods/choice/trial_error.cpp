@@ -24,6 +24,8 @@ constexpr double kLamps = 0.1;
 constexpr double kRareSamples = 0.05;
 // Of the brightness that another method finds in most of the picture, what shows that a method finds its light.
 constexpr double kFindsLight = 0.5;
+// The same, below which it finds next to none.
+constexpr double kFindsNothing = 0.1;
 // Standard errors of both that two means differ by before light is missing: there are many parts to differ in.
 constexpr double kStandardErrors = 3;
 constexpr double kMedianOfNormal = 0.6745; // of the amounts of normal deviates, over their standard deviation
@@ -115,26 +117,24 @@ double relative_variance(const Grid& difference, const Grid& picture, double tri
     return mean(without_largest(relative_variances(difference, picture), trimmed));
 }
 
-/// Which of the methods find the light of most of the picture. One that hardly finds anything where others see light
-/// agrees with itself as well.
-std::vector<bool> finds_light(std::span<const TrialPictures> methods) {
+/// How bright the methods find most of the picture, over the one that finds it brightest.
+Values brightness_of(std::span<const TrialPictures> methods) {
     Values brightness;
     for (const TrialPictures& m : methods) brightness.push_back(typical(mean_of(m).values));
     const double brightest = std::ranges::max(brightness);
-    std::vector<bool> finds;
-    for (std::size_t k = 0; k < methods.size(); ++k)
-        finds.push_back(mean(mean_of(methods[k]).values) > 0 && brightness[k] >= kFindsLight * brightest);
-    return finds;
+    for (double& b : brightness) b = brightest > 0 ? b / brightest : 1;
+    return brightness;
 }
 
-/// The mean of those that find light, each weighted by the reciprocal of its variance relative to itself.
-Grid common_picture(std::span<const TrialPictures> methods, const std::vector<bool>& finds) {
+/// The mean of all, each weighted by the reciprocal of its variance relative to itself. One that hardly finds anything
+/// where others see light agrees with itself as well: it has no say.
+Grid common_picture(std::span<const TrialPictures> methods, const Values& brightness) {
     Grid sum{methods[0].first.width, methods[0].first.height, Values(methods[0].first.data.size(), 0.0)};
     double weights = 0;
     for (std::size_t k = 0; k < methods.size(); ++k) {
-        if (!finds[k]) continue;
         const TrialPictures& m = methods[k];
         const Grid own = mean_of(m);
+        if (!(mean(own.values) > 0) || brightness[k] < kFindsLight) continue;
         const double weight = 1 / (relative_variance(difference_of(m), own.smooth()) + 1e-9);
         weights += weight;
         for (std::size_t i = 0; i < sum.values.size(); ++i) sum.values[i] += weight * own.values[i];
@@ -223,8 +223,8 @@ double blur(const TrialPictures& photons, const TrialPictures& samples) {
 std::vector<TrialError> trial_errors(std::span<const TrialPictures> methods) {
     std::vector<TrialError> errors(methods.size());
     if (methods.empty()) return errors;
-    const std::vector<bool> finds = finds_light(methods);
-    const Grid picture = common_picture(methods, finds), smooth = picture.smooth();
+    const Values brightness = brightness_of(methods);
+    const Grid picture = common_picture(methods, brightness), smooth = picture.smooth();
     const Grid in_blocks = picture.blocks(kBlock, kBlock), in_parts = Parts::part_means(picture);
     std::vector<Parts> parts;
     for (const TrialPictures& m : methods) parts.emplace_back(m);
@@ -245,8 +245,8 @@ std::vector<TrialError> trial_errors(std::span<const TrialPictures> methods) {
         double missing = 0;
         for (std::size_t i = 0; i < least.size(); ++i) {
             const double most = parts[k].means.values[i] + kStandardErrors * parts[k].errors.values[i];
-            // The other may be none too sure; but this one knows nothing of its own errors.
-            const double others = finds[k] ? least[i] : std::max(least[i], in_parts.values[i]);
+            // Nobody may be sure of it; but who finds next to nothing knows nothing of its own errors.
+            const double others = brightness[k] < kFindsNothing ? std::max(least[i], in_parts.values[i]) : least[i];
             const double lost = std::max(0.0, others - most), p = std::max(in_parts.values[i], least[i]);
             if (p > 0) missing += lost * lost / (p * p + dark);
         }

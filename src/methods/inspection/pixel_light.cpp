@@ -79,7 +79,8 @@ class PixelTracer {
         if (!hit || hit->point.site != Site::surface || !hit->bsdf.traits().finite) return;
         const auto drawn = sample_direct_light(scene_, *hit, -ray.w, rng);
         if (!drawn) return;
-        const Rgb clear = straight_transmittance(scene_, hit->point, drawn->x0.point);
+        const Rgb clear =
+            straight_transmittance(scene_, hit->point, drawn->x0.point, rays_.faces_left(walk.scatterings + 1));
         const double value = luminance(walk.throughput * ray.weight * clear * drawn->value);
         if (!(value > 0) || !std::isfinite(value)) return;
         end.from_lamp = static_cast<float>(value);
@@ -95,7 +96,8 @@ class PixelTracer {
         for (int i = 0; i < options_.direct; ++i) {
             PixelLight::Source source{v.point.p, 0};
             const auto drawn = sample_direct_light(scene_, v, walk.back, rng);
-            const Rgb clear = drawn ? straight_transmittance(scene_, v.point, drawn->x0.point) : Rgb(0.0);
+            const int faces = rays_.faces_left(walk.scatterings);
+            const Rgb clear = drawn ? straight_transmittance(scene_, v.point, drawn->x0.point, faces) : Rgb(0.0);
             if (!is_black(clear)) {
                 source.p = place_of(drawn->x0.point, v.point);
                 source.value = static_cast<float>(luminance(walk.throughput * clear * drawn->value));

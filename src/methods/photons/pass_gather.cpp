@@ -19,6 +19,8 @@ constexpr double kForSamples = 0.25;
 constexpr double kMostMoreRays = 16;
 /// Gather rays of a sample at least and at most, if their number is to be found.
 constexpr double kFewestGatherRays = 1, kMostGatherRays = 8, kUsualGatherRays = 4;
+/// Pixels of the picture for one that this is found by, and the least number of those.
+constexpr int kPixelsForOne = 16, kLeastPixels = 32;
 /// What a sample of a pixel costs besides gather rays, in these: by time 0.5 to 4.
 constexpr double kCostBesides = 1;
 /// Roughness that a lobe has at least where one of kUsualRays rays of a record ends.
@@ -73,7 +75,8 @@ PassGather::PassGather(const SamplerContext& c, const RenderPlan& plan, std::int
     GatherSamples samples{.light = static_cast<int>(s.light_samples),
                           .rays = plan.gather ? s.gather_rays.value.value_or(0) : kFewestGatherRays};
     const auto find_rays = [&](const IrradianceCache* cache) {
-        if (!(samples.rays > 0)) samples.rays = gather_rays_that_pay(cache, samples);
+        if (!(samples.rays > 0))
+            samples.rays = context.stopped() ? kUsualGatherRays : gather_rays_that_pay(cache, samples);
     };
     if (plan.cache) {
         const CacheOptions options = cache_options(s, static_cast<double>(radii.shrink), seed);
@@ -117,7 +120,9 @@ double PassGather::gather_rays_that_pay(const IrradianceCache* cache, GatherSamp
     if (cache != nullptr && !rays_->scene().traits().glossy) return kUsualGatherRays; // where it has no record
     const auto effort = [&](double rays) {
         samples.rays = rays;
-        const auto noise = noise_of(FinalGather(*rays_, cache, &spots_, samples), window_, seed_);
+        // Of a trial, whose window is small, no more than pays there.
+        const int pixels = std::clamp(static_cast<int>(window_.size()) / kPixelsForOne, kLeastPixels, kPixelsForNoise);
+        const auto noise = noise_of(FinalGather(*rays_, cache, &spots_, samples), window_, seed_, pixels);
         return noise ? GatherEffort{rays, noise->samples, kCostBesides + noise->rays} : GatherEffort{rays, 0, 1};
     };
     const GatherEffort few = effort(kFewestGatherRays);
@@ -134,7 +139,7 @@ int PassGather::rays_worth_their_time(const PlacedRecords& placed, const GatherS
     const double left = context.stop->seconds_left();
     if (!noise || !(noise->records > 0) || !(placed.seconds > 0) || !(start > left)) return placed.rays;
     const double of_ray = placed.seconds / placed.rays;
-    const double of_sample = (start - left) / kSamplesForNoise * window_.size();
+    const double of_sample = (start - left) / (kPixelsForNoise * kSamplesInPixel) * window_.size();
     const double share = best_share_of_time(noise->records * placed.rays * of_ray, noise->samples * of_sample);
     const double rays = share * (left + placed.seconds) / of_ray;
     return static_cast<int>(std::clamp(rays, static_cast<double>(placed.rays), kMostMoreRays * placed.rays));

@@ -84,19 +84,20 @@ void report_false_spots(const FinalGather& gather, std::uint64_t seed, RenderSta
     stats.photon_quality.unconfirmed = static_cast<double>(std::ranges::count_if(seen, shows)) / kPoints;
 }
 
-std::optional<PhotonQuality::Noise> noise_of(const FinalGather& gather, const ImageWindow& window, std::uint64_t seed) {
+std::optional<PhotonQuality::Noise> noise_of(const FinalGather& gather, const ImageWindow& window, std::uint64_t seed,
+                                             int pixels) {
     // In a quarter of a pixel: where the window is that of a trial, its pixels are larger than the picture's.
-    constexpr int kSamples = 8, kPixels = kSamplesForNoise / kSamples;
+    constexpr int kSamples = kSamplesInPixel;
     constexpr double kWidth = 0.25;
     struct Pixel {
         double mean = 0, variance = 0, of_records = 0, rays = 0;
     };
-    std::vector<Pixel> pixels(kPixels);
-    parallel_for(kPixels, [&](std::int64_t i) {
+    std::vector<Pixel> seen_pixels(static_cast<std::size_t>(pixels));
+    parallel_for(pixels, [&](std::int64_t i) {
         Rng rng(seed, StreamPurpose::survey, static_cast<std::uint64_t>(kPoints + i));
         const Vec2 corner = lattice_image_point(seed, StreamPurpose::survey, i);
         RunningStats seen;
-        Pixel& pixel = pixels[static_cast<std::size_t>(i)];
+        Pixel& pixel = seen_pixels[static_cast<std::size_t>(i)];
         for (int k = 0; k < kSamples; ++k) {
             const double across = kWidth * rng.next() / window.width, down = kWidth * rng.next() / window.height;
             const Vec2 at(std::min(corner.x + static_cast<float>(across), 0x1.fffffep-1f),
@@ -110,15 +111,15 @@ std::optional<PhotonQuality::Noise> noise_of(const FinalGather& gather, const Im
         pixel.variance = seen.variance();
     });
     double mean = 0, rays = 0;
-    for (const Pixel& p : pixels) {
-        mean += p.mean / kPixels;
-        rays += p.rays / kPixels;
+    for (const Pixel& p : seen_pixels) {
+        mean += p.mean / pixels;
+        rays += p.rays / pixels;
     }
     const auto relative = [&](double squared, const Pixel& p) {
         return squared / (p.mean * p.mean + kDark * mean * mean);
     };
     std::vector<double> samples, records;
-    for (const Pixel& p : pixels) {
+    for (const Pixel& p : seen_pixels) {
         samples.push_back(relative(p.variance, p));
         records.push_back(relative(p.of_records * p.of_records, p));
     }
@@ -127,14 +128,16 @@ std::optional<PhotonQuality::Noise> noise_of(const FinalGather& gather, const Im
 }
 
 void warn_of_photons(RenderStats& stats, std::int64_t passes, std::int64_t max_depth) {
-    if (max_depth == 1) return; // all light is direct
+    // Of two scatterings the second is lit directly, or by caustics: no more is asked of photons.
     const PhotonQuality& q = stats.photon_quality;
     const auto lookups = q.lookups.value_or(PhotonQuality::Lookups{0, 0, 1});
     const auto cache = q.cache.value_or(PhotonQuality::Cache{});
     const double brightest = q.of_brightest.value_or(0), all_passes = std::max(1.0, static_cast<double>(passes));
     if (stats.photons_global + stats.photons_caustic == 0) {
-        stats.warn(Doubt::photons, "no photon was stored: only direct light is rendered. If there is more, try more "
-                                   "light_paths or mutations");
+        if (max_depth > 2)
+            stats.warn(Doubt::photons,
+                       "no photon was stored: only direct light is rendered. If there is more, try more "
+                       "light_paths or mutations");
         return;
     }
     // Where light is brightest no lookup may ask: a room behind a narrow door has most of the power, in few photons.
@@ -142,7 +145,7 @@ void warn_of_photons(RenderStats& stats, std::int64_t passes, std::int64_t max_d
         stats.warn(Doubt::photons, fmt::format("the brightest 0.1 % of the photons carry {:.0f} % of the power: expect "
                                                "blotches. Try more passes, or another method",
                                                100 * brightest));
-    if (lookups.share < kLeastFound && max_depth > 2) // of two scatterings the second is lit directly, or by caustics
+    if (lookups.share < kLeastFound && max_depth > 2)
         stats.warn(Doubt::lookups, fmt::format("the photon map is too sparse where it is asked: {:.1f} photons within "
                                                "reach of a lookup, {:.0f} % of those asked for. Try more photons",
                                                lookups.found, 100 * lookups.share));

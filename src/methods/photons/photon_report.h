@@ -31,8 +31,10 @@ void report_cache(const IrradianceCache& cache, double starving, RenderStats& st
 void report_false_spots(const FinalGather& gather, std::uint64_t seed, RenderStats& stats);
 
 /// How noisy samples of pixels are, and what records of the cache add to that; none where the picture is black.
-constexpr int kSamplesForNoise = 2048; ///< that this takes
-std::optional<PhotonQuality::Noise> noise_of(const FinalGather& gather, const ImageWindow& window, std::uint64_t seed);
+/// Takes kSamplesInPixel samples in each of `pixels`.
+constexpr int kPixelsForNoise = 256, kSamplesInPixel = 8;
+std::optional<PhotonQuality::Noise> noise_of(const FinalGather& gather, const ImageWindow& window, std::uint64_t seed,
+                                             int pixels = kPixelsForNoise);
 
 /// Warns by what the last of `passes` left in `stats`: few photons with most of the power, maps too sparse where they
 /// are asked, spots of light that pilot photons don't confirm, an irradiance cache that is noisy or without answers, no

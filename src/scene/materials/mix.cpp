@@ -12,20 +12,13 @@ class MixMaterial final : public Material {
   public:
     MixMaterial(MaterialPtr a, MaterialPtr b, FloatTexture amount)
         : a_(std::move(a)), b_(std::move(b)), amount_(std::move(amount)), salt_(1 + std::max(salt(*a_), salt(*b_))),
-          traits_(a_->traits() | b_->traits()), surface_(mixed_surface()) {}
+          traits_(a_->traits() | b_->traits()), surface_(mixed_surface()), finite_share_(mixed_share()) {}
 
     Bsdf bsdf(const SurfacePoint& point) const override {
         return (place_hash(point, salt_) < amount_->value(point) ? b_ : a_)->bsdf(point);
     }
     BsdfTraits traits() const override { return traits_; }
-    FloatTexture finite_share() const override {
-        const FloatTexture a = a_->finite_share(), b = b_->finite_share();
-        if (a == nullptr && b == nullptr && a_->traits().finite == b_->traits().finite) return nullptr;
-        const auto of = [](const FloatTexture& share, const Material& m) {
-            return share != nullptr ? share : constant_texture(m.traits().finite ? 1.0 : 0.0);
-        };
-        return mix_texture<double>(of(a, *a_), of(b, *b_), amount_);
-    }
+    FloatTexture finite_share() const override { return finite_share_; }
     const char* kind() const override { return "mix"; }
     SurfaceDefaults surface() const override { return surface_; }
 
@@ -36,12 +29,21 @@ class MixMaterial final : public Material {
         return mix != nullptr ? mix->salt_ : 0;
     }
     SurfaceDefaults mixed_surface() const;
+    FloatTexture mixed_share() const {
+        const FloatTexture a = a_->finite_share(), b = b_->finite_share();
+        if (a == nullptr && b == nullptr && a_->traits().finite == b_->traits().finite) return nullptr;
+        const auto of = [](const FloatTexture& share, const Material& m) {
+            return share != nullptr ? share : constant_texture(m.traits().finite ? 1.0 : 0.0);
+        };
+        return mix_texture<double>(of(a, *a_), of(b, *b_), amount_);
+    }
 
     MaterialPtr a_, b_;
     FloatTexture amount_;
     std::uint32_t salt_;
     BsdfTraits traits_; // kept, for a mix of mixes may have each of them many times
     SurfaceDefaults surface_;
+    FloatTexture finite_share_;
 };
 
 /// The opacity of the material that is at a place.

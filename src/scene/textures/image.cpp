@@ -13,8 +13,6 @@
 namespace keyhole {
 namespace {
 
-constexpr int kAlphaChannel = 3;
-
 double decode(double x, const ImageOptions& options) {
     switch (options.encoding) {
     case Encoding::linear:
@@ -179,16 +177,19 @@ template TextureKinds<double> image_kinds();
 template <class T>
 std::shared_ptr<const Texture<T>> image_texture(const std::string& path, const ImageOptions& options) {
     ImageOptions o = options;
-    const bool alpha = o.channel == kAlphaChannel;
+    const bool alpha = o.channel == 3;
     if (alpha) o.encoding = Encoding::linear;
     const auto image = load_image(path, alpha ? ImagePart::alpha : ImagePart::colors);
     return std::visit(
         [&](const auto& texels) -> std::shared_ptr<const Texture<T>> {
             using Texels = std::decay_t<decltype(texels)>;
-            const auto texture = std::make_shared<ImageTexture<T, Texels>>(image, o);
-            // As the alpha of pictures without any.
-            if (texels.size() == 1 && o.wrap != Wrap::black) return constant_texture(texture->value({}));
-            return texture;
+            // As the alpha of pictures without any: the same wherever it is asked, and with no border to fade to.
+            if (texels.size() == 1 && o.wrap == Wrap::black) o.filter = Filter::nearest;
+            if (texels.size() == 1 && o.wrap != Wrap::black) {
+                o.mapping = {};
+                return constant_texture(ImageTexture<T, Texels>(image, o).value({}));
+            }
+            return std::make_shared<ImageTexture<T, Texels>>(image, o);
         },
         image->texels);
 }

@@ -55,8 +55,8 @@ bool read(OIIO::ImageInput& input, ImagePart part, TextureImage& image, std::str
 
 namespace keyhole {
 
-extern "C" bool keyhole_read_image(const std::string& path, ImagePart part, TextureImage& image,
-                                   std::string& error) noexcept {
+extern "C" bool keyhole_read_image_part(const std::string& path, ImagePart part, TextureImage& image,
+                                        std::string& error) noexcept {
     try {
         // Colours of pictures with alpha as they are, not multiplied by it.
         OIIO::ImageSpec wish;

@@ -9,6 +9,6 @@ namespace keyhole {
 using ReadImage = bool(const std::string& path, ImagePart part, TextureImage& image, std::string& error) noexcept;
 
 constexpr const char* kImageModule = "libkeyhole_oiio.so";
-constexpr const char* kReadImageSymbol = "keyhole_read_image";
+constexpr const char* kReadImageSymbol = "keyhole_read_image_part";
 
 } // namespace keyhole

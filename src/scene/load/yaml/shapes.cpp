@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace keyhole {
 namespace {
 
@@ -39,11 +41,12 @@ void ShapeReader::append(std::vector<Shape> shapes) {
 }
 
 void ShapeReader::check_unused_groups() {
-    const std::size_t shapes = shapes_.size(), instances = instances_;
+    const std::size_t shapes = shapes_.size(), instances = instances_, leaves = leaves_;
     for (auto& [name, group] : groups_)
         if (!group.used) mistakes_.attempt([&, &unused = group] { read_named_group(unused, *unused.key, {}); });
     shapes_.resize(shapes);
     instances_ = instances;
+    leaves_ = leaves;
 }
 
 void ShapeReader::read_list_of_shapes(const YamlNode& list, const Placement& placement) {
@@ -59,6 +62,8 @@ void ShapeReader::read_shape(const YamlNode& node, const Placement& placement) {
     if (type == "group") return read_group(node, placement);
     if (type == "instance") return read_instance(node, placement);
 
+    ++leaves_;
+    check_limits(node);
     Shape shape;
     shape.geometry = read_geometry(type, node, meshes_);
     const MapReader map(node, "a shape");
@@ -114,13 +119,13 @@ void ShapeReader::read_named_group(Group& group, const YamlNode& user, const Pla
     group.used = true;
     if (group.empty) return; // or groups of many empty ones, each of many of the next, would take for ever
     group.open = true;
-    const std::size_t before = shapes_.size();
+    const std::size_t before = leaves_;
     const struct Closer {
         Group& group;
         ~Closer() { group.open = false; } // after a mistake, too: the group may be placed again
     } closer{group};
     read_list_of_shapes(*group.shapes, placement);
-    group.empty = shapes_.size() == before;
+    group.empty = leaves_ == before;
 }
 
 ShapeReader::Placement ShapeReader::inherit(const MapReader& map, const Placement& placement) const {
@@ -144,7 +149,7 @@ void ShapeReader::check_limits(const YamlNode& node) const {
     const auto stop = [&](std::size_t most, const char* what) {
         throw FatalInputError(node.position(), fmt::format("found more than {} {}, expected fewer", most, what));
     };
-    if (shapes_.size() > kMaxShapes) stop(kMaxShapes, "shapes");
+    if (std::max(shapes_.size(), leaves_) > kMaxShapes) stop(kMaxShapes, "shapes");
     if (triangles_ > kMaxTriangles) stop(kMaxTriangles, "triangles");
 }
 

@@ -83,6 +83,7 @@ class ShapeReader {
     MeshCache meshes_;
     std::vector<Shape> shapes_;
     std::size_t triangles_ = 0, instances_ = 0;
+    std::size_t leaves_ = 0; ///< shapes that were read, those without an area and parts of one file as one
 };
 
 } // namespace keyhole
