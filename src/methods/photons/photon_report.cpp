@@ -87,7 +87,6 @@ void report_false_spots(const FinalGather& gather, std::uint64_t seed, RenderSta
 std::optional<PhotonQuality::Noise> noise_of(const FinalGather& gather, const ImageWindow& window, std::uint64_t seed,
                                              int pixels) {
     // In a quarter of a pixel: where the window is that of a trial, its pixels are larger than the picture's.
-    constexpr int kSamples = kSamplesInPixel;
     constexpr double kWidth = 0.25;
     struct Pixel {
         double mean = 0, variance = 0, of_records = 0, rays = 0;
@@ -98,14 +97,14 @@ std::optional<PhotonQuality::Noise> noise_of(const FinalGather& gather, const Im
         const Vec2 corner = lattice_image_point(seed, StreamPurpose::survey, i);
         RunningStats seen;
         Pixel& pixel = seen_pixels[static_cast<std::size_t>(i)];
-        for (int k = 0; k < kSamples; ++k) {
+        for (int k = 0; k < kSamplesInPixel; ++k) {
             const double across = kWidth * rng.next() / window.width, down = kWidth * rng.next() / window.height;
             const Vec2 at(std::min(corner.x + static_cast<float>(across), 0x1.fffffep-1f),
                           std::min(corner.y + static_cast<float>(down), 0x1.fffffep-1f));
             const FinalGather::Doubts sample = gather.doubt(at, false, rng);
             seen.add(sample.all);
-            pixel.of_records += sample.of_records / kSamples;
-            pixel.rays += static_cast<double>(sample.rays) / kSamples;
+            pixel.of_records += sample.of_records / kSamplesInPixel;
+            pixel.rays += static_cast<double>(sample.rays) / kSamplesInPixel;
         }
         pixel.mean = seen.mean();
         pixel.variance = seen.variance();
@@ -128,13 +127,14 @@ std::optional<PhotonQuality::Noise> noise_of(const FinalGather& gather, const Im
 }
 
 void warn_of_photons(RenderStats& stats, std::int64_t passes, std::int64_t max_depth) {
-    // Of two scatterings the second is lit directly, or by caustics: no more is asked of photons.
     const PhotonQuality& q = stats.photon_quality;
     const auto lookups = q.lookups.value_or(PhotonQuality::Lookups{0, 0, 1});
     const auto cache = q.cache.value_or(PhotonQuality::Cache{});
     const double brightest = q.of_brightest.value_or(0), all_passes = std::max(1.0, static_cast<double>(passes));
+    // Of two scatterings the second is lit directly, or by caustics.
+    const bool asked = max_depth > 2;
     if (stats.photons_global + stats.photons_caustic == 0) {
-        if (max_depth > 2)
+        if (asked)
             stats.warn(Doubt::photons,
                        "no photon was stored: only direct light is rendered. If there is more, try more "
                        "light_paths or mutations");
@@ -145,7 +145,7 @@ void warn_of_photons(RenderStats& stats, std::int64_t passes, std::int64_t max_d
         stats.warn(Doubt::photons, fmt::format("the brightest 0.1 % of the photons carry {:.0f} % of the power: expect "
                                                "blotches. Try more passes, or another method",
                                                100 * brightest));
-    if (lookups.share < kLeastFound && max_depth > 2)
+    if (lookups.share < kLeastFound && asked)
         stats.warn(Doubt::lookups, fmt::format("the photon map is too sparse where it is asked: {:.1f} photons within "
                                                "reach of a lookup, {:.0f} % of those asked for. Try more photons",
                                                lookups.found, 100 * lookups.share));
