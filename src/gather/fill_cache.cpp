@@ -24,6 +24,21 @@ constexpr double kFirst = 0.5;      // share of rays that each record gets alike
 constexpr int kLeastMore = 8;       // fewer rays are not worth a hemisphere
 constexpr std::array kSteps{kCoarsest, kCoarsest / 2, kCoarsest / 4, kCoarsest / 8, 1, 1};
 
+/// What hides `to` from a place of a surface with `normal`, a little above both.
+std::optional<Wall> wall_between(const Scene& scene, const Vec3& from, const Vec3& normal, const Vec3& to) {
+    const Vec3 d = to - from;
+    SurfacePoint above;
+    above.p = from + normal * std::max(kLift * d.length(), 2 * rounding_along(normal, from));
+    above.ng = normal;
+    const auto hit = d == Vec3(0, 0, 0) ? std::nullopt : scene.trace(above, d.normalized());
+    if (!hit || hit->site == Site::infinite || (hit->p - above.p).length2() > d.length2()) return std::nullopt;
+    Vec3 n = hit->ng - normal * hit->ng.dot(normal); // along the surface
+    if (!(n.length2() > 0)) return std::nullopt;
+    n.normalize();
+    if (n.dot(d) < 0) n = -n;
+    return Wall{n, n.dot(hit->p - above.p)};
+}
+
 /// Pixels of one level in an order that jumps about, so that those of one batch are far from each other.
 class LevelPixels {
   public:
@@ -135,7 +150,10 @@ class CacheFill {
             const auto k = static_cast<std::size_t>(i);
             records[k] = maker_.compute(batch_[k], first_, indices_[k]);
         });
-        for (const IrradianceRecord& r : records) cache_.insert(r);
+        for (const IrradianceRecord& r : records)
+            cache_.insert(r, [this](const Vec3& from, const Vec3& normal, const Vec3& to) {
+                return wall_between(rays_.scene(), from, normal, to);
+            });
         placed_.insert(placed_.end(), batch_.begin(), batch_.end());
         batch_.clear();
         indices_.clear();

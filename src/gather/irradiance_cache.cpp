@@ -19,6 +19,8 @@ constexpr float kHeight2 = 16;
 constexpr double kDark = 0.1;
 /// Relative error, over the cache's, by which two records may predict each other wrongly.
 constexpr float kDoubt = 1.0f / 3;
+/// Of its lower bound, how far a record is used at least where a wall ends it.
+constexpr float kLeastOfBound = 1e-3f;
 
 Rgb to_rgb(const Vec3& v) { return {v.x, v.y, v.z}; }
 Vec3 to_vec(const Rgb& c) { return {static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z)}; }
@@ -75,7 +77,7 @@ template <class Visit> void IrradianceCache::visit_near(const Vec3& position, Vi
 float IrradianceCache::weight_of(const Stored& r, float as_far, const Vec3& d, const Vec3& normal) {
     const float height = d.dot(r.normal), height2 = height * height;
     const float apart2 = (d.length2() - height2) / (as_far * as_far) + kHeight2 * height2 / (r.radius * r.radius);
-    if (!(apart2 < 1)) return 0;
+    if (!(apart2 < 1) || d.dot(r.wall.normal) > r.wall.distance) return 0;
     // What lies behind the record may be in the dark behind an edge.
     if (d.dot(normal + r.normal) < -0.1f * r.radius) return 0;
     const float turned = (normal - r.normal).length2() / (2 * kNormalReach);
@@ -130,7 +132,7 @@ Vec3 IrradianceCache::irradiance_at(const Stored& r, const Vec3& to, const Vec3&
     return e;
 }
 
-void IrradianceCache::insert(const IrradianceRecord& record) {
+void IrradianceCache::insert(const IrradianceRecord& record, const WallBetween& wall) {
     const HemisphereEstimate& e = record.light;
     Stored r{.position = record.position,
              .normal = record.normal,
@@ -141,6 +143,7 @@ void IrradianceCache::insert(const IrradianceRecord& record) {
              .variance_by_all = static_cast<float>(e.variance),
              .around = static_cast<float>(std::min(e.distance, 1e30)),
              .distance = static_cast<float>(std::min(e.distance, 1e30)),
+             .wall = {},
              .min_radius = record.min_radius,
              .max_radius = record.max_radius,
              .min_radius_by_light = record.min_radius_by_light,
@@ -154,7 +157,7 @@ void IrradianceCache::insert(const IrradianceRecord& record) {
     // A radius held up by its lower bound would stretch the gradient beyond where it holds.
     r.held = std::min(1.0f, error_ * r.distance / r.radius);
     for (Vec3& g : r.translation) g *= r.held;
-    end_where_wrong(r);
+    end_where_wrong(r, wall);
     records_.push_back(r);
     index(static_cast<std::uint32_t>(records_.size() - 1));
 }
@@ -248,7 +251,8 @@ void IrradianceCache::update_radius(Stored& r) const {
     r.radius = std::clamp(radius, least, r.max_radius);
     // Not so where the lower bound decides: things are smaller there than the bound is.
     r.reach = std::clamp(overlap_ * radius, least, overlap_ * r.max_radius);
-    r.reach = std::min(r.reach, std::max(r.radius, r.border));
+    r.reach = std::min({r.reach, std::max(r.radius, r.border), r.other_wall});
+    r.radius = std::min(r.radius, r.other_wall);
 }
 
 void IrradianceCache::clamp_with_neighbours(Stored& r) {
@@ -273,18 +277,40 @@ void IrradianceCache::clamp_with_neighbours(Stored& r) {
     update_radius(r);
 }
 
-void IrradianceCache::end_where_wrong(Stored& r) {
+void IrradianceCache::end_where_wrong(Stored& r, const WallBetween& wall) {
     visit_near(r.position, [&](std::uint32_t i) {
         Stored& other = records_[i];
         if (!((r.position - other.position).length() < std::max(r.reach, other.reach))) return;
         const float good = good_between(r, other, std::max(wrong_at(other, r), wrong_at(r, other)));
+        if (good == std::numeric_limits<float>::infinity()) return;
         for (Stored* s : {&r, &other}) end_at(*s, good);
+        end_at_wall(r, other, wall);
+        end_at_wall(other, r, wall);
     });
     // Those that don't reach as far as here have no say here, and this one may have none there.
     visit_standing(r.position, r.reach, [&](std::uint32_t i) {
         const Stored& other = records_[i];
-        if ((other.position - r.position).length() < r.reach) end_at(r, good_between(r, other, wrong_at(r, other)));
+        if (!((other.position - r.position).length() < r.reach)) return;
+        const float good = good_between(r, other, wrong_at(r, other));
+        if (good == std::numeric_limits<float>::infinity()) return;
+        end_at(r, good);
+        end_at_wall(r, other, wall);
     });
+}
+
+/// What a wall hides from a record is not served by it. One wall is known as a plane, so that the record goes on beside
+/// it; others end it all around.
+void IrradianceCache::end_at_wall(Stored& r, const Stored& other, const WallBetween& wall) const {
+    const Vec3 to = other.position - r.position;
+    if (!wall || to.dot(r.wall.normal) > r.wall.distance) return;
+    const auto found = wall(r.position, r.normal, other.position);
+    if (!found) return;
+    if (r.wall.normal == Vec3(0, 0, 0)) {
+        r.wall = *found;
+        return;
+    }
+    r.other_wall = std::min(r.other_wall, std::max(found->distance, kLeastOfBound * r.min_radius));
+    update_radius(r);
 }
 
 /// By how much the luminance that `r` predicts at another record is wrong; 0 where it predicts nothing.

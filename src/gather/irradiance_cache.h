@@ -25,6 +25,15 @@ struct IrradianceRecord {
     float min_radius_by_light = 0;
 };
 
+/// A wall that stands on a surface, as seen from a place of that: what lies at an offset `d` from the place is behind
+/// it where d . normal > distance.
+struct Wall {
+    Vec3 normal{0, 0, 0};                                    ///< unit; 0: there is none
+    float distance = std::numeric_limits<float>::infinity(); ///< [m]
+};
+/// The first wall between a place, on the side of unit `normal`, and another one; none if they see each other.
+using WallBetween = std::function<std::optional<Wall>(const Vec3& from, const Vec3& normal, const Vec3& to)>;
+
 /// Records with an index. Filled by one thread; then immutable and thread-safe. The same records in the same order give
 /// the same answers.
 class IrradianceCache {
@@ -36,8 +45,9 @@ class IrradianceCache {
 
     /// Clamps the record's radius by its neighbours' and theirs by its: what one of them sees close by is close to the
     /// others, too, even where their rays missed it (neighbour clamping, Krivanek et al. 2006). Where one record's
-    /// gradients contradict what another found by more than noise, both shrink until they agree.
-    void insert(const IrradianceRecord& record);
+    /// gradients contradict what another found by more than noise, both shrink until they agree; where something stands
+    /// between them they end before it, whatever their lower bounds.
+    void insert(const IrradianceRecord& record, const WallBetween& wall = {});
 
     /// Standard error of the light around each record, relative to that light: told by the others that have a say
     /// there. So it doesn't depend on the record's own light, which may be refined by it and stay right on average.
@@ -104,6 +114,9 @@ class IrradianceCache {
         float around;          ///< distance to surrounding surfaces, clamped by neighbours' [m]
         float distance;        ///< within which light changes by its own size, at most `around`; the same [m]
         float border = std::numeric_limits<float>::infinity(); ///< to where it ends unless its radius is larger [m]
+        Wall wall;                                             ///< where it ends in any case
+        float other_wall =
+            std::numeric_limits<float>::infinity(); ///< and how far it is used for the sake of others [m]
         float min_radius, max_radius, min_radius_by_light;
         float held = 1; ///< factor of its translation gradient
         LongerWays reaching;
@@ -123,7 +136,8 @@ class IrradianceCache {
     static float weight_of(const Stored& r, float as_far, const Vec3& d, const Vec3& normal);
     void update_radius(Stored& r) const;
     void clamp_with_neighbours(Stored& r);
-    void end_where_wrong(Stored& r);
+    void end_where_wrong(Stored& r, const WallBetween& wall);
+    void end_at_wall(Stored& r, const Stored& other, const WallBetween& wall) const;
     static float wrong_at(const Stored& r, const Stored& other);
     float good_between(const Stored& a, const Stored& b, float wrong) const;
     void end_at(Stored& r, float good) const;

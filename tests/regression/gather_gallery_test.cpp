@@ -70,6 +70,28 @@ TEST(Gallery, NoLightLeaksUnderAThinWall) {
     EXPECT_LT(dark / lit, 2e-3);
 }
 
+TEST(Gallery, RecordsDoNotShineThroughAWall) {
+    // The same, with a lamp of a hundredth of the power on the right, right beside the wall: records are used over
+    // eight pixels at least, and stand on one floor.
+    const auto white = make_diffuse(Rgb(0.8));
+    const auto beside_wall = [&](double left) {
+        test::SceneMaker m;
+        m.rectangle({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, white)
+            .rectangle({0, 0, -1}, {0, 0, 2}, {0, 1, 0}, white)
+            .emitter(make_point_emitter({0.5f, 0.3f, 0}, Rgb(0.05)))
+            .camera({0, 4, 0.01f}, {0, 0, 0}, 24)
+            .window(40, 40);
+        if (left > 0) m.emitter(make_point_emitter({-0.5f, 0.3f, 0}, Rgb(left)));
+        const auto scene = m.build();
+        Settings settings = small_settings();
+        settings.cache_min_reach = 8;
+        return render_layer(*scene, settings, "indirect").mean(21, 24);
+    };
+    const double alone = beside_wall(0);
+    EXPECT_GT(alone, 0);
+    EXPECT_LT(beside_wall(5) / alone, 1.5) << "76 where records go on behind the wall";
+}
+
 TEST(Gallery, CornersAreNotDarkened) {
     // A closed box of uniform emission has the same radiance everywhere, corners included.
     const auto scene_of = [] {

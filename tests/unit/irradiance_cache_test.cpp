@@ -271,6 +271,49 @@ TEST(IrradianceCache, KnowsItsNoiseAsAWhole) {
     EXPECT_NEAR(cache.noise(), std::sqrt((3 * 0.5 + 12) / (1 + 4 + 9)), 1e-6);
 }
 
+TEST(IrradianceCache, RecordsThatContradictEachOtherEndAtTheWallBetweenThem) {
+    constexpr float kWall = 0.1f, kLeast = 1; // [m] from the bright record; of both, which are 0.5 m apart
+    // What the two say at x with a wall, or without.
+    const auto light_at = [&](float x, double dark, bool parted) {
+        IrradianceCache cache(0.3f);
+        const WallBetween wall = [&](const Vec3& from, const Vec3& /*normal*/, const Vec3& to) {
+            const Vec3 n(to.x < from.x ? -1.0f : 1.0f, 0, 0);
+            return parted ? std::optional(Wall{n, std::abs(from.x - kWall)}) : std::nullopt;
+        };
+        for (const auto& [at, light] : {std::pair(0.0f, 10.0), {0.5f, dark}}) {
+            IrradianceRecord r = record({at, 0, 0}, light, 10);
+            r.light.variance = 0;
+            r.min_radius = r.min_radius_by_light = kLeast;
+            cache.insert(r, wall);
+        }
+        return cache.irradiance({x, 0, 0}, {0, 0, 1}).irradiance.x;
+    };
+    EXPECT_DOUBLE_EQ(light_at(0.11f, 1, true), 1);
+    EXPECT_DOUBLE_EQ(light_at(0.09f, 1, true), 10);
+    EXPECT_DOUBLE_EQ(light_at(-0.4f, 1, true), 10) << "beside the wall it goes on";
+    EXPECT_GT(light_at(0.11f, 1, false), 2) << "in sight of each other the lower bound holds";
+    EXPECT_GT(light_at(0.11f, 9.9, true), 9.905) << "where light is the same, a wall parts nothing";
+}
+
+TEST(IrradianceCache, ASecondWallEndsARecordAllAround) {
+    IrradianceCache cache(0.3f);
+    const WallBetween wall = [](const Vec3& from, const Vec3& /*normal*/, const Vec3& to) {
+        const Vec3 d = to - from; // half way, across the line of sight
+        return std::optional(Wall{d.normalized(), d.length() / 2});
+    };
+    const auto insert = [&](const Vec3& p, double light) {
+        IrradianceRecord r = record(p, light, 10);
+        r.light.variance = 0;
+        r.min_radius = r.min_radius_by_light = 1;
+        cache.insert(r, wall);
+    };
+    insert({0, 0, 0}, 10);
+    insert({0.4f, 0, 0}, 1);
+    EXPECT_GE(cache.reach(0), 1);
+    insert({0, 0.3f, 0}, 1);
+    EXPECT_FLOAT_EQ(cache.reach(0), 0.15f);
+}
+
 TEST(IrradianceCache, DoesNotTakeNoiseForLight) {
     Rng rng(2, StreamPurpose::test, 0);
     const auto finest = [&](double told) {

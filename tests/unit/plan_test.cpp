@@ -1,4 +1,5 @@
 // "Model no more than a scene needs": what is left out is left out, by the statistics, and nothing else is.
+#include "methods/choice/affordable.h"
 #include "methods/choice/effort.h"
 #include "methods/method.h"
 #include "methods/photons/plan.h"
@@ -132,6 +133,42 @@ TEST(Effort, GrowsEverythingButWhatIsGiven) {
     EXPECT_LT(more.cache_min_reach, less.cache_min_reach);
     EXPECT_EQ(with_effort(s, 8, 320 * 240, {"cache_min_reach"}).cache_min_reach, s.cache_min_reach);
     EXPECT_EQ(more.passes, 1);
+}
+
+TEST(Effort, KeepsMorePhotonsThanItNeedsWhileTheMemoryHoldsThem) {
+    Settings s;
+    s.method = &methods::ipm;
+    const Settings little = with_effort(s, 4, 320 * 240, {});
+    EXPECT_EQ(little.passes, 1);
+    s.photon_memory /= 2;
+    const Settings less = with_effort(s, 4, 320 * 240, {});
+    EXPECT_EQ(less.passes, 1) << "what is needed is held";
+    EXPECT_LT(less.photons, little.photons);
+    EXPECT_LE(2 * little.photons, little.light_paths);
+}
+
+TEST(Effort, WhatIsGivenLeavesTimeForTheRest) {
+    // Photons, records and samples that took 1, 3 and 4 s in a render of effort 1.
+    constexpr std::int64_t kPixels = 32 * 24; // many samples of each
+    constexpr double kTime = 8;               // [s]
+    Settings s;
+    s.method = &methods::ipm;
+    RenderStats stats;
+    stats.stages = {{&stages::photons_of_light_paths, 1, 1, 0}, {&stages::cache, 3, 3, 0}, {&stages::gather, 4, 4, 0}};
+    const Experience cost(with_effort(s, 1, kPixels, {}), 1, kPixels, stats, kTime);
+    const auto rest = [&](std::int64_t rays, const std::set<std::string>& given) {
+        s.cache_rays = rays;
+        const double effort = affordable_effort(cost, s, given, {}, kPixels, kTime);
+        const Settings chosen = with_effort(s, effort, kPixels, given);
+        return cost.predict(stages::photons_of_light_paths, 1, chosen, kPixels) +
+               cost.predict(stages::gather, 4, chosen, kPixels);
+    };
+    const double free = rest(0, {});
+    EXPECT_NEAR(free, 5, 0.1);
+    EXPECT_NEAR(rest(1500, {"cache_rays"}), 5, 0.2) << "no more than would be chosen";
+    EXPECT_NEAR(rest(6000, {"cache_rays"}), 0.4 * kTime, 0.1) << "records alone would take all of the time and more";
+    EXPECT_NEAR(cost_of_given(cost, s, {"cache_rays"}, kPixels), 12, 0.2);
+    EXPECT_EQ(cost_of_given(cost, s, {"seed"}, kPixels), 0);
 }
 
 TEST(Effort, SpreadsOverPassesWhatTheMemoryCannotHold) {

@@ -12,9 +12,14 @@ namespace keyhole {
 /// CPU time of a unit of effort, on scenes/ at 320x240 [s]: what is known before anything was measured.
 constexpr double kSecondsOfEffort = 5;
 
-/// The most effort of which a render by the method of `cost` is predicted to take at most `seconds`; `least` where that
-/// is too much already.
+/// The most effort of which a render by the method of `cost` is predicted to take at most `seconds`; next to none where
+/// that is too much already. Where what was `given` takes most of that time, the rest gets two fifths of it all the
+/// same.
 double affordable_effort(const Experience& cost, const Settings& settings, const std::set<std::string>& given,
-                         const StageBalance& balance, double pixels, double seconds, double least = 1e-4);
+                         const StageBalance& balance, double pixels, double seconds);
+
+/// What the settings that were `given` add to the time of a render with next to no effort [s].
+double cost_of_given(const Experience& cost, const Settings& settings, const std::set<std::string>& given,
+                     double pixels);
 
 } // namespace keyhole

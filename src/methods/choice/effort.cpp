@@ -11,11 +11,17 @@ namespace {
 
 constexpr double kPixels = 320 * 240; // of the picture that effort is measured by
 
-/// Passes that bring `wanted` photons, as many of them as the memory holds at a time.
-std::int64_t passes_for(std::int64_t wanted, Settings settings) {
+/// Light paths of a unit of effort. Gather rays average over so many photons that more paths bring less than more
+/// samples of pixels would.
+constexpr double kLightPaths = 350e3;
+/// Photons of a unit of effort that there have to be, in several passes if the memory doesn't hold them at once; and
+/// those that are kept where it does, which blur less, at most so many of a light path.
+constexpr double kPhotonsNeeded = 100e3, kPhotonsKept = 250e3, kPhotonsOfPath = 0.5;
+
+/// Photons that the memory holds at a time.
+double photons_held(Settings settings) {
     settings.photons = 0;
-    const auto held = static_cast<std::int64_t>(plan_memory(settings, settings.method->importance, 2).photons);
-    return std::max<std::int64_t>(1, (wanted + held - 1) / std::max<std::int64_t>(1, held));
+    return std::max(1.0, static_cast<double>(plan_memory(settings, settings.method->importance, 2).photons));
 }
 
 } // namespace
@@ -28,15 +34,16 @@ Settings with_effort(const Settings& settings, double effort, std::int64_t pixel
     };
     // Small pictures get more samples a pixel, large ones fewer, so that photons and pixels share the time alike.
     const double spp = 12 * std::sqrt(effort * kPixels / static_cast<double>(pixels));
-    const double photons = 100e3 * std::pow(effort, 0.7);
+    const double growth = std::pow(effort, 0.7), held = photons_held(s);
     const double passes = given.contains("passes") || !s.method->keeps_photons
                               ? 1
-                              : std::min(static_cast<double>(passes_for(static_cast<std::int64_t>(photons), s)),
-                                         std::floor(std::max(1.0, spp)));
+                              : std::min(std::ceil(kPhotonsNeeded * growth / held), std::floor(std::max(1.0, spp)));
     set("passes", &Settings::passes, passes, 1, 1 << 20);
     set("spp", &Settings::spp, spp / passes, 1, 1 << 24);
-    set("photons", &Settings::photons, photons / passes, 1000, 1 << 30);
-    set("light_paths", &Settings::light_paths, 500e3 * effort / passes, 1000, 0x1p50);
+    set("photons", &Settings::photons,
+        std::min({kPhotonsKept * growth / passes, kPhotonsOfPath * kLightPaths * effort / passes, held}), 1000,
+        1 << 30);
+    set("light_paths", &Settings::light_paths, kLightPaths * effort / passes, 1000, 0x1p50);
     set("mutations", &Settings::mutations, s.method->mutations_of_effort * effort * balance.chains / passes, 1000,
         0x1p50);
     set("brightness_samples", &Settings::brightness_samples,

@@ -37,6 +37,8 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 /// Of the time for a render with photons or chains that its predicted cost is to fill. What is left then goes into more
 /// samples of pixels, or more mutations.
 constexpr double kUse = 0.92, kMoreMutations = 1.5;
+/// Times the time of a render that settings given by number take, from which on that is told.
+constexpr double kTooMuch = 0.8;
 /// Less than this share of all time is not worth a render with photons.
 constexpr double kLeast = 0.05;
 /// The trial of a method by name: of the time, what it is to take and what it may take.
@@ -191,6 +193,7 @@ class RenderInTime {
             return s;
         }
         s = cost_->settings_for(s, given_, pixels_, kUse * seconds, effort_);
+        gives_too_much_ = cost_of_given(cost_->cost, settings_, given_, pixels_) > kTooMuch * seconds;
         planned_spp_ = s.spp;
         if (!method_->keeps_photons) {
             s.chain_groups = 1;
@@ -268,6 +271,12 @@ class RenderInTime {
         result.stats.remarks.insert(result.stats.remarks.begin(), remarks_.begin(), remarks_.end());
         result.settings.seed = settings_.seed;
         result.stats.stages.insert(result.stats.stages.begin(), trials_.stages.begin(), trials_.stages.end());
+        if (gives_too_much_)
+            result.stats.warn(Doubt::render,
+                              fmt::format("the settings that were given by number take more than the {:.2g} s "
+                                          "that there are: what has to do with less makes noise. Leave "
+                                          "them out, or give it more time",
+                                          start_));
         if (direct_light_) direct_light_->report(result.stats);
         if (paths_) paths_->report(result.stats);
         return result;
@@ -298,6 +307,7 @@ class RenderInTime {
     double effort_ = 0;              // of the render under way
     std::int64_t planned_spp_ = 0;   // of it
     bool used_up_ = false;           // everything that was asked for by number is done before the time
+    bool gives_too_much_ = false;    // what was asked for by number takes longer than the render's time
     std::int64_t renders_ = 0;       // begun
     std::vector<std::string> remarks_;
     RenderStats trials_; // their time

@@ -24,6 +24,7 @@ constexpr double kMostStarving = 0.1;
 constexpr double kShows = 0.1;       ///< of the light of a sample, or of the picture's mean where that is more
 constexpr double kMostFalse = 0.004; ///< of the picture
 constexpr double kMostNoise = 0.2;   ///< of irradiance records, where passes don't make it less
+constexpr double kNoiseShows = 0.05; ///< of the picture, from records: less of it is no blotch
 
 constexpr int kPoints = 4096;  // of the picture that are looked at for false spots
 constexpr double kDark = 0.01; // of the square of the mean: what is darker still has no relative error to speak of
@@ -157,7 +158,10 @@ void warn_of_photons(RenderStats& stats, std::int64_t passes, std::int64_t max_d
                                "are not there. Try more photons, light_paths or mutations, more passes, "
                                "or another method",
                                100 * share));
-    if (const double noise = cache.noise / std::sqrt(all_passes); noise > kMostNoise)
+    const double noise = cache.noise / std::sqrt(all_passes);
+    // What is known badly may be next to nothing beside direct light.
+    const bool shows = !q.noise || std::sqrt(q.noise->records / all_passes) > kNoiseShows;
+    if (noise > kMostNoise && shows)
         stats.warn(Doubt::records,
                    fmt::format("so few gather rays find light that it is known to {:.0f} % only where the "
                                "irradiance cache estimates it (standard error): expect blotches. Try more "
