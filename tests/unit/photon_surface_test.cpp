@@ -300,5 +300,22 @@ TEST(SurfacePatches, SeesAWallOnAFineFloor) {
     EXPECT_FALSE(patches.obstructed({Vec3(0.2f, 0.5f, 0), kUp}, 0.2));
 }
 
+TEST(SurfacePatches, GlassPartsWhatItStandsOn) {
+    std::vector<Shape> shapes;
+    shapes.push_back(shape_of(kUnitSquare, 1));
+    shapes.push_back(shape_of({{0.5f, 0, 0}, {0, 1, 0}, {0, 0, 1}}, 1));
+    shapes.back().material = make_glass(1.5);
+    const auto scene = scene_of(std::move(shapes));
+    const SurfacePatches patches(*scene);
+    const SurfaceRegion near{Vec3(0.45f, 0.5f, 0), kUp}, away{Vec3(0.2f, 0.5f, 0), kUp};
+    constexpr double r = 0.1, disc = kPi * r * r;
+    EXPECT_TRUE(patches.obstructed(near, r));
+    EXPECT_FALSE(patches.obstructed(away, r));
+    EXPECT_NEAR(patches.area(near, r), disc, 1e-6) << "it is no surface of photons";
+    const double cut = disc_triangle_area({-1, -10}, {0.05, -10}, {0.05, 10}, r) +
+                       disc_triangle_area({-1, -10}, {0.05, 10}, {-1, 10}, r);
+    EXPECT_NEAR(patches.area_in_sight(near, r, 0.01f), cut, 0.05 * disc);
+}
+
 } // namespace
 } // namespace keyhole

@@ -28,6 +28,8 @@ constexpr int kMostLayers = 8; // of surface in a region, one above the other
 /// Of the radius, how far above a region's middle rays start: what lies lower is its own surface.
 constexpr float kOffSurface = 1e-3f;
 
+const std::vector<Shape> kNone;
+
 bool holds_photons(const Shape& shape) {
     return !is_interface(shape) && (shape.material == nullptr || shape.material->traits().finite);
 }
@@ -53,19 +55,8 @@ Bounds bounds_of(const Sphere& sphere) {
     return {sphere.center - Vec3(sphere.radius), sphere.center + Vec3(sphere.radius)};
 }
 
-std::vector<Bounds> bounds_of(const std::vector<Shape>& shapes) {
-    std::vector<Bounds> boxes;
-    for (const Shape& shape : shapes) {
-        if (!holds_photons(shape)) continue;
-        if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) {
-            boxes.push_back(bounds_of(*sphere));
-        } else {
-            const auto& mesh = std::get<TriangleMesh>(shape.geometry);
-            for (const auto& t : mesh.triangles) boxes.push_back(bounds_of(mesh, t));
-        }
-    }
-    return boxes;
-}
+/// What light goes through, or is thrown back by, without leaving photons.
+bool parts_photons(const Shape& shape) { return !is_interface(shape) && !holds_photons(shape); }
 
 /// Surfaces of a region by the side that they show.
 class Sides {
@@ -106,23 +97,37 @@ Bounds bounds_of(const SurfaceRegion& region, double r) {
 
 SurfacePatches::SurfacePatches(const Scene& scene)
     : shapes_(scene.shapes()), scene_(&scene), shares_(finite_shares(shapes_)),
-      tree_(scene.triangle_count() <= kMostInTree ? bounds_of(shapes_) : std::vector<Bounds>()),
-      has_tree_(scene.triangle_count() <= kMostInTree) {
-    if (has_tree_) add_patches();
-}
+      has_tree_(scene.triangle_count() <= kMostInTree), surfaces_(index_of(has_tree_ ? shapes_ : kNone, holds_photons)),
+      others_(index_of(has_tree_ ? shapes_ : kNone, parts_photons)) {}
 
 SurfacePatches::SurfacePatches(const std::vector<Shape>& shapes)
-    : shapes_(shapes), tree_(bounds_of(shapes)), has_tree_(true) {
-    add_patches();
+    : shapes_(shapes), has_tree_(true), surfaces_(index_of(shapes, holds_photons)),
+      others_(index_of(shapes, parts_photons)) {}
+
+SurfacePatches::Index SurfacePatches::index_of(const std::vector<Shape>& shapes, bool (*wanted)(const Shape& shape)) {
+    std::vector<Patch> patches;
+    std::vector<Bounds> boxes;
+    for (std::uint32_t s = 0; s < shapes.size(); ++s) {
+        if (!wanted(shapes[s])) continue;
+        if (const auto* sphere = std::get_if<Sphere>(&shapes[s].geometry)) {
+            patches.push_back({s, 0});
+            boxes.push_back(keyhole::bounds_of(*sphere));
+            continue;
+        }
+        const auto& mesh = std::get<TriangleMesh>(shapes[s].geometry);
+        for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+            patches.push_back({s, t});
+            boxes.push_back(keyhole::bounds_of(mesh, mesh.triangles[t]));
+        }
+    }
+    return {std::move(patches), BoxTree(boxes)};
 }
 
-void SurfacePatches::add_patches() {
-    for (std::uint32_t s = 0; s < shapes_.size(); ++s) {
-        if (!holds_photons(shapes_[s])) continue;
-        const auto* mesh = std::get_if<TriangleMesh>(&shapes_[s].geometry);
-        const auto n = static_cast<std::uint32_t>(mesh != nullptr ? mesh->triangles.size() : 1);
-        for (std::uint32_t t = 0; t < n; ++t) patches_.push_back({s, t});
-    }
+Bounds SurfacePatches::bounds_of(const Patch& patch) const {
+    const Shape& shape = shapes_[patch.shape];
+    if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) return keyhole::bounds_of(*sphere);
+    const auto& mesh = std::get<TriangleMesh>(shape.geometry);
+    return keyhole::bounds_of(mesh, mesh.triangles[patch.triangle]);
 }
 
 double SurfacePatches::area(const SurfaceRegion& region, double r) const {
@@ -130,9 +135,9 @@ double SurfacePatches::area(const SurfaceRegion& region, double r) const {
     double sum = 0;
     int met = 0;
     Sides sides;
-    const bool sums_tell = tree_.overlapping(bounds_of(region, r), [&](std::uint32_t i) {
+    const bool sums_tell = surfaces_.tree.overlapping(keyhole::bounds_of(region, r), [&](std::uint32_t i) {
         if (scene_ != nullptr && ++met > kMostTriangles) return false;
-        const Patch& patch = patches_[i];
+        const Patch& patch = surfaces_.patches[i];
         const auto* sphere = std::get_if<Sphere>(&shapes_[patch.shape].geometry);
         const Part part = sphere != nullptr ? Part{cap_area(*sphere, region, r)} : triangle_part(patch, region, r);
         sum += part.area;
@@ -233,21 +238,17 @@ bool SurfacePatches::obstructed(const SurfaceRegion& region, double r) const {
     // The slab above what counts as the same surface.
     SurfaceRegion above = region;
     above.position += region.normal * static_cast<float>(2 * r / kFlat);
-    const Bounds slab = bounds_of(above, r);
+    const Bounds slab = keyhole::bounds_of(above, r);
     int met = 0;
     bool found = false;
-    const bool all = tree_.overlapping(slab, [&](std::uint32_t i) {
-        if (scene_ != nullptr && ++met > kMostTriangles) return false;
-        const Shape& shape = shapes_[patches_[i].shape];
-        if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) {
-            found |= bounds_of(*sphere).overlaps(slab);
-        } else {
-            const auto& mesh = std::get<TriangleMesh>(shape.geometry);
-            found |= bounds_of(mesh, mesh.triangles[patches_[i].triangle]).overlaps(slab);
-        }
-        return true;
-    });
-    return all ? found : obstructed_by_rays(region, r);
+    const auto look = [&](const Index& index) {
+        return index.tree.overlapping(slab, [&](std::uint32_t i) {
+            if (scene_ != nullptr && ++met > kMostTriangles) return false;
+            found |= bounds_of(index.patches[i]).overlaps(slab);
+            return true;
+        });
+    };
+    return look(surfaces_) && look(others_) ? found : obstructed_by_rays(region, r);
 }
 
 /// Rays go out from above the middle, through the slab, to the region's border.

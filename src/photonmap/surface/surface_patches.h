@@ -37,9 +37,9 @@ class SurfacePatches {
     /// infinite where there is none, and without a scene.
     float free_height(const SurfaceRegion& region, double r) const;
 
-    /// Whether other surfaces may stand on the region of radius `r`, where they could part one half of it from the
-    /// other. By bounding boxes: true more often than need be on slanted and curved surfaces; by rays along the surface
-    /// where there are too many.
+    /// Whether other surfaces, glass and mirrors among them, may stand on the region of radius `r`, where they could
+    /// part one half of it from the other. By bounding boxes: true more often than need be on slanted and curved
+    /// surfaces; by rays along the surface where there are too many.
     bool obstructed(const SurfaceRegion& region, double r) const;
 
     /// Whether the scene is too fine for a tree of its triangles, so that every area takes rays.
@@ -52,7 +52,13 @@ class SurfacePatches {
     struct Patch {
         std::uint32_t shape, triangle;
     };
-    void add_patches();
+    /// Triangles and spheres of some shapes.
+    struct Index {
+        std::vector<Patch> patches; ///< of the tree's boxes
+        BoxTree tree;
+    };
+    static Index index_of(const std::vector<Shape>& shapes, bool (*wanted)(const Shape& shape));
+    Bounds bounds_of(const Patch& patch) const;
     /// Whether photons can lie at some of its places and not at others.
     bool is_patchy(std::uint32_t shape) const { return shapes_[shape].alpha != nullptr || shares_[shape] != nullptr; }
     /// What of a triangle lies in a region.
@@ -73,9 +79,9 @@ class SurfacePatches {
     const std::vector<Shape>& shapes_;
     const Scene* scene_ = nullptr;     // null: there are no rays
     std::vector<FloatTexture> shares_; // by shape: Material::finite_share()
-    std::vector<Patch> patches_;       // of the tree's boxes
-    BoxTree tree_;
     bool has_tree_;
+    Index surfaces_; // that hold photons
+    Index others_;   // glass and mirrors, which part photons all the same
 };
 
 } // namespace keyhole
