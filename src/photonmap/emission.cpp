@@ -108,9 +108,6 @@ class Collector {
 
 constexpr std::int64_t kPathsOfBlock = 64; // paths
 constexpr std::int64_t kPilot = 8192;      // paths
-/// Of the visible power, what is cut off outliers at most. What is more is no outlier but how light gets there: a
-/// stairwell lit from its top would lose a quarter of its light.
-constexpr double kMostCut = 0.03;
 
 /// Visible power that a photon may have, where `paths` are traced of which `known` left these weights.
 double most_visible(const PhotonWeights& weights, std::int64_t known, std::int64_t paths) {
@@ -178,10 +175,10 @@ Emission trace_and_store(const Scene& scene, const EmissionGuide& guide, const E
     context.begin("photons", static_cast<std::uint64_t>(options.paths), "light paths");
     while (out.paths < options.paths && !(context.stopped() && out.paths > 0)) {
         const Range range{out.paths, std::min(options.paths, out.paths + round)};
-        const bool cuts = options.cut_outliers && learnt.cut <= kMostCut * learnt.weights.known();
         const PhotonWeighing weighing{guide, learnt.weights.unknown_scale(),
-                                      cuts ? most_visible(learnt.weights, known + out.paths, options.paths)
-                                           : std::numeric_limits<double>::infinity()};
+                                      options.cut_outliers
+                                          ? most_visible(learnt.weights, known + out.paths, options.paths)
+                                          : std::numeric_limits<double>::infinity()};
         const Collector collector(weighing, stores.thresholds(PhotonRole::pilot),
                                   stores.thresholds(PhotonRole::main_photon), options.rule, options.weights,
                                   options.observer);
