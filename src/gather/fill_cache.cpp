@@ -150,10 +150,10 @@ class CacheFill {
             const auto k = static_cast<std::size_t>(i);
             records[k] = maker_.compute(batch_[k], first_, indices_[k]);
         });
-        for (const IrradianceRecord& r : records)
-            cache_.insert(r, [this](const Vec3& from, const Vec3& normal, const Vec3& to) {
-                return wall_between(rays_.scene(), from, normal, to);
-            });
+        const WallBetween wall = [this](const Vec3& from, const Vec3& normal, const Vec3& to) {
+            return wall_between(rays_.scene(), from, normal, to);
+        };
+        for (const IrradianceRecord& r : records) cache_.insert(r, wall);
         placed_.insert(placed_.end(), batch_.begin(), batch_.end());
         batch_.clear();
         indices_.clear();

@@ -12,33 +12,32 @@ constexpr double kLeastEffort = 1e-4;
 /// without photons there would be no picture.
 constexpr double kForOthers = 0.4;
 
+/// What a render by the method of `cost` with so much effort takes.
+double predicted(const Experience& cost, Settings settings, const std::set<std::string>& given,
+                 const StageBalance& balance, double pixels, double effort) {
+    settings.method = cost.settings.method;
+    return cost.predict(with_effort(settings, effort, static_cast<std::int64_t>(pixels), given, balance), pixels);
+}
+
 } // namespace
 
 double cost_of_given(const Experience& cost, const Settings& settings, const std::set<std::string>& given,
                      double pixels) {
-    Settings of_method = settings;
-    of_method.method = cost.settings.method;
-    const auto predicted = [&](const std::set<std::string>& kept) {
-        return cost.predict(with_effort(of_method, kLeastEffort, static_cast<std::int64_t>(pixels), kept), pixels);
-    };
-    return predicted(given) - predicted({});
+    return predicted(cost, settings, given, {}, pixels, kLeastEffort) -
+           predicted(cost, settings, {}, {}, pixels, kLeastEffort);
 }
 
 double affordable_effort(const Experience& cost, const Settings& settings, const std::set<std::string>& given,
                          const StageBalance& balance, double pixels, double seconds) {
-    Settings of_method = settings;
-    of_method.method = cost.settings.method;
-    const auto predicted = [&](double effort) {
-        return cost.predict(with_effort(of_method, effort, static_cast<std::int64_t>(pixels), given, balance), pixels);
-    };
+    const auto of_effort = [&](double effort) { return predicted(cost, settings, given, balance, pixels, effort); };
     const double named = cost_of_given(cost, settings, given, pixels);
-    if (named > (1 - kForOthers) * seconds) seconds = std::max(seconds, predicted(kLeastEffort) + kForOthers * seconds);
+    if (named > (1 - kForOthers) * seconds) seconds = std::max(seconds, of_effort(kLeastEffort) + kForOthers * seconds);
     double least = kLeastEffort, most = kMostGrowth * cost.effort;
-    if (predicted(least) > seconds) return least;
-    if (predicted(most) <= predicted(least)) return cost.effort; // all that effort is was given
+    if (of_effort(least) > seconds) return least;
+    if (of_effort(most) <= of_effort(least)) return cost.effort; // all that effort is was given
     while (most - least > 0.01 * least) {
         const double effort = (least + most) / 2;
-        (predicted(effort) < seconds ? least : most) = effort;
+        (of_effort(effort) < seconds ? least : most) = effort;
     }
     return least;
 }

@@ -28,8 +28,6 @@ constexpr int kMostLayers = 8; // of surface in a region, one above the other
 /// Of the radius, how far above a region's middle rays start: what lies lower is its own surface.
 constexpr float kOffSurface = 1e-3f;
 
-const std::vector<Shape> kNone;
-
 bool holds_photons(const Shape& shape) {
     return !is_interface(shape) && (shape.material == nullptr || shape.material->traits().finite);
 }
@@ -97,37 +95,29 @@ Bounds bounds_of(const SurfaceRegion& region, double r) {
 
 SurfacePatches::SurfacePatches(const Scene& scene)
     : shapes_(scene.shapes()), scene_(&scene), shares_(finite_shares(shapes_)),
-      has_tree_(scene.triangle_count() <= kMostInTree), surfaces_(index_of(has_tree_ ? shapes_ : kNone, holds_photons)),
-      others_(index_of(has_tree_ ? shapes_ : kNone, parts_photons)) {}
+      has_tree_(scene.triangle_count() <= kMostInTree), surfaces_(index_of(holds_photons)),
+      others_(index_of(parts_photons)) {}
 
 SurfacePatches::SurfacePatches(const std::vector<Shape>& shapes)
-    : shapes_(shapes), has_tree_(true), surfaces_(index_of(shapes, holds_photons)),
-      others_(index_of(shapes, parts_photons)) {}
+    : shapes_(shapes), has_tree_(true), surfaces_(index_of(holds_photons)), others_(index_of(parts_photons)) {}
 
-SurfacePatches::Index SurfacePatches::index_of(const std::vector<Shape>& shapes, bool (*wanted)(const Shape& shape)) {
+SurfacePatches::Index SurfacePatches::index_of(bool (*wanted)(const Shape& shape)) const {
     std::vector<Patch> patches;
     std::vector<Bounds> boxes;
-    for (std::uint32_t s = 0; s < shapes.size(); ++s) {
-        if (!wanted(shapes[s])) continue;
-        if (const auto* sphere = std::get_if<Sphere>(&shapes[s].geometry)) {
-            patches.push_back({s, 0});
-            boxes.push_back(keyhole::bounds_of(*sphere));
-            continue;
-        }
-        const auto& mesh = std::get<TriangleMesh>(shapes[s].geometry);
-        for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-            patches.push_back({s, t});
-            boxes.push_back(keyhole::bounds_of(mesh, mesh.triangles[t]));
-        }
+    for (std::uint32_t s = 0; has_tree_ && s < shapes_.size(); ++s) {
+        if (!wanted(shapes_[s])) continue;
+        const auto* mesh = std::get_if<TriangleMesh>(&shapes_[s].geometry);
+        const auto n = static_cast<std::uint32_t>(mesh != nullptr ? mesh->triangles.size() : 1);
+        for (std::uint32_t t = 0; t < n; ++t) boxes.push_back(bounds(patches.emplace_back(Patch{s, t})));
     }
     return {std::move(patches), BoxTree(boxes)};
 }
 
-Bounds SurfacePatches::bounds_of(const Patch& patch) const {
+Bounds SurfacePatches::bounds(const Patch& patch) const {
     const Shape& shape = shapes_[patch.shape];
-    if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) return keyhole::bounds_of(*sphere);
+    if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) return bounds_of(*sphere);
     const auto& mesh = std::get<TriangleMesh>(shape.geometry);
-    return keyhole::bounds_of(mesh, mesh.triangles[patch.triangle]);
+    return bounds_of(mesh, mesh.triangles[patch.triangle]);
 }
 
 double SurfacePatches::area(const SurfaceRegion& region, double r) const {
@@ -135,7 +125,7 @@ double SurfacePatches::area(const SurfaceRegion& region, double r) const {
     double sum = 0;
     int met = 0;
     Sides sides;
-    const bool sums_tell = surfaces_.tree.overlapping(keyhole::bounds_of(region, r), [&](std::uint32_t i) {
+    const bool sums_tell = surfaces_.tree.overlapping(bounds_of(region, r), [&](std::uint32_t i) {
         if (scene_ != nullptr && ++met > kMostTriangles) return false;
         const Patch& patch = surfaces_.patches[i];
         const auto* sphere = std::get_if<Sphere>(&shapes_[patch.shape].geometry);
@@ -238,13 +228,13 @@ bool SurfacePatches::obstructed(const SurfaceRegion& region, double r) const {
     // The slab above what counts as the same surface.
     SurfaceRegion above = region;
     above.position += region.normal * static_cast<float>(2 * r / kFlat);
-    const Bounds slab = keyhole::bounds_of(above, r);
+    const Bounds slab = bounds_of(above, r);
     int met = 0;
     bool found = false;
     const auto look = [&](const Index& index) {
         return index.tree.overlapping(slab, [&](std::uint32_t i) {
             if (scene_ != nullptr && ++met > kMostTriangles) return false;
-            found |= bounds_of(index.patches[i]).overlaps(slab);
+            found |= bounds(index.patches[i]).overlaps(slab);
             return true;
         });
     };

@@ -57,8 +57,9 @@ class SurfacePatches {
         std::vector<Patch> patches; ///< of the tree's boxes
         BoxTree tree;
     };
-    static Index index_of(const std::vector<Shape>& shapes, bool (*wanted)(const Shape& shape));
-    Bounds bounds_of(const Patch& patch) const;
+    /// Empty without has_tree_.
+    Index index_of(bool (*wanted)(const Shape& shape)) const;
+    Bounds bounds(const Patch& patch) const;
     /// Whether photons can lie at some of its places and not at others.
     bool is_patchy(std::uint32_t shape) const { return shapes_[shape].alpha != nullptr || shares_[shape] != nullptr; }
     /// What of a triangle lies in a region.
