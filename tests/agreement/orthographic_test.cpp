@@ -27,7 +27,7 @@ TEST(ParallelSight_Light, IsTheSameByEveryMethod) {
     // Both ends: what few paths from the eye alone find of caustics is noise.
     Settings paths = base();
     paths.method = &methods::bdpt;
-    paths.spp = 150;
+    paths.spp = 300;
     std::vector<Settings> others = test::by_methods(base(), {"path", "mlt", "mmlt", "pm", "ipm", "mps"});
     others[0].spp = 100;
     test::expect_same_light(*test::parallel_sight_box(), paths, others, 4);
