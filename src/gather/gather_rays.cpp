@@ -10,6 +10,7 @@
 #include "sampling/paths/direct_light.h"
 #include "sampling/paths/gather_coverage.h"
 #include "sampling/paths/random_walk.h"
+#include "scene/bsdfs/wide_lobe.h"
 
 namespace keyhole {
 namespace {
@@ -176,11 +177,11 @@ Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSou
     // Seldom, and all the more then.
     const double p = std::max(kLeastGlossy, v.bsdf.glossy_probability(back));
     if (!(source.next() < p)) return sum;
-    const Vertex glossy = widened(v, v.bsdf.glossy_part());
-    sum += direct_light(scene_, glossy, back, at_end(leg), source) / p;
+    const Widened glossy = widened(v, v.bsdf.glossy_part(), back);
+    Rgb shine = direct_light(scene_, glossy.v, back, at_end(leg), source);
     // What is traced on brings the indirect light of all parts.
-    if (place && !on) sum += photons({false, leg.longer()}, *place, glossy, facing(v.point.ng, back), back, source) / p;
-    return sum;
+    if (place && !on) shine += photons({false, leg.longer()}, *place, glossy.v, here.normal, back, source);
+    return sum + shine * (glossy.scale / p);
 }
 
 Rgb GatherRays::direct(const std::optional<std::uint32_t>& place, const Vertex& v, const SurfaceRegion& here,
@@ -190,9 +191,10 @@ Rgb GatherRays::direct(const std::optional<std::uint32_t>& place, const Vertex& 
     return direct_irradiance(scene_, v.point, v.bsdf, here.normal, at_end(leg), source).irradiance;
 }
 
-Vertex GatherRays::widened(const Vertex& v, const Bsdf& part) const {
-    Vertex wide = v;
-    wide.bsdf = part.widened(options_.least_alpha);
+GatherRays::Widened GatherRays::widened(const Vertex& v, const Bsdf& part, const Vec3& back) const {
+    const WideLobe lobe = wide_lobe(part, options_.least_alpha, back);
+    Widened wide{v, lobe.scale};
+    wide.v.bsdf = lobe.bsdf;
     return wide;
 }
 
@@ -201,9 +203,9 @@ Rgb GatherRays::lobe(const Vertex& v, const Vec3& back, const std::optional<std:
     const bool may_trace = maps_.lobes != nullptr && leg.traced_on == 0;
     if (may_trace && !(place && maps_.lobes->by_photons(v.point.shape)))
         return lobe_traced_on(v, back, place, leg, source);
-    const Vertex wide = widened(v, v.bsdf);
-    return direct_light(scene_, wide, back, at_end(leg), source) +
-           photons_on_each_side({false, leg.longer()}, place, wide, back, source);
+    const Widened wide = widened(v, v.bsdf, back);
+    return wide.scale * (direct_light(scene_, wide.v, back, at_end(leg), source) +
+                         photons_on_each_side({false, leg.longer()}, place, wide.v, back, source));
 }
 
 Rgb GatherRays::lobe_traced_on(const Vertex& v, const Vec3& back, const std::optional<std::uint32_t>& place,
@@ -214,7 +216,8 @@ Rgb GatherRays::lobe_traced_on(const Vertex& v, const Vec3& back, const std::opt
         sum += next->weight * (arrival.emitted + arrival.indirect);
     }
     // Light that specular vertices alone brought here is found by no ray.
-    return sum + photons_on_each_side({true, leg.longer()}, place, widened(v, v.bsdf), back, source);
+    const Widened wide = widened(v, v.bsdf, back);
+    return sum + wide.scale * photons_on_each_side({true, leg.longer()}, place, wide.v, back, source);
 }
 
 std::optional<std::uint32_t> GatherRays::place_at(const Vertex& v, const Vec3& normal) const {
@@ -242,10 +245,11 @@ std::optional<LobeNoise> GatherRays::lobe_noise(const Vertex& v, const Vec3& bac
     const Leg leg{0, scatterings, 0};
     const Rgb first = lobe_traced_on(v, back, place, leg, source);
     const Rgb second = lobe_traced_on(v, back, place, leg, source);
-    const Vertex wide = widened(v, v.bsdf);
-    const Rgb once = direct_light(scene_, wide, back, at_end(leg), source),
-              again = direct_light(scene_, wide, back, at_end(leg), source);
-    return LobeNoise{variance(once, again) + variance_of_photons(wide, back), variance(first, second)};
+    const Widened wide = widened(v, v.bsdf, back);
+    const Rgb once = direct_light(scene_, wide.v, back, at_end(leg), source),
+              again = direct_light(scene_, wide.v, back, at_end(leg), source);
+    const double by_photons = variance(once, again) + variance_of_photons(wide.v, back);
+    return LobeNoise{by_photons * wide.scale * wide.scale, variance(first, second)};
 }
 
 Rgb GatherRays::bounced(const Vertex& v, const Vec3& back, const Rgb& irradiance, const Leg& next,

@@ -114,8 +114,12 @@ class GatherRays {
     /// Irradiance that emitters bring, weighed as the diffuse part weighs it: that of the place, if it does for `v`.
     Rgb direct(const std::optional<std::uint32_t>& place, const Vertex& v, const SurfaceRegion& here, const Leg& leg,
                SampleSource& source) const;
-    /// `v` with a part of its BSDF, no narrower than LookupOptions::least_alpha.
-    Vertex widened(const Vertex& v, const Bsdf& part) const;
+    /// A vertex with a part of its BSDF, no narrower than LookupOptions::least_alpha.
+    struct Widened {
+        Vertex v;
+        double scale; ///< of what it reflects
+    };
+    Widened widened(const Vertex& v, const Bsdf& part, const Vec3& back) const;
     /// What `v`, without a diffuse part, reflects, by the technique that is the better one there.
     Rgb lobe(const Vertex& v, const Vec3& back, const std::optional<std::uint32_t>& place, const Leg& leg,
              SampleSource& source) const;

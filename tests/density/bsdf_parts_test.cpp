@@ -1,8 +1,10 @@
 // A BSDF's finite part is its diffuse part and its glossy part, and nothing besides.
 #include "bsdf_cases.h"
+#include "scene/bsdfs/wide_lobe.h"
 #include "scene/warp.h"
 #include "support/chi_squared.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -152,19 +154,34 @@ RunningStats albedo(const Bsdf& bsdf, const Vec3& from) {
     return sum;
 }
 
-/// What a rough metal sends below the surface by single reflections is made up for on average over directions; a coat
-/// loses a little of the little that it reflects.
-TEST(Bsdf_Widened, ReflectsAsMuch) {
+/// What a rough metal sends below the surface by single reflections is made up for on average over directions; what a
+/// coat loses, for each.
+TEST(Bsdf_WideLobe, ReflectsAsMuch) {
     constexpr double kAlpha = 0.2, kLoss = 0.03;
     for (const BsdfCase& c : bsdf_cases())
         for (const Vec3& from : looks()) {
-            const Bsdf rest = bsdf_of(c).glossy_part(), wide = rest.widened(kAlpha);
-            EXPECT_EQ(wide.traits().delta, rest.traits().delta);
+            const Bsdf rest = bsdf_of(c).glossy_part();
+            const WideLobe wide = wide_lobe(rest, kAlpha, from);
+            EXPECT_EQ(wide.bsdf.traits().delta, rest.traits().delta);
             if (!rest.traits().finite || !(std::abs(from.z) > 0.4f)) continue;
             SCOPED_TRACE(c.name + " from z = " + std::to_string(from.z));
-            const RunningStats before = albedo(rest, from), after = albedo(wide, from);
-            const double noise = 4 * std::hypot(before.standard_error(), after.standard_error());
-            EXPECT_NEAR(after.mean(), before.mean(), kLoss * before.mean() + noise);
+            const RunningStats before = albedo(rest, from), after = albedo(wide.bsdf, from);
+            const double noise = 4 * std::hypot(before.standard_error(), wide.scale * after.standard_error());
+            EXPECT_NEAR(wide.scale * after.mean(), before.mean(), kLoss * before.mean() + noise);
+        }
+}
+
+TEST(Bsdf_WideLobe, OfACoatReflectsAsMuchAtGrazingAngles) {
+    const auto coat = CoatInterface::of(1.5);
+    for (const double alpha : {0.01, 0.05, 0.15})
+        for (const double cosine : {0.05, 0.1, 0.2, 0.4}) {
+            SCOPED_TRACE(fmt::format("roughness {}, cosine {}", alpha, cosine));
+            const Bsdf narrow = Bsdf(Frame(), CoatedDiffuseBsdf(*coat, Rgb(0.5), alpha, alpha, 0)).glossy_part();
+            const Vec3 from = spherical(cosine, 0.3);
+            const WideLobe wide = wide_lobe(narrow, 0.2, from);
+            const RunningStats before = albedo(narrow, from), after = albedo(wide.bsdf, from);
+            const double noise = 4 * std::hypot(before.standard_error(), wide.scale * after.standard_error());
+            EXPECT_NEAR(wide.scale * after.mean(), before.mean(), 0.03 * before.mean() + noise);
         }
 }
 
