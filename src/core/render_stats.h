@@ -36,6 +36,7 @@ struct ChainAgreement {
 /// What tells whether the photons of a pass can be trusted. Figures that a pass doesn't have stay as they are here.
 struct PhotonQuality {
     std::optional<double> of_brightest; ///< share of the power that the brightest 0.1 % carry
+    std::optional<double> cut_off;      ///< share of the power that outliers lost, of the map where that is more
     struct Lookups {
         double found;     ///< photons, on average
         double effective; ///< equal ones that would be as good

@@ -34,5 +34,14 @@ TEST(PhotonReport, PassesMakeRecordsBetter) {
     EXPECT_FALSE(warns(of_records(0.5, PhotonQuality::Noise{0.1, 0.04}), 20)); // to 4.5 % of the picture
 }
 
+TEST(PhotonReport, LostPowerIsWarnedOf) {
+    RenderStats stats = of_records(0.1, PhotonQuality::Noise{0.1, 0.01});
+    EXPECT_FALSE(warns(stats)); // no outliers are cut off by `pm`
+    stats.photon_quality.cut_off = 0.05;
+    EXPECT_FALSE(warns(stats));
+    stats.photon_quality.cut_off = 0.3;
+    EXPECT_TRUE(warns(stats));
+}
+
 } // namespace
 } // namespace keyhole

@@ -16,6 +16,7 @@ std::map<std::string, double> figures(const RenderStats& stats) {
     }
     const PhotonQuality& q = stats.photon_quality;
     add("photon power, share of the brightest 0.1 %", q.of_brightest);
+    if (q.cut_off.value_or(0) > 0) add("photon power, share cut off outliers", q.cut_off);
     if (q.lookups) {
         all["photons per lookup"] = q.lookups->found;
         all["photons per lookup, effective"] = q.lookups->effective;

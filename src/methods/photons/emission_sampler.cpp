@@ -47,7 +47,7 @@ class EmissionSampler final : public PhotonSampler {
                          context);
         photons.everywhere = true;
         stats.values["light paths"] += static_cast<double>(photons.paths);
-        if (photons.cut > 0) stats.values["photon power, share cut off outliers"] = photons.cut;
+        stats.photon_quality.cut_off = photons.cut;
         stats.values["photons before storing"] += static_cast<double>(photons.arrivals);
         stats.photon_bytes = std::max<std::uint64_t>(stats.photon_bytes, photons.bytes + stats.importon_bytes);
         return photons;

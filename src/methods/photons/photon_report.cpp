@@ -18,6 +18,7 @@ namespace {
 
 /// Beyond these photons are not to be trusted.
 constexpr double kMostOfPower = 0.25;
+constexpr double kMostCutOff = 0.1;     ///< of the power, with outliers
 constexpr double kLeastEffective = 0.5; ///< of those found; where that is known
 constexpr double kLeastFound = 0.25;
 constexpr double kMostStarving = 0.1;
@@ -59,9 +60,8 @@ void report_photons(const Photons& photons, RenderStats& stats) {
 
 void cut_outliers(Photons& photons, std::int64_t passes, RenderStats& stats) {
     if (passes != 1) return;
-    const double cut =
+    stats.photon_quality.cut_off =
         std::max(cut_outlying_power(photons.global.main_photons), cut_outlying_power(photons.caustic.main_photons));
-    if (cut > 0) stats.values["photon power, share cut off outliers"] = cut;
 }
 
 void report_lookups(const IrradianceMap& map, double asked, RenderStats& stats) {
@@ -146,6 +146,11 @@ void warn_of_photons(RenderStats& stats, std::int64_t passes, std::int64_t max_d
         stats.warn(Doubt::photons, fmt::format("the brightest 0.1 % of the photons carry {:.0f} % of the power: expect "
                                                "blotches. Try more passes, or another method",
                                                100 * brightest));
+    if (const double cut = q.cut_off.value_or(0); cut > kMostCutOff)
+        stats.warn(Doubt::photons, fmt::format("so few photons bring so much of the light that {:.0f} % of the "
+                                               "photons' power was cut off as outliers: the picture may be too dark. "
+                                               "Try more light_paths or time, or more passes, which cut nothing off",
+                                               100 * cut));
     if (lookups.share < kLeastFound && asked)
         stats.warn(Doubt::lookups, fmt::format("the photon map is too sparse where it is asked: {:.1f} photons within "
                                                "reach of a lookup, {:.0f} % of those asked for. Try more photons",
