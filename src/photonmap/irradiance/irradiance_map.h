@@ -94,7 +94,7 @@ class IrradianceMap {
     double effective_photons() const { return mean_.effective; }
 
   private:
-    static constexpr std::size_t kGridBytesPerPlace = 6;
+    static constexpr std::size_t kGridBytesPerPlace = 24; // with 6 every second lookup had to search
     using Shares = std::array<std::uint8_t, kLongerWays>; ///< as LongerWays, times 255
 
     class Estimate {
