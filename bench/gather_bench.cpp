@@ -59,7 +59,7 @@ double render_once(keyhole::Scene& scene, const keyhole::Settings& settings, boo
     g_recording = false;
     double seconds = 0;
     for (const auto& stage : result.stats.stages)
-        if (stage.name == "cache" || stage.name == "gather") seconds += stage.cpu_seconds;
+        if (stage.stage->work == keyhole::Stage::Work::gather) seconds += stage.cpu_seconds;
     return seconds;
 }
 

@@ -31,6 +31,8 @@ inline constexpr Stage tuning{"tuning"};
 inline constexpr Stage chains{"chains", &Settings::mutations, 0, Stage::Work::chains};
 inline constexpr Stage photons_of_chains{"photons", &Settings::mutations, 0, Stage::Work::chains};
 inline constexpr Stage photons_of_light_paths{"photons", &Settings::light_paths};
+/// Of precomputed irradiance: it is estimated at a part of the photons.
+inline constexpr Stage irradiance{"irradiance", &Settings::photons, 0, Stage::Work::gather};
 // Larger pictures have more cached irradiances, for these may lie as close as a few pixels; most of them don't.
 inline constexpr Stage cache{"cache", &Settings::cache_rays, 0.25, Stage::Work::gather};
 inline constexpr Stage gather{"gather", &Settings::spp, 1, Stage::Work::gather};

@@ -4,6 +4,7 @@
 #include "gather/visible_point.h"
 #include "sampling/paths/random_walk.h"
 #include "sampling/paths/seen_surface.h"
+#include "sampling/paths/walk.h"
 
 #include <algorithm>
 #include <array>
@@ -143,9 +144,11 @@ FinalGather::Light FinalGather::gather_glossy(const Vertex& v, const Vec3& back,
                                               SampleSource& source) const {
     Light sum{next_event(scene_, v, back, light_samples(scatterings), source), Rgb(0.0)};
     const double glossy = v.bsdf.glossy_probability(back);
+    // The BSDF draws from these two parts with this probability, and the two techniques of MIS are weighed by that.
+    const double finite = finite_probability(v, back);
     sample_emission_by_diffuse_part(
         scene_, v, back, rays_.faces_left(scatterings), source,
-        [&](const SurfacePoint& /*emitter*/, const Rgb& value) { sum.direct += value * (1 - glossy); });
+        [&](const SurfacePoint& /*emitter*/, const Rgb& value) { sum.direct += value * (finite * (1 - glossy)); });
     const Bsdf lobe = v.bsdf.glossy_part();
     // A coat of a few percent is worth a ray now and then.
     const double rays = samples_.rays * glossy;
@@ -157,7 +160,7 @@ FinalGather::Light FinalGather::gather_glossy(const Vertex& v, const Vec3& back,
         if (!first) continue;
         const auto arrival = rays_.trace(v, first->w, first->pdf, scatterings, source);
         sum.indirect += first->part * arrival.indirect * (first->part_pdf / aimed.density(first->w, first->part_pdf));
-        sum.direct += first->whole * arrival.emitted / samples_.rays;
+        sum.direct += first->whole * arrival.emitted * (finite / samples_.rays);
     }
     sum.indirect += gather_aimed(aimed, v, lobe, back, scatterings, source);
     return sum;

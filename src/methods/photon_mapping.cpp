@@ -90,17 +90,13 @@ class Passes {
         if (early.stopped() && (context.communicator != nullptr || !work_.is_first())) return false;
         report_photons(photons, stats_);
         if (observer_ != nullptr) observer_->sampled(photons);
-        std::optional<PassGather> gather;
-        {
-            const StageClock clock(stats_, stages::cache);
-            gather.emplace(c_, plan_, pass, seed, std::move(photons), stats_, context);
-        }
-        if (observer_ != nullptr) observer_->ready(*gather);
+        const PassGather gather(c_, plan_, pass, seed, std::move(photons), stats_, context);
+        if (observer_ != nullptr) observer_->ready(gather);
         if (context.communicator != nullptr && context.stopped()) return false;
-        const bool whole = sample_rounds(*gather, pass, context.alone());
+        const bool whole = sample_rounds(gather, pass, context.alone());
         {
             const StageClock clock(stats_, kReport);
-            gather->report(stats_, checks_photons_);
+            gather.report(stats_, checks_photons_);
         }
         return whole ||
                context.communicator != nullptr; // a process group ends where all can agree on it: in the next pass

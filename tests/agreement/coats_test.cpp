@@ -40,6 +40,19 @@ std::unique_ptr<Scene> plastic_box() {
     return m.build();
 }
 
+/// A floor and a wall with a rough gloss under a smooth coat, below an even sky that samples of the BSDF find as often
+/// as samples of the emitter do.
+std::unique_ptr<Scene> lacquered_corner() {
+    const auto lacquer = principled(Rgb(0.5), 0.5, 0, 4);
+    test::SceneMaker m;
+    m.rectangle({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, lacquer)
+        .rectangle({-2, 0, -2}, {0, 2, 0}, {0, 0, 4}, lacquer)
+        .emitter(make_constant_environment(Rgb(1.0)))
+        .camera({1.5f, 1.2f, 2.5f}, {-0.8f, 0.4f, -0.6f}, 42)
+        .window(48, 32);
+    return m.build();
+}
+
 /// Varnish in daylight: a sky, and a sun that comes in by the window.
 std::unique_ptr<Scene> varnished_daylight() {
     test::SceneMaker m = test::room_with_a_window(varnished(Rgb(0.7), 0.3));
@@ -128,6 +141,7 @@ TEST_P(Coats_AgreeWithPaths, BlockByBlock) {
 INSTANTIATE_TEST_SUITE_P(Rooms, Coats_AgreeWithPaths,
                          testing::Values(CoatCase{"smooth", varnished_box<0>, 32},
                                          CoatCase{"rough", varnished_box<20>, 32}, CoatCase{"plastic", plastic_box, 40},
+                                         CoatCase{"lacquer", lacquered_corner, 32},
                                          CoatCase{"daylight", varnished_daylight, 80, 1},
                                          CoatCase{"kitchen", kitchen, 40, 1}),
                          [](const auto& info) { return std::string(info.param.name); });

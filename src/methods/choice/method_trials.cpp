@@ -115,6 +115,9 @@ std::optional<TrialRender> render_trial(const TrialContext& c, Settings settings
     const RenderResult r = render_by_method({c.scene, settings, c.user_paths, context, share, c.findings});
     if (!has_picture(r) || empty_pixels(r) > 0) return std::nullopt;
     settings.spp = std::max<std::int64_t>(1, static_cast<std::int64_t>(r.stats.samples));
+    // Light paths that are told where to go bring many times the photons of a trial's: up to what is allowed, then.
+    settings.photons = std::max<std::int64_t>(
+        1, static_cast<std::int64_t>(r.stats.photons_global + r.stats.photons_caustic) / settings.passes);
     const Experience cost = in_time ? Experience(settings, effort, pixels, r.stats, start - context.seconds_left())
                                     : Experience::in_rays(settings, effort, pixels, r.stats);
     Image all = luminance_of(r.picture);

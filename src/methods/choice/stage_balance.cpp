@@ -12,8 +12,8 @@ namespace {
 constexpr double kRaysAtFirst = 0.5;
 /// Records with fewer rays don't see what is around them.
 constexpr double kLeastRays = 64;
-/// Of the time of all stages that settings have a say in, what light paths or chains take at least. Too few photons
-/// blur light, which no noise tells.
+/// Of the time of all stages that settings have a say in, what light paths or chains take at least, with the irradiance
+/// that is made of their photons. Too few photons blur light, which no noise tells.
 constexpr double kLeastForPhotons = 0.15, kMostMorePhotons = 8;
 /// Of the samples of pixels that effort gives.
 constexpr double kLeastSamples = 0.5;
@@ -39,7 +39,8 @@ Settings split_stage_three(const Settings& settings, const Experience& cost, con
         return sum;
     };
     const double records = seconds(stages::cache), samples = seconds(stages::gather);
-    const double photons = seconds(stages::photons_of_light_paths) + seconds(stages::photons_of_chains);
+    const double photons =
+        seconds(stages::photons_of_light_paths) + seconds(stages::photons_of_chains) + seconds(stages::irradiance);
     if (!(records > 0 && samples > 0)) return settings;
     Settings s = settings;
     const double more = kLeastForPhotons * (records + samples + photons) - photons;

@@ -5,6 +5,7 @@
 #include "gather/gather_effort.h"
 #include "methods/photons/memory_plan.h"
 #include "methods/photons/photon_report.h"
+#include "session/stage_clock.h"
 
 #include <algorithm>
 #include <cmath>
@@ -53,6 +54,7 @@ PassGather::PassGather(const SamplerContext& c, const RenderPlan& plan, std::int
     const Settings& s = c.settings;
     const Radii radii(c.scene, pass);
     if (plan.photons) {
+        const StageClock clock(stats, stages::irradiance);
         estimate_irradiance(c, radii, seed, stats, context);
         caustic_surroundings_.emplace(caustic_.pilots(), c.patches, static_cast<int>(s.nearest), radii.caustic,
                                       radii.shrink);
@@ -60,6 +62,7 @@ PassGather::PassGather(const SamplerContext& c, const RenderPlan& plan, std::int
             stats.photon_bytes, global_.bytes() + caustic_.bytes() + caustic_surroundings_->bytes() +
                                     (irradiance_ ? irradiance_->bytes() + direct_irradiance_->bytes() : 0));
     }
+    const StageClock clock(stats, stages::cache);
     GatherMaps maps{.global = null_if_empty(global_),
                     .irradiance = irradiance_ ? &*irradiance_ : nullptr,
                     .direct = direct_irradiance_ ? &*direct_irradiance_ : nullptr,
