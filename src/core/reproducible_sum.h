@@ -4,6 +4,7 @@
 // changes at once; they would cost splats twice the memory and a lock.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <bit>
@@ -18,9 +19,9 @@ namespace keyhole {
 /// once and the result is the same bit for bit. Holds sums below 8.5e9 in size.
 class FixedSum {
   public:
-    /// Thread-safe. `x` must be finite.
+    /// Thread-safe. `x` must be finite; no more of it counts than a sum may hold.
     void add(double x) {
-        const double units = x * kUnit; // rounded by hand: std::llround() is a call
+        const double units = std::clamp(x * kUnit, -kMost, kMost); // rounded by hand: std::llround() is a call
         units_.fetch_add(static_cast<std::int64_t>(units + std::copysign(0.5, units)), std::memory_order_relaxed);
     }
 
@@ -30,7 +31,7 @@ class FixedSum {
     double take() { return static_cast<double>(units_.exchange(0, std::memory_order_relaxed)) / kUnit; }
 
   private:
-    static constexpr double kUnit = 0x1p30;
+    static constexpr double kUnit = 0x1p30, kMost = 0x1p62;
     std::atomic<std::int64_t> units_{0};
 };
 

@@ -137,15 +137,14 @@ bool GatherRays::is_fine(std::uint32_t place) const { return maps_.irradiance->a
 
 void GatherRays::add(const Rgb& throughput, const Rgb& light, const End& end, const Leg& leg, Arrival& arrival) const {
     arrival.indirect += throughput * light;
-    const double all = luminance(throughput * light);
-    if (maps_.irradiance == nullptr || !maps_.irradiance->tells_lengths()) { // all of it, however it is seen
-        for (float& reaching : arrival.reaching) reaching += static_cast<float>(all);
-        return;
-    }
-    const double direct = std::min(all, luminance(throughput * end.direct));
-    const double known = end.place ? maps_.irradiance->share_that_reaches(*end.place, leg.longer()) : 1;
+    const double all = luminance(throughput * light), direct = std::min(all, luminance(throughput * end.direct));
+    // Of what photons bring, all, where nobody knows more.
+    const auto share_by = [&](int longer) {
+        return end.place ? maps_.irradiance->share_that_reaches(*end.place, longer) : 1.0;
+    };
+    const double known = share_by(leg.longer());
     for (int k = 1; k <= kLongerWays; ++k) {
-        const double share = end.place ? maps_.irradiance->share_that_reaches(*end.place, leg.longer() + k) : 1;
+        const double share = share_by(leg.longer() + k);
         arrival.reaching[static_cast<std::size_t>(k - 1)] +=
             static_cast<float>((leg.scatterings + 1 + k <= max_scatterings_ ? direct : 0) +
                                (known > 0 ? (all - direct) * share / known : 0));
@@ -155,8 +154,8 @@ void GatherRays::add(const Rgb& throughput, const Rgb& light, const End& end, co
 Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSource& source, End& end) const {
     if (!is_covered(maps_.coverage, v, back)) return Rgb(0.0);
     if (maps_.irradiance == nullptr || maps_.irradiance->places().empty()) {
-        const Rgb direct = direct_light(scene_, v, back, at_end(leg), source);
-        return direct + global(v, back, leg.longer());
+        end.direct = direct_light(scene_, v, back, at_end(leg), source);
+        return end.direct + global(v, back, leg.longer());
     }
     const SurfaceRegion here{v.point.p, facing(v.point.ng, back)};
     const auto known = maps_.irradiance->irradiance(v.point, here.normal);

@@ -5,38 +5,70 @@
 #include "methods/pixel_sink.h"
 #include "methods/sample_report.h"
 #include "sampling/paths/bidirectional_tracer.h"
+#include "sampling/paths/image_lattice.h"
 #include "session/pixel_sampling.h"
 #include "session/stage_clock.h"
 #include "session/work.h"
+
+#include <cmath>
 
 namespace keyhole {
 namespace {
 
 constexpr Stage kBidirectionalTracing{"bidirectional path tracing", &Settings::spp, 1};
 
+/// Samples that tell about how bright a picture is.
+constexpr int kPilot = 256;
+
 struct BidirectionalSink {
     PixelSink& pixel;
     SplatFilm& splats;
+    double unit; ///< of splats [W/(m^2 sr)]
     const ImageWindow& window;
 
     void contribution(const Connection& connection, const Rgb& value, LightClass light) {
         if (connection.t() > 1)
             pixel.add(value, light);
         else if (is_finite(value))
-            splats.add(window.to_pixel(connection.image()), SplatFilm::layer_of(light), value);
+            splats.add(window.to_pixel(connection.image()), SplatFilm::layer_of(light), value / unit);
     }
 };
 
-PixelSample sample_pixel(const Scene& scene, const Vec2& image, int depth, MisHeuristic heuristic, SplatFilm& splats,
-                         SampleSource& source) {
+struct BrightnessSink {
+    double sum = 0;
+    void contribution(const Connection& /*connection*/, const Rgb& value, LightClass /*light*/) {
+        if (is_finite(value)) sum += luminance(value);
+    }
+};
+
+SubPathPair& trace_subpaths(const Scene& scene, const Vec2& image, int depth, SampleSource& source) {
     SubPathPair& pair = SubPathPair::scratch();
-    auto& [eye, light] = pair;
-    trace_eye_subpath(scene, image, most_eye_vertices(depth), source, &source, eye);
-    trace_light_subpath(scene, most_light_vertices(depth), source, &source, light);
+    trace_eye_subpath(scene, image, most_eye_vertices(depth), source, &source, pair.eye);
+    trace_light_subpath(scene, most_light_vertices(depth), source, &source, pair.light);
+    return pair;
+}
+
+/// A power of two near the mean of the picture: the film's sums want numbers about 1.
+double splat_unit(const Scene& scene, const Settings& settings) {
+    const auto depth = static_cast<int>(settings.max_depth);
+    BrightnessSink sink;
+    for (int i = 0; i < kPilot; ++i) {
+        Rng rng(settings.seed, StreamPurpose::survey, static_cast<std::uint64_t>(i));
+        const Vec2 image = lattice_image_point(settings.seed, StreamPurpose::survey, i);
+        SubPathPair& pair = trace_subpaths(scene, image, depth, rng);
+        connect_subpaths(scene, pair, image, {depth, PathSet::all, settings.mis}, sink);
+    }
+    return sink.sum > 0 ? std::exp2(std::round(std::log2(sink.sum / kPilot))) : 1;
+}
+
+PixelSample sample_pixel(const Scene& scene, const Vec2& image, int depth, MisHeuristic heuristic, SplatFilm& splats,
+                         double unit, SampleSource& source) {
+    SubPathPair& pair = trace_subpaths(scene, image, depth, source);
+    const auto& eye = pair.eye;
     PixelSink pixel;
     for (std::size_t i = 1; i < eye.vertices.size() && !pixel.saw_surface; ++i)
         pixel.see(eye.vertices[i], eye.vertices[i - 1], eye.notes[i].throughput, i == 1);
-    BidirectionalSink sink{pixel, splats, scene.camera().window()};
+    BidirectionalSink sink{pixel, splats, unit, scene.camera().window()};
     connect_subpaths(scene, pair, image, {depth, PathSet::all, heuristic}, sink);
     return pixel.pixel;
 }
@@ -54,14 +86,15 @@ RenderResult render_bdpt(const RenderTask& task) {
         const StageClock clock(result.stats, kBidirectionalTracing);
         const SamplingStage stage(scene, work.left(), "bidirectional path tracing", context);
         const auto depth = static_cast<int>(settings.max_depth);
+        const double unit = splat_unit(scene, settings);
         while (const auto round = work.take(context)) {
             const bool whole =
                 pixels.take_round(*work.unit().film, *round, context, [&](const Vec2& image, SampleSource& source) {
-                    return sample_pixel(scene, image, depth, settings.mis, splats, source);
+                    return sample_pixel(scene, image, depth, settings.mis, splats, unit, source);
                 });
             // Of later rounds that are cut short the eye's samples are enough.
             if ((whole || work.is_first()) && pixels.samples_per_pixel() > 0)
-                work.unit().drawn->add(splats, scale / pixels.samples_per_pixel(), work.half());
+                work.unit().drawn->add(splats, unit * scale / pixels.samples_per_pixel(), work.half());
             splats.clear();
             if (whole) work.end_unit(result.stats);
         }

@@ -1,6 +1,7 @@
 #include "photonmap/photon_store.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace keyhole {
@@ -19,7 +20,8 @@ void PhotonStore::absorb(PhotonBuffer& buffer) {
 }
 
 double PhotonStore::admit(double weight) {
-    if (weight == 0 || capacity_ == 0) return 0;
+    // No threshold that is doubled comes near an infinite one.
+    if (!(weight > 0) || !std::isfinite(static_cast<float>(weight)) || capacity_ == 0) return 0;
     weight = roulette(weight, threshold_, rng_);
     // The new photon has to meet the higher threshold like the stored ones.
     while (weight > 0 && photons_.size() == capacity_) {

@@ -39,7 +39,7 @@ class PhotonStore {
     /// Adds the photons of a buffer, power times weight, and empties it.
     void absorb(PhotonBuffer& buffer);
 
-    /// Adds power `weight` times that of `photon`; weight >= 0.
+    /// Adds power `weight` times that of `photon`; weight >= 0. One that no float holds is left out.
     void deposit(const Photon& photon, double weight) {
         weight = admit(weight);
         if (weight == 0) return;

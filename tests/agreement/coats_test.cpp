@@ -20,10 +20,10 @@ MaterialPtr varnished(const Rgb& base, double alpha) {
                                constant_texture(0.0));
 }
 
-MaterialPtr principled(const Rgb& base, double alpha, double metallic, double clearcoat) {
+MaterialPtr principled(const Rgb& base, double alpha, double metallic, double clearcoat, double coat_alpha = 0.02) {
     const auto value = [](double x) { return constant_texture(x); };
     return make_principled({constant_texture(base), value(metallic), value(alpha), value(alpha), value(0.04), value(0),
-                            value(0), value(clearcoat), value(0.02), value(0), value(0)});
+                            value(0), value(clearcoat), value(coat_alpha), value(0), value(0)});
 }
 
 /// Plastic walls, a lacquered floor, and a ball of lacquered metal; the lamp shines at the ceiling.
@@ -43,7 +43,7 @@ std::unique_ptr<Scene> plastic_box() {
 /// A floor and a wall with a rough gloss under a smooth coat, below an even sky that samples of the BSDF find as often
 /// as samples of the emitter do.
 std::unique_ptr<Scene> lacquered_corner() {
-    const auto lacquer = principled(Rgb(0.5), 0.5, 0, 4);
+    const auto lacquer = principled(Rgb(0.5), 0.5, 0, 4, 0);
     test::SceneMaker m;
     m.rectangle({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, lacquer)
         .rectangle({-2, 0, -2}, {0, 2, 0}, {0, 0, 4}, lacquer)

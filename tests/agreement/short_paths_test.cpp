@@ -77,6 +77,14 @@ TEST_P(ShortPaths, LookThroughAsManyPanesAsTheyMay) {
     expect_same_light(*scene, few_scatterings(depth), "beauty");
 }
 
+/// There no photon may be stored, and what gather rays meet is lit directly.
+TEST(ShortPaths_OfTwoScatterings, LeaveOutWhatAMirrorMakesTooLong) {
+    const auto scene = room_behind_glass();
+    Settings settings = few_scatterings(2);
+    settings.spp = 64;
+    expect_same_light(*scene, settings, "indirect");
+}
+
 INSTANTIATE_TEST_SUITE_P(Scatterings, ShortPaths, testing::Values(3, 5, 40),
                          [](const auto& info) { return std::to_string(info.param); });
 

@@ -81,6 +81,22 @@ TEST(EmitterClosedForm_SpotLight, IsAPointLightInsideAndDarkOutside) {
     EXPECT_NEAR(scene->emitter(0).power(), 5 * kPi * (2 - std::cos(10 * kPi / 180) - std::cos(20 * kPi / 180)), 1e-9);
 }
 
+TEST(EmitterClosedForm_SpotLight, IsHalfDarkBetweenTheConesHoweverNarrow) {
+    for (const double edge : {1.0, 0.1, 0.01}) {
+        SCOPED_TRACE(edge);
+        SceneMaker m = white_floor();
+        m.emitter(make_spot_emitter({.position = {0, 2, 0},
+                                     .axis = {0, -1, 0},
+                                     .intensity = Rgb(5.0),
+                                     .full_degrees = edge / 2,
+                                     .edge_degrees = edge}));
+        const auto scene = m.build();
+        // Of narrow cones cosines go as squares of angles.
+        const auto x = static_cast<float>(2 * std::tan(std::sqrt((1 + 0.25) / 2) * edge * kPi / 180));
+        EXPECT_NEAR(irradiance(*scene, floor_vertex(*scene, x), 4).combined.mean(), 2.5 / 4, 0.02 * 2.5 / 4);
+    }
+}
+
 TEST(EmitterClosedForm_DistantLight, GivesIrradianceTimesCosine) {
     SceneMaker m = white_floor();
     const Vec3 w = Vec3(1, -2, 0.5f).normalized();

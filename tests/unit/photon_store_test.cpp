@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <limits>
 
 namespace keyhole {
 namespace {
@@ -68,6 +69,13 @@ TEST(PhotonStore, KeepsEverythingAsItIsWhileThereIsRoom) {
     for (const Photon& p : photons) sum[static_cast<std::size_t>(p.position().x)] += p.power().x;
     for (std::size_t i = 0; i < kRegions; ++i) EXPECT_NEAR(sum[i], 2 * expected[i], 4e-4 * expected[i]);
     EXPECT_EQ(store.bytes(), 0u);
+}
+
+TEST(PhotonStore, RefusesWeightsThatAreNoNumbers) {
+    PhotonStore store(10, 0, make_rng(0));
+    for (int i = 0; i < 100; ++i) store.deposit(photon_in(0, 0.5), std::numeric_limits<double>::infinity());
+    for (int i = 0; i < 100; ++i) store.deposit(photon_in(0, 0.5), 1e60); // infinite as a float
+    EXPECT_EQ(store.size(), 0u);
 }
 
 TEST(PhotonStore, UsesMostOfItsCapacityWhenItThins) {

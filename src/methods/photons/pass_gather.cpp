@@ -18,8 +18,9 @@ namespace {
 constexpr double kForSamples = 0.25;
 /// Rays that records get in the end over those they have first, at most.
 constexpr double kMostMoreRays = 16;
-/// Gather rays of a sample at least and at most, if their number is to be found.
-constexpr double kFewestGatherRays = 1, kMostGatherRays = 8, kUsualGatherRays = 4;
+/// Gather rays of a sample at least and at most, if their number is to be found, and with how few it is asked for.
+/// Bright reflections that a ray finds in thousands of samples are not among those that this is told by.
+constexpr double kLeastGatherRays = 2, kFewestGatherRays = 1, kMostGatherRays = 8, kUsualGatherRays = 4;
 /// Pixels of the picture for one that this is found by, and the least number of those.
 constexpr int kPixelsForOne = 16, kLeastPixels = 32;
 /// What a sample of a pixel costs besides gather rays, in these: by time 0.5 to 4.
@@ -129,7 +130,7 @@ double PassGather::gather_rays_that_pay(const IrradianceCache* cache, GatherSamp
         return noise ? GatherEffort{rays, noise->samples, kCostBesides + noise->rays} : GatherEffort{rays, 0, 1};
     };
     const GatherEffort few = effort(kFewestGatherRays);
-    return best_gather_rays(few, effort(kMostGatherRays));
+    return std::max(kLeastGatherRays, best_gather_rays(few, effort(kMostGatherRays)));
 }
 
 /// The squared error of the picture is C / R + A / S with R rays of records and S samples of pixels, which share the

@@ -67,8 +67,6 @@ class IrradianceMap {
         const float reach = share * radius(i);
         return region.distance2(pilots_[i].position()) <= reach * reach;
     }
-    /// Whether share_that_reaches() is known.
-    bool tells_lengths() const { return !shares_.empty(); }
     /// Of the irradiance at place i, the share of what may take a way to the eye that is longer than the shortest by
     /// `longer` vertices (Photon::spare()), as the estimate's photons have it: noisy. 1 where that isn't known.
     double share_that_reaches(std::uint32_t i, int longer) const {

@@ -57,7 +57,13 @@ class SpotEmitter final : public EmitterAtAPoint {
     const char* kind() const override { return "spot"; }
 
   private:
-    double falloff(const Vec3& w) const { return spot_falloff(parameters_.axis.dot(w), cos_full_, cos_edge_); }
+    double falloff(const Vec3& w) const { return spot_falloff(cosine_to(w), cos_full_, cos_edge_); }
+    /// Near the axis by the chord: rounding of a float is as much as the cosines of narrow cones differ by.
+    double cosine_to(const Vec3& w) const {
+        const Imath::V3d axis(parameters_.axis), to(w);
+        const double cosine = axis.dot(to);
+        return cosine > 0.9 ? 1 - (to - axis).length2() / 2 : cosine;
+    }
 
     SpotParameters parameters_;
     Frame frame_;
