@@ -20,17 +20,22 @@ constexpr Stage kBidirectionalTracing{"bidirectional path tracing", &Settings::s
 /// Samples that tell about how bright a picture is.
 constexpr int kPilot = 256;
 
+/// Where splats go, in units of a power of two near the mean of the picture: the film's sums want numbers about 1.
+struct Splats {
+    SplatFilm film;
+    double unit; ///< [W/(m^2 sr)]
+};
+
 struct BidirectionalSink {
     PixelSink& pixel;
-    SplatFilm& splats;
-    double unit; ///< of splats [W/(m^2 sr)]
+    Splats& splats;
     const ImageWindow& window;
 
     void contribution(const Connection& connection, const Rgb& value, LightClass light) {
         if (connection.t() > 1)
             pixel.add(value, light);
         else if (is_finite(value))
-            splats.add(window.to_pixel(connection.image()), SplatFilm::layer_of(light), value / unit);
+            splats.film.add(window.to_pixel(connection.image()), SplatFilm::layer_of(light), value / splats.unit);
     }
 };
 
@@ -48,7 +53,6 @@ SubPathPair& trace_subpaths(const Scene& scene, const Vec2& image, int depth, Sa
     return pair;
 }
 
-/// A power of two near the mean of the picture: the film's sums want numbers about 1.
 double splat_unit(const Scene& scene, const Settings& settings) {
     const auto depth = static_cast<int>(settings.max_depth);
     BrightnessSink sink;
@@ -61,14 +65,14 @@ double splat_unit(const Scene& scene, const Settings& settings) {
     return sink.sum > 0 ? std::exp2(std::round(std::log2(sink.sum / kPilot))) : 1;
 }
 
-PixelSample sample_pixel(const Scene& scene, const Vec2& image, int depth, MisHeuristic heuristic, SplatFilm& splats,
-                         double unit, SampleSource& source) {
+PixelSample sample_pixel(const Scene& scene, const Vec2& image, int depth, MisHeuristic heuristic, Splats& splats,
+                         SampleSource& source) {
     SubPathPair& pair = trace_subpaths(scene, image, depth, source);
     const auto& eye = pair.eye;
     PixelSink pixel;
     for (std::size_t i = 1; i < eye.vertices.size() && !pixel.saw_surface; ++i)
         pixel.see(eye.vertices[i], eye.vertices[i - 1], eye.notes[i].throughput, i == 1);
-    BidirectionalSink sink{pixel, splats, unit, scene.camera().window()};
+    BidirectionalSink sink{pixel, splats, scene.camera().window()};
     connect_subpaths(scene, pair, image, {depth, PathSet::all, heuristic}, sink);
     return pixel.pixel;
 }
@@ -79,23 +83,22 @@ RenderResult render_bdpt(const RenderTask& task) {
     const ImageWindow& window = scene.camera().window();
     Work work(settings, window, AccumulationBuffer::Parts::both, share, settings.spp, Work::PassStart::free);
     PixelSampling pixels(scene, settings, share, StreamPurpose::bidirectional);
-    SplatFilm splats(window.width, window.height, PixelFilter(settings));
+    Splats splats{SplatFilm(window.width, window.height, PixelFilter(settings)), splat_unit(scene, settings)};
     // A light sub-path comes with each sample of a pixel, and is an estimate of the whole window.
     const double scale = window.pixels() / window.size();
     {
         const StageClock clock(result.stats, kBidirectionalTracing);
         const SamplingStage stage(scene, work.left(), "bidirectional path tracing", context);
         const auto depth = static_cast<int>(settings.max_depth);
-        const double unit = splat_unit(scene, settings);
         while (const auto round = work.take(context)) {
             const bool whole =
                 pixels.take_round(*work.unit().film, *round, context, [&](const Vec2& image, SampleSource& source) {
-                    return sample_pixel(scene, image, depth, settings.mis, splats, unit, source);
+                    return sample_pixel(scene, image, depth, settings.mis, splats, source);
                 });
             // Of later rounds that are cut short the eye's samples are enough.
             if ((whole || work.is_first()) && pixels.samples_per_pixel() > 0)
-                work.unit().drawn->add(splats, unit * scale / pixels.samples_per_pixel(), work.half());
-            splats.clear();
+                work.unit().drawn->add(splats.film, splats.unit * scale / pixels.samples_per_pixel(), work.half());
+            splats.film.clear();
             if (whole) work.end_unit(result.stats);
         }
     }

@@ -1,4 +1,5 @@
 // The ceiling on the memory of photons holds, by what was allocated, and thins without bias.
+#include "methods/photons/memory_plan.h"
 #include "methods/render.h"
 #include "support/test_scenes.h"
 
@@ -44,6 +45,12 @@ TEST_P(PhotonMemory_StaysUnderItsCeiling, AtEverySize) {
 
 INSTANTIATE_TEST_SUITE_P(Methods, PhotonMemory_StaysUnderItsCeiling, testing::Values("mps", "ipm", "pm", "cps"),
                          [](const auto& info) { return std::string(info.param); });
+
+TEST(PhotonMemory, IsForLookupsWherePhotonsLeaveRoom) {
+    const Settings s = settings_for("ipm", 1 << 20); // of which 20,000 photons take two thirds
+    EXPECT_EQ(memory_for_lookups(s, 25'000, 6000), 0u);
+    EXPECT_GE(memory_for_lookups(s, 15'000, 4000), 12u * 4000);
+}
 
 } // namespace
 } // namespace keyhole

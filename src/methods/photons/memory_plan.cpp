@@ -16,26 +16,37 @@ const double kPilotPhoton = sizeof(Photon) + PhotonMap::index_bytes_per_photon(P
 constexpr double kList = sizeof(std::uint32_t); // while an index is built; later places are as large
 constexpr double kInStageTwo = PhotonStore::bytes_per_photon() * 1.0625; // buffers on their way to the stores
 
+/// For lookups without a search, by place, where there is room: the memory over what photons take.
+constexpr std::size_t kForLookups = 24;
+constexpr double kRoom = 1.5;
+
 /// Longest paths, in scatterings, whose last ones count: with an albedo of 0.8 those after this bring half a percent.
 constexpr std::int64_t kLongPath = 24;
+
+/// What each photon of a map takes in stage three, with its part of a pilot photon and of the irradiance there.
+double in_stage_three(const Settings& settings) {
+    const double estimate = IrradianceMap::bytes_per_place(length_matters(settings));
+    return ((kPilotEvery - 1) * kIndexed + kPilotPhoton + estimate + DirectIrradianceCache::bytes_per_place()) /
+           kPilotEvery;
+}
+
+double memory_for_maps(const Settings& settings) {
+    return std::max(static_cast<double>(settings.photon_memory) - kFixed, kFixed);
+}
 
 } // namespace
 
 bool length_matters(const Settings& settings) { return settings.max_depth <= kLongPath; }
 
 MemoryPlan plan_memory(const Settings& settings, ImportanceUse use, int maps) {
-    // What each pilot photon of a map adds, and all of that for a photon.
-    const double estimate = IrradianceMap::bytes_per_place(length_matters(settings));
-    const double in_stage_three =
-        ((kPilotEvery - 1) * kIndexed + kPilotPhoton + estimate + DirectIrradianceCache::bytes_per_place()) /
-        kPilotEvery;
-    const double memory = std::max(static_cast<double>(settings.photon_memory) - kFixed, kFixed);
+    const double memory = memory_for_maps(settings), of_photon = in_stage_three(settings);
     const bool stays = use == ImportanceUse::beside || use == ImportanceUse::both;
     // Importance that stays beside the photons decides how good their power is: half of what is left for it.
-    double photons = memory / (stays ? 2 * in_stage_three : in_stage_three);
+    double photons = memory / (stays ? 2 * of_photon : of_photon);
     if (settings.photons > 0) photons = std::min(photons, static_cast<double>(settings.photons));
     double importons = 0;
-    const double places = (kPilotPhoton + estimate) / kPilotEvery;
+    const double places =
+        (kPilotPhoton + static_cast<double>(IrradianceMap::bytes_per_place(length_matters(settings)))) / kPilotEvery;
     const double each = kIndexed + (use == ImportanceUse::both ? places : 0);
     if (stays) importons = (memory - photons * kInStageTwo) / (each * maps);
     // All importons, and the index and the places of one map; later the places of all, beside the stores.
@@ -44,6 +55,11 @@ MemoryPlan plan_memory(const Settings& settings, ImportanceUse use, int maps) {
                              (memory - photons * kInStageTwo) / (places * maps));
     return {static_cast<std::size_t>(photons),
             std::clamp<std::int64_t>(static_cast<std::int64_t>(importons), 1, settings.importons)};
+}
+
+std::size_t memory_for_lookups(const Settings& settings, std::size_t photons, std::size_t places) {
+    const bool room = kRoom * static_cast<double>(photons) * in_stage_three(settings) < memory_for_maps(settings);
+    return room ? kForLookups * places : 0;
 }
 
 } // namespace keyhole

@@ -21,4 +21,8 @@ bool length_matters(const Settings& settings);
 /// maps with their indices and precomputed irradiance. `maps` importance maps are made (1 or 2).
 MemoryPlan plan_memory(const Settings& settings, ImportanceUse use, int maps);
 
+/// Memory for lookups of precomputed irradiance without a search [bytes], where maps hold so many photons in all and
+/// irradiance is estimated at `places`; 0, no more than is planned, where photons take most of settings.photon_memory.
+std::size_t memory_for_lookups(const Settings& settings, std::size_t photons, std::size_t places);
+
 } // namespace keyhole

@@ -53,7 +53,7 @@ IrradianceMap::IrradianceMap(const PhotonMap& pilots, const PhotonMap& main_phot
     exchange_parts(shares_, context);
     if (options.scene != nullptr)
         grid_.emplace(
-            options.scene->shapes(), kGridBytesPerPlace * estimates_.size(),
+            options.scene->shapes(), std::max(options.grid_bytes, kGridBytesPerPlace * estimates_.size()),
             [this](const Vec3& middle, const Vec3& normal) { return place_for_cell(middle, normal); }, context);
     context.end();
     if (own.size() == 0) return;

@@ -26,6 +26,7 @@ struct IrradianceOptions {
     const GatherCoverage* coverage = nullptr; ///< that the map ends at; null: nowhere
     int most_hidden = std::numeric_limits<int>::max(); ///< places that a lookup finds hidden before it gives up
     bool by_length = false;                            ///< whether share_that_reaches() is wanted
+    std::size_t grid_bytes = 0;   ///< for lookups without a search; less: IrradianceMap::kGridBytesPerPlace a place
     const Scene* scene = nullptr; ///< for walls that stand on a surface and part it; needs `patches`; null: none do
 };
 
@@ -92,7 +93,7 @@ class IrradianceMap {
     double effective_photons() const { return mean_.effective; }
 
   private:
-    static constexpr std::size_t kGridBytesPerPlace = 24; // with 6 every second lookup had to search
+    static constexpr std::size_t kGridBytesPerPlace = 6;
     using Shares = std::array<std::uint8_t, kLongerWays>; ///< as LongerWays, times 255
 
     class Estimate {
