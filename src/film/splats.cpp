@@ -17,8 +17,9 @@ constexpr int kNodes = 1024;
 
 } // namespace
 
-SplatFilm::SplatFilm(int width, int height, const PixelFilter& filter)
+SplatFilm::SplatFilm(int width, int height, const PixelFilter& filter, double brightness)
     : width_(width), height_(height), reach_(filter.radius()),
+      unit_(brightness > 0 ? std::exp2(std::round(std::log2(brightness))) : 1),
       sums_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * kPerPixel) {
     assert(width > 0 && height > 0);
     for (int i = 0; i <= kNodes; ++i) filter_.push_back(filter.density_1d(reach_ * i / kNodes));
@@ -47,7 +48,7 @@ void SplatFilm::add(const Vec2& position, Layer layer, const Rgb& value) {
     for (std::size_t y = 0; y < rows.weights.size(); ++y) {
         FixedSum* sum = corner + y * width * kChannels;
         for (const double weight : columns.weights) {
-            const Rgb share = value * (weight * rows.weights[y]);
+            const Rgb share = value * (weight * rows.weights[y] / unit_);
             for (int c = 0; c < static_cast<int>(kChannels); ++c) (sum++)->add(share[c]);
         }
     }
@@ -56,7 +57,7 @@ void SplatFilm::add(const Vec2& position, Layer layer, const Rgb& value) {
 std::array<double, SplatFilm::kPerPixel> SplatFilm::sums(std::size_t pixel) const {
     std::array<double, kPerPixel> values{};
     for (std::size_t i = 0; i < kPerPixel; ++i)
-        values[i] = sums_[(i / kChannels * pixels() + pixel) * kChannels + i % kChannels].value();
+        values[i] = sums_[(i / kChannels * pixels() + pixel) * kChannels + i % kChannels].value() * unit_;
     return values;
 }
 

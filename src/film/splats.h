@@ -36,7 +36,8 @@ class SplatFilm {
     }
 
     /// @param width,height in pixels, at least 1.
-    SplatFilm(int width, int height, const PixelFilter& filter = PixelFilter());
+    /// @param brightness about that of the splats: sums are in units of a power of two near it. Else, 1.
+    SplatFilm(int width, int height, const PixelFilter& filter = PixelFilter(), double brightness = 1);
 
     /// Adds `value` at `position` [pixels] to all pixels whose filter reaches it. Positions may lie outside the film.
     void add(const Vec2& position, Layer layer, const Rgb& value);
@@ -56,6 +57,7 @@ class SplatFilm {
 
     int width_, height_;
     double reach_;
+    double unit_;                ///< of the sums, which keep to a fixed range
     std::vector<double> filter_; ///< its density at kNodes + 1 even distances from 0 to its reach
     std::vector<FixedSum> sums_; ///< by layer, pixel and channel: a splat meets few cache lines
 };

@@ -10,8 +10,6 @@
 #include "session/stage_clock.h"
 #include "session/work.h"
 
-#include <cmath>
-
 namespace keyhole {
 namespace {
 
@@ -20,22 +18,16 @@ constexpr Stage kBidirectionalTracing{"bidirectional path tracing", &Settings::s
 /// Samples that tell about how bright a picture is.
 constexpr int kPilot = 256;
 
-/// Where splats go, in units of a power of two near the mean of the picture: the film's sums want numbers about 1.
-struct Splats {
-    SplatFilm film;
-    double unit; ///< [W/(m^2 sr)]
-};
-
 struct BidirectionalSink {
     PixelSink& pixel;
-    Splats& splats;
+    SplatFilm& splats;
     const ImageWindow& window;
 
     void contribution(const Connection& connection, const Rgb& value, LightClass light) {
         if (connection.t() > 1)
             pixel.add(value, light);
         else if (is_finite(value))
-            splats.film.add(window.to_pixel(connection.image()), SplatFilm::layer_of(light), value / splats.unit);
+            splats.add(window.to_pixel(connection.image()), SplatFilm::layer_of(light), value);
     }
 };
 
@@ -53,7 +45,8 @@ SubPathPair& trace_subpaths(const Scene& scene, const Vec2& image, int depth, Sa
     return pair;
 }
 
-double splat_unit(const Scene& scene, const Settings& settings) {
+/// About that of the picture [W/(m^2 sr)]; 0 where few samples find nothing.
+double pilot_brightness(const Scene& scene, const Settings& settings) {
     const auto depth = static_cast<int>(settings.max_depth);
     BrightnessSink sink;
     for (int i = 0; i < kPilot; ++i) {
@@ -62,10 +55,10 @@ double splat_unit(const Scene& scene, const Settings& settings) {
         SubPathPair& pair = trace_subpaths(scene, image, depth, rng);
         connect_subpaths(scene, pair, image, {depth, PathSet::all, settings.mis}, sink);
     }
-    return sink.sum > 0 ? std::exp2(std::round(std::log2(sink.sum / kPilot))) : 1;
+    return sink.sum / kPilot;
 }
 
-PixelSample sample_pixel(const Scene& scene, const Vec2& image, int depth, MisHeuristic heuristic, Splats& splats,
+PixelSample sample_pixel(const Scene& scene, const Vec2& image, int depth, MisHeuristic heuristic, SplatFilm& splats,
                          SampleSource& source) {
     SubPathPair& pair = trace_subpaths(scene, image, depth, source);
     const auto& eye = pair.eye;
@@ -83,7 +76,7 @@ RenderResult render_bdpt(const RenderTask& task) {
     const ImageWindow& window = scene.camera().window();
     Work work(settings, window, AccumulationBuffer::Parts::both, share, settings.spp, Work::PassStart::free);
     PixelSampling pixels(scene, settings, share, StreamPurpose::bidirectional);
-    Splats splats{SplatFilm(window.width, window.height, PixelFilter(settings)), splat_unit(scene, settings)};
+    SplatFilm splats(window.width, window.height, PixelFilter(settings), pilot_brightness(scene, settings));
     // A light sub-path comes with each sample of a pixel, and is an estimate of the whole window.
     const double scale = window.pixels() / window.size();
     {
@@ -97,8 +90,8 @@ RenderResult render_bdpt(const RenderTask& task) {
                 });
             // Of later rounds that are cut short the eye's samples are enough.
             if ((whole || work.is_first()) && pixels.samples_per_pixel() > 0)
-                work.unit().drawn->add(splats.film, splats.unit * scale / pixels.samples_per_pixel(), work.half());
-            splats.film.clear();
+                work.unit().drawn->add(splats, scale / pixels.samples_per_pixel(), work.half());
+            splats.clear();
             if (whole) work.end_unit(result.stats);
         }
     }

@@ -109,11 +109,9 @@ bool draw(PrimaryChains& chains, const Scene& scene, const Settings& settings, W
           const RunContext& context) {
     const StageClock clock(stats, stages::chains);
     const ImageWindow& window = scene.camera().window();
-    SplatFilm film(window.width, window.height, PixelFilter(settings));
-    // Deposits are of the size of the brightness; the film's sums want numbers about 1.
-    const double unit = std::exp2(std::round(std::log2(chains.brightness())));
+    SplatFilm film(window.width, window.height, PixelFilter(settings), chains.brightness());
     const auto deposit = [&](const Splat& s, double factor) {
-        film.add(window.to_pixel(s.image), SplatFilm::layer_of(s.light), s.value * (factor / unit));
+        film.add(window.to_pixel(s.image), SplatFilm::layer_of(s.light), s.value * factor);
     };
     const std::int64_t per_chain =
         std::max<std::int64_t>(1, settings.mutations / chain_groups(settings) / chains.size());
@@ -127,7 +125,7 @@ bool draw(PrimaryChains& chains, const Scene& scene, const Settings& settings, W
     });
     context.end();
     if (drawn < batch.rest && !work.is_first()) return false;
-    work.unit().drawn->add(film, unit * window.pixels() / static_cast<double>(drawn * chains.size()), work.half());
+    work.unit().drawn->add(film, window.pixels() / static_cast<double>(drawn * chains.size()), work.half());
     return drawn == batch.rest;
 }
 

@@ -20,6 +20,7 @@ class PilotedMap {
 
     const PhotonMap& pilots() const { return pilots_; }
     const PhotonMap& main_photons() const { return main_photons_; }
+    std::size_t size() const { return pilots_.photons().size() + main_photons_.photons().size(); }
     std::size_t bytes() const { return pilots_.bytes() + main_photons_.bytes(); }
 
   private:

@@ -23,11 +23,14 @@ constexpr double kRoom = 1.5;
 /// Longest paths, in scatterings, whose last ones count: with an albedo of 0.8 those after this bring half a percent.
 constexpr std::int64_t kLongPath = 24;
 
-/// What each photon of a map takes in stage three, with its part of a pilot photon and of the irradiance there.
+/// What each pilot photon of a map takes with the irradiance there, without direct light.
+double of_place(const Settings& settings) {
+    return kPilotPhoton + static_cast<double>(IrradianceMap::bytes_per_place(length_matters(settings)));
+}
+
+/// What each photon of a map takes in stage three, with its part of a pilot photon and of all that is known there.
 double in_stage_three(const Settings& settings) {
-    const double estimate = IrradianceMap::bytes_per_place(length_matters(settings));
-    return ((kPilotEvery - 1) * kIndexed + kPilotPhoton + estimate + DirectIrradianceCache::bytes_per_place()) /
-           kPilotEvery;
+    return ((kPilotEvery - 1) * kIndexed + of_place(settings) + DirectIrradianceCache::bytes_per_place()) / kPilotEvery;
 }
 
 double memory_for_maps(const Settings& settings) {
@@ -45,8 +48,7 @@ MemoryPlan plan_memory(const Settings& settings, ImportanceUse use, int maps) {
     double photons = memory / (stays ? 2 * of_photon : of_photon);
     if (settings.photons > 0) photons = std::min(photons, static_cast<double>(settings.photons));
     double importons = 0;
-    const double places =
-        (kPilotPhoton + static_cast<double>(IrradianceMap::bytes_per_place(length_matters(settings)))) / kPilotEvery;
+    const double places = of_place(settings) / kPilotEvery;
     const double each = kIndexed + (use == ImportanceUse::both ? places : 0);
     if (stays) importons = (memory - photons * kInStageTwo) / (each * maps);
     // All importons, and the index and the places of one map; later the places of all, beside the stores.

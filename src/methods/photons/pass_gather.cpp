@@ -105,9 +105,6 @@ void PassGather::estimate_irradiance(const SamplerContext& c, const Radii& radii
     // it is asked.
     const float photons_in_region = static_cast<float>(s.nearest) * radii.shrink * radii.shrink;
     if (!(photons_in_region > 2.0f * kPilotEvery)) return;
-    const std::size_t places = global_.pilots().photons().size();
-    const std::size_t photons = places + global_.main_photons().photons().size() + caustic_.pilots().photons().size() +
-                                caustic_.main_photons().photons().size();
     irradiance_.emplace(global_.pilots(), global_.main_photons(),
                         IrradianceOptions{.k = static_cast<int>(s.nearest),
                                           .max_radius = radii.global,
@@ -115,7 +112,8 @@ void PassGather::estimate_irradiance(const SamplerContext& c, const Radii& radii
                                           .patches = &c.patches,
                                           .coverage = c.coverage,
                                           .by_length = c.scene.traits().delta && length_matters(s),
-                                          .grid_bytes = memory_for_lookups(s, photons, places),
+                                          .grid_bytes = memory_for_lookups(s, global_.size() + caustic_.size(),
+                                                                           global_.pilots().photons().size()),
                                           .scene = &c.scene},
                         context);
     report_lookups(*irradiance_, photons_in_region, stats);
