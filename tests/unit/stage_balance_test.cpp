@@ -101,5 +101,19 @@ TEST(StageBalance, GivesPhotonsTheirShare) {
     EXPECT_EQ(split_stage_three(s, cost, {1, 2e-4}, kPixels, {"light_paths"}).light_paths, s.light_paths);
 }
 
+TEST(StageBalance, CountsTheIrradianceThatPhotonsAreAskedFor) {
+    Settings s = settings();
+    s.photons = 10'000;
+    RenderStats stats;
+    stats.stages = {{&stages::photons_of_light_paths, 0.2, 0.2, 0},
+                    {&stages::irradiance, 1.4, 1.4, 0},
+                    {&stages::cache, 4, 4, 0},
+                    {&stages::gather, 4, 4, 0}};
+    const Experience cost(s, 1, kPixels, stats, 9.6);
+    EXPECT_EQ(split_stage_three(s, cost, {1, 2e-4}, kPixels, {}).light_paths, s.light_paths) << "they have their share";
+    s.photons *= 3;
+    EXPECT_NEAR(cost.predict(s, kPixels), 9.6 + 2 * 1.4, 1e-6);
+}
+
 } // namespace
 } // namespace keyhole

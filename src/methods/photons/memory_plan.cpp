@@ -16,8 +16,9 @@ const double kPilotPhoton = sizeof(Photon) + PhotonMap::index_bytes_per_photon(P
 constexpr double kList = sizeof(std::uint32_t); // while an index is built; later places are as large
 constexpr double kInStageTwo = PhotonStore::bytes_per_photon() * 1.0625; // buffers on their way to the stores
 
-/// For lookups without a search, by place, where there is room: the memory over what photons take.
+/// For lookups without a search, by place, where there is room: with 6 every second one may have to search.
 constexpr std::size_t kForLookups = 24;
+/// The memory over what photons take, from which on there is.
 constexpr double kRoom = 1.5;
 
 /// Longest paths, in scatterings, whose last ones count: with an albedo of 0.8 those after this bring half a percent.

@@ -93,7 +93,7 @@ class IrradianceMap {
     double effective_photons() const { return mean_.effective; }
 
   private:
-    static constexpr std::size_t kGridBytesPerPlace = 6;
+    static constexpr std::size_t kGridBytesPerPlace = 6;  ///< for lookups without a search, at least
     using Shares = std::array<std::uint8_t, kLongerWays>; ///< as LongerWays, times 255
 
     class Estimate {
