@@ -89,7 +89,7 @@ void PathDepositor::store(Pending& pending) {
                               ? Rgb(1.0)
                               : power_of(pending, kind == PhotonKind::global, given, weight);
         if (is_black(power)) return std::nullopt;
-        const Photon photon(pending.vertex.point.p, pending.vertex.point.ng, pending.to_light, power,
+        const Photon photon(pending.vertex.point.p, pending.vertex.point.ng, pending.to_light, power / unit_,
                             {.caustic = pending.caustic,
                              .spare = spare_scatterings(kind, pending.scatterings, options_.max_scatterings)});
         if (options_.observer != nullptr)

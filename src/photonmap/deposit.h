@@ -34,7 +34,7 @@ class PathDepositor {
   public:
     /// Photons go to `buffers`, which must outlive this.
     PathDepositor(const DepositOptions& options, const Rng& rng, MapBuffers& buffers)
-        : options_(options), rng_(rng), buffers_(&buffers) {}
+        : options_(options), rng_(rng), unit_(unit_of_power(*options.scene)), buffers_(&buffers) {}
 
     /// Weights below these, those of the stores that the buffers go to, are sent through the roulette at once: what
     /// doesn't survive costs nothing more.
@@ -104,6 +104,7 @@ class PathDepositor {
     DepositOptions options_;
     Rng rng_;
     MapStores::Thresholds thresholds_;
+    double unit_; // of power
     MapBuffers* buffers_;
     Pending recent_, older_;
     Tally tally_;

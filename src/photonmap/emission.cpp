@@ -30,11 +30,10 @@ struct EmissionBlock {
 /// Receives the arrivals of one light path after the other.
 class Collector {
   public:
-    Collector(const PhotonWeighing& weighing, const MapStores::Thresholds& pilots,
-              const MapStores::Thresholds& main_photons, const StorageRule& rule,
-              const TechniqueWeights* techniques = nullptr, PhotonObserver* observer = nullptr)
-        : weighing_(weighing), pilots_(pilots), main_photons_(main_photons), rule_(rule), techniques_(techniques),
-          observer_(observer) {}
+    Collector(const Scene& scene, const EmissionOptions& options, const PhotonWeighing& weighing,
+              const MapStores::Thresholds& pilots, const MapStores::Thresholds& main_photons)
+        : weighing_(weighing), pilots_(pilots), main_photons_(main_photons), rule_(options.rule),
+          techniques_(options.weights), unit_(unit_of_power(scene)), observer_(options.observer) {}
 
     void begin(PhotonRole role, Rng& rng) {
         role_ = role;
@@ -80,7 +79,8 @@ class Collector {
         bool kept = false;
         store_by_roulette(pilot ? block.pilots : block.main_photons, kind, share * weight.value,
                           pilot ? pilots_ : main_photons_, *rng_, [&](double /*weight*/) {
-                              const Photon photon(v.point.p, v.point.ng, to_light, emitted_power(power, weight.value),
+                              const Photon photon(v.point.p, v.point.ng, to_light,
+                                                  emitted_power(power, weight.value) / unit_,
                                                   {.caustic = past.caustic(), .spare = spare(kind, past)});
                               kept = true;
                               if (observer_ != nullptr)
@@ -98,6 +98,7 @@ class Collector {
     MapStores::Thresholds pilots_, main_photons_;
     StorageRule rule_;
     const TechniqueWeights* techniques_;
+    double unit_; // of power
     PhotonRole role_ = PhotonRole::main_photon;
     Rng* rng_ = nullptr;
     PhotonObserver* observer_;
@@ -152,8 +153,11 @@ EmissionBlock learn_from_pilot(const Scene& scene, const EmissionGuide& guide, c
                                const RunContext& context) {
     const double infinity = std::numeric_limits<double>::infinity();
     const MapStores::Thresholds never{infinity, infinity};
-    const std::vector<EmissionBlock> blocks = trace_blocks(scene, options, {0, std::min(kPilot, options.paths)},
-                                                           Collector({guide, 1}, never, never, options.rule), context);
+    EmissionOptions alone = options;
+    alone.weights = nullptr;
+    alone.observer = nullptr;
+    const std::vector<EmissionBlock> blocks = trace_blocks(scene, alone, {0, std::min(kPilot, options.paths)},
+                                                           Collector(scene, alone, {guide, 1}, never, never), context);
     // Without the one that found most: an outlier would raise the bound that is to cut it off.
     const auto most = std::ranges::max_element(blocks, {}, [](const EmissionBlock& b) { return b.weights.known(); });
     EmissionBlock sum;
@@ -179,9 +183,8 @@ Emission trace_and_store(const Scene& scene, const EmissionGuide& guide, const E
                                       options.cut_outliers
                                           ? most_visible(learnt.weights, known + out.paths, options.paths)
                                           : std::numeric_limits<double>::infinity()};
-        const Collector collector(weighing, stores.thresholds(PhotonRole::pilot),
-                                  stores.thresholds(PhotonRole::main_photon), options.rule, options.weights,
-                                  options.observer);
+        const Collector collector(scene, options, weighing, stores.thresholds(PhotonRole::pilot),
+                                  stores.thresholds(PhotonRole::main_photon));
         for (EmissionBlock& b : trace_blocks(scene, options, range, collector, context)) {
             stores.absorb(PhotonRole::pilot, b.pilots);
             stores.absorb(PhotonRole::main_photon, b.main_photons);
@@ -213,7 +216,7 @@ EmittedPhotons emit_photons(const Scene& scene, const EmissionGuide& guide, cons
     if (scene.emitter_distribution().empty()) return out;
     EmissionBlock learnt = learn_from_pilot(scene, guide, options, context);
     const std::size_t for_caustic = options.rule.caustics ? learnt.weights.for_caustic(options.photons) : 0;
-    MapStores stores(options.photons - for_caustic, for_caustic, {}, options.seed);
+    MapStores stores({options.photons - for_caustic, for_caustic}, unit_of_power(scene), {}, options.seed);
     static_cast<Emission&>(out) = trace_and_store(scene, guide, options, std::move(learnt), stores, context);
     out.bytes = stores.bytes();
     static_cast<Photons&>(out) = stores.release(out.scale(), out.scale());

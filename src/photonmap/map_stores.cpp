@@ -4,20 +4,20 @@
 
 namespace keyhole {
 
-MapStores::Pair MapStores::make_pair(std::size_t global, std::size_t caustic, const Thresholds& initial,
-                                     std::uint64_t seed, PhotonRole role) {
+MapStores::Pair MapStores::make_pair(const Ceilings& ceilings, const Thresholds& initial, std::uint64_t seed,
+                                     PhotonRole role) {
     const auto share = [&](std::size_t ceiling) {
         const std::size_t pilots = ceiling / kPilotEvery;
         return role == PhotonRole::pilot ? pilots : ceiling - pilots;
     };
     const std::uint64_t stream = 2 * static_cast<std::uint64_t>(role);
-    return {PhotonStore(share(global), initial.global, Rng(seed, StreamPurpose::thinning, stream)),
-            PhotonStore(share(caustic), initial.caustic, Rng(seed, StreamPurpose::thinning, stream + 1))};
+    return {PhotonStore(share(ceilings.global), initial.global, Rng(seed, StreamPurpose::thinning, stream)),
+            PhotonStore(share(ceilings.caustic), initial.caustic, Rng(seed, StreamPurpose::thinning, stream + 1))};
 }
 
-MapStores::MapStores(std::size_t global, std::size_t caustic, const Thresholds& initial, std::uint64_t seed)
-    : pilots_(make_pair(global, caustic, initial, seed, PhotonRole::pilot)),
-      main_photons_(make_pair(global, caustic, initial, seed, PhotonRole::main_photon)) {}
+MapStores::MapStores(const Ceilings& ceilings, double unit, const Thresholds& initial, std::uint64_t seed)
+    : pilots_(make_pair(ceilings, initial, seed, PhotonRole::pilot)),
+      main_photons_(make_pair(ceilings, initial, seed, PhotonRole::main_photon)), unit_(unit) {}
 
 void MapStores::absorb(PhotonRole role, MapBuffers& buffers) {
     of(role).global.absorb(buffers.global);
@@ -31,14 +31,14 @@ MapStores::Thresholds MapStores::thresholds(PhotonRole role) const {
 
 void MapStores::settle(double global_scale, double caustic_scale, double next) {
     for (Pair* pair : {&pilots_, &main_photons_}) {
-        pair->global.settle(global_scale, next);
-        pair->caustic.settle(caustic_scale, next);
+        pair->global.settle(global_scale * unit_, next * unit_);
+        pair->caustic.settle(caustic_scale * unit_, next * unit_);
     }
 }
 
 Photons MapStores::release(double global_scale, double caustic_scale) {
-    return {{pilots_.global.release(1), main_photons_.global.release(global_scale)},
-            {pilots_.caustic.release(1), main_photons_.caustic.release(caustic_scale)}};
+    return {{pilots_.global.release(1), main_photons_.global.release(global_scale * unit_)},
+            {pilots_.caustic.release(1), main_photons_.caustic.release(caustic_scale * unit_)}};
 }
 
 std::size_t MapStores::bytes() const {

@@ -33,8 +33,14 @@ class MapStores {
         double of(PhotonKind kind) const { return kind == PhotonKind::global ? global : caustic; }
     };
 
-    /// Ceilings in photons, pilot photons included. `initial`: as PhotonStore's.
-    MapStores(std::size_t global, std::size_t caustic, const Thresholds& initial, std::uint64_t seed);
+    /// Photons of either map at most, pilot photons included.
+    struct Ceilings {
+        std::size_t global = 0, caustic = 0;
+    };
+
+    /// @param unit of the power of the photons that come (unit_of_power())
+    /// @param initial as PhotonStore's
+    MapStores(const Ceilings& ceilings, double unit, const Thresholds& initial, std::uint64_t seed);
 
     /// Adds the photons of the buffers and empties them.
     void absorb(PhotonRole role, MapBuffers& buffers);
@@ -51,7 +57,7 @@ class MapStores {
     /// As PhotonStore's. Weights of pilot photons change units as the others' do.
     void settle(double global_scale, double caustic_scale, double next);
 
-    /// All photons, with power times weight times the map's scale. The stores are finished after that.
+    /// All photons, with power times weight times unit and the map's scale. The stores are finished after that.
     Photons release(double global_scale, double caustic_scale);
 
     /// Memory held [bytes].
@@ -61,11 +67,11 @@ class MapStores {
     struct Pair {
         PhotonStore global, caustic;
     };
-    static Pair make_pair(std::size_t global, std::size_t caustic, const Thresholds& initial, std::uint64_t seed,
-                          PhotonRole role);
+    static Pair make_pair(const Ceilings& ceilings, const Thresholds& initial, std::uint64_t seed, PhotonRole role);
     Pair& of(PhotonRole role) { return role == PhotonRole::pilot ? pilots_ : main_photons_; }
 
     Pair pilots_, main_photons_;
+    double unit_;
 };
 
 /// Puts a photon of weight `weight` into its buffer if it survives the roulette of its store: what doesn't costs

@@ -1,6 +1,7 @@
 #include "photonmap/photon_sampling.h"
 
 #include "core/shared_work.h"
+#include "photonmap/power/power.h"
 #include "sampling/markov/chain_rounds.h"
 
 #include <algorithm>
@@ -91,7 +92,8 @@ SampledPhotons sample_photons(const ChainSeeds& seeds, const Mixture<Path>& mixt
     const auto mutations = static_cast<double>(steps_of_chain(seeds, options) * chains_of(seeds));
     const auto photons = static_cast<double>(options.global_photons + options.caustic_photons);
     const double threshold = std::max(0.2, 0.8 * mutations / std::max(1.0, photons));
-    MapStores stores(options.global_photons, options.caustic_photons, {threshold, threshold}, options.seed);
+    MapStores stores({options.global_photons, options.caustic_photons}, unit_of_power(*deposit.scene),
+                     {threshold, threshold}, options.seed);
     static_cast<PhotonChains&>(out) = run_photon_chains(seeds, mixture, deposit, options, stores, context);
     out.bytes = stores.bytes();
     static_cast<Photons&>(out) = stores.release(out.global_scale, out.caustic_scale);

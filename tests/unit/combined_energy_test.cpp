@@ -4,6 +4,7 @@
 
 #include "photonmap/emission.h"
 #include "photonmap/photon_sampling.h"
+#include "photonmap/power/power.h"
 #include "sampling/proposals/registry.h"
 #include "support/test_scenes.h"
 #include "support/user_paths.h"
@@ -56,7 +57,7 @@ Photons combine(const Case& c, const Start& start, double share, std::uint64_t s
     const Mixture<Path> mixture = make_mixture({&c.scene, start.set, depth, &c.user_paths}, Settings{});
     const TechniqueWeights weights(start.guide(), {&start.user_paths, nullptr},
                                    static_cast<double>(steps) / (static_cast<double>(paths) * start.seeds.brightness));
-    MapStores stores(5'000, 2'500, {}, seed);
+    MapStores stores({5'000, 2'500}, unit_of_power(c.scene), {}, seed);
     double scale = 1;
     if (steps > 0) {
         const PhotonChains chains = run_photon_chains(

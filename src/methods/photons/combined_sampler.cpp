@@ -9,6 +9,7 @@
 #include "methods/photons/trials/combination_trial.h"
 #include "photonmap/emission.h"
 #include "photonmap/photon_sampling.h"
+#include "photonmap/power/power.h"
 #include "sampling/proposals/tuning.h"
 #include "session/stage_clock.h"
 
@@ -54,7 +55,7 @@ class CombinedSampler final : public PhotonSampler {
         const double odds = seeds.brightness > 0 ? steps / (shares_.correlation * paths * seeds.brightness) : 0;
         const TechniqueWeights weights(guide, {&user_paths_, learned_->emission_or_null()}, odds);
         const std::size_t of_caustic = one.brightness.mean() > 0 ? photons_for_caustic(c_, one, plan.photons) : 0;
-        MapStores stores(plan.photons - of_caustic, of_caustic, {}, seed);
+        MapStores stores({plan.photons - of_caustic, of_caustic}, unit_of_power(c_.scene), {}, seed);
         const Pass pass{seed, plan.photons, weights, stores};
         if (odds > 0) run_chains(seeds, importance, pass, stats, context);
         return trace_light(guide, pass, stats, context);

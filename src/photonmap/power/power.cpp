@@ -1,5 +1,7 @@
 #include "photonmap/power/power.h"
 
+#include "scene/scene.h"
+
 #include <cmath>
 
 namespace keyhole {
@@ -11,6 +13,11 @@ double literal_factor(const Path& path, int d2, const Rgb& flux) {
         rest *= path.x[i].value * geometry_term(path.x[i].point, path.x[i + 1].point);
     const double visible = luminance(rest);
     return visible > 0 && std::isfinite(1 / visible) ? 1 / visible : 0.0;
+}
+
+double unit_of_power(const Scene& scene) {
+    const double radius = scene.bounding_sphere().radius;
+    return radius > 0 ? std::exp2(std::round(2 * std::log2(radius))) : 1;
 }
 
 } // namespace keyhole

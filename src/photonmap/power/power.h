@@ -45,6 +45,9 @@ inline double path_chain_scale(double brightness, double steps) { return brightn
 inline double literal_scale(double path_chain_scale, double weight, double visible) {
     return visible > 0 ? path_chain_scale * weight / visible : path_chain_scale;
 }
+/// Unit of the power that photons have before their map's scale: a power of two near the scene's cross-section, which
+/// is of the size of 1 / E. In this unit it fits the format of photons, however large the scene is.
+double unit_of_power(const Scene& scene);
 /// 1 / N of N light paths.
 inline double emission_scale(std::int64_t light_paths) { return 1 / static_cast<double>(light_paths); }
 
