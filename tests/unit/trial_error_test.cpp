@@ -95,6 +95,19 @@ TEST(TrialErrors, AreNotRelativeToThePictureOfAMethodThatFindsNothing) {
     EXPECT_GT(e[1].missing, 0.5);
 }
 
+/// One sample in hundreds brings all the light: its mean is right in each part, and the picture is dark with dots.
+TEST(TrialErrors, MissLightThatComesInDots) {
+    std::vector<TrialPictures> methods{halves(0.1, 0, 1, 1), halves(0, 0, 1, 2)};
+    constexpr int kAcross = kWidth / 4, kDown = kHeight / 4;
+    int more = 0;
+    for (Image* image : {&methods[1].first, &methods[1].second}) {
+        for (float& v : image->data) v *= 0.15f;
+        for (int part = 0; part < kTrialParts; ++part, more += 3)
+            *image->at(part % 4 * kAcross + more % kAcross, part / 4 * kDown + more % kDown) = 1.3f * kAcross * kDown;
+    }
+    EXPECT_GT(trial_errors(methods)[1].missing, 0.5);
+}
+
 TEST(TrialErrors, OfNarrowerPixelsAreLessOnlyBeyondChance) {
     EXPECT_EQ(variance_less(halves(1, 0, 1, 1), halves(0.99, 0, 1, 2)), 0);
     EXPECT_NEAR(variance_less(halves(0.3, 0, 1, 1), halves(0.1, 0, 1, 2)), 0.06, 0.02);

@@ -24,8 +24,8 @@ constexpr double kLamps = 0.1;
 constexpr double kRareSamples = 0.05;
 // Of the brightness that another method finds in most of the picture, what shows that a method finds its light.
 constexpr double kFindsLight = 0.5;
-// The same, below which it finds next to none.
-constexpr double kFindsNothing = 0.1;
+// The same, below which it finds next to none: even where its few bright samples are left out, the rest are that dark.
+constexpr double kFindsNothing = 0.2;
 // Standard errors of both that two means differ by before light is missing: there are many parts to differ in.
 constexpr double kStandardErrors = 3;
 constexpr double kMedianOfNormal = 0.6745; // of the amounts of normal deviates, over their standard deviation
@@ -235,6 +235,9 @@ std::vector<TrialError> trial_errors(std::span<const TrialPictures> methods) {
             least[i] = std::max(least[i], p.means.values[i] - kStandardErrors * p.errors.values[i]);
     const double dark = least_square(picture);
     for (std::size_t k = 0; k < methods.size(); ++k) {
+        // Who finds next to nothing knows nothing of its own errors: two dark renders agree, and a few dots, which
+        // would be left out of their differences, allow any part to be as bright as others find it.
+        const bool blind = brightness[k] < kFindsNothing;
         const Grid d = difference_of(methods[k]);
         const double trimmed = methods[k].rare_samples ? kTrimmedOfRare : kTrimmed;
         const double pixel = relative_variance(d, smooth, trimmed);
@@ -244,9 +247,10 @@ std::vector<TrialError> trial_errors(std::span<const TrialPictures> methods) {
         errors[k].blotches = std::max(0.0, pixel - errors[k].grain);
         double missing = 0;
         for (std::size_t i = 0; i < least.size(); ++i) {
-            const double most = parts[k].means.values[i] + kStandardErrors * parts[k].errors.values[i];
-            // Nobody may be sure of it; but who finds next to nothing knows nothing of its own errors.
-            const double others = brightness[k] < kFindsNothing ? std::max(least[i], in_parts.values[i]) : least[i];
+            const double off = kStandardErrors * parts[k].errors.values[i];
+            const double most = blind ? brightness[k] * in_parts.values[i] : parts[k].means.values[i] + off;
+            // Nobody may be sure of it.
+            const double others = blind ? std::max(least[i], in_parts.values[i]) : least[i];
             const double lost = std::max(0.0, others - most), p = std::max(in_parts.values[i], least[i]);
             if (p > 0) missing += lost * lost / (p * p + dark);
         }

@@ -20,13 +20,13 @@ constexpr double kForSamples = 0.25;
 constexpr double kMostMoreRays = 16;
 /// Gather rays of a sample at least and at most, if their number is to be found, and with how few it is asked for.
 /// Bright reflections that a ray finds in thousands of samples are not among those that this is told by.
-constexpr double kLeastGatherRays = 2, kFewestGatherRays = 1, kMostGatherRays = 8, kUsualGatherRays = 4;
+constexpr double kLeastGatherRays = 3, kFewestGatherRays = 1, kMostGatherRays = 8, kUsualGatherRays = 4;
 /// Pixels of the picture for one that this is found by, and the least number of those.
 constexpr int kPixelsForOne = 16, kLeastPixels = 32;
 /// What a sample of a pixel costs besides gather rays, in these: by time 0.5 to 4.
 constexpr double kCostBesides = 1;
 /// Roughness that a lobe has at least where one of kUsualRays rays of a record ends.
-constexpr double kLeastAlpha = 0.2, kUsualRays = 300;
+constexpr double kLeastAlpha = 0.1, kUsualRays = 300;
 
 const PilotedMap* null_if_empty(const PilotedMap& map) { return map.main_photons().photons().empty() ? nullptr : &map; }
 
