@@ -247,8 +247,8 @@ std::optional<LobeNoise> GatherRays::lobe_noise(const Vertex& v, const Vec3& bac
     const Widened wide = widened(v, v.bsdf, back);
     const Rgb once = direct_light(scene_, wide.v, back, at_end(leg), source),
               again = direct_light(scene_, wide.v, back, at_end(leg), source);
-    const double by_photons = variance(once, again) + variance_of_photons(wide.v, back);
-    return LobeNoise{by_photons * wide.scale * wide.scale, variance(first, second)};
+    const double scale = wide.scale * wide.scale;
+    return LobeNoise{scale * variance_of_photons(wide.v, back), scale * variance(once, again), variance(first, second)};
 }
 
 Rgb GatherRays::bounced(const Vertex& v, const Vec3& back, const Rgb& irradiance, const Leg& next,

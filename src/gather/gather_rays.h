@@ -40,9 +40,9 @@ struct LookupOptions {
 };
 
 /// Variance of the luminance that a surface without a diffuse part sends along a gather ray [(W/(m^2 sr))^2], by either
-/// of LobeTechniques.
+/// of LobeTechniques: that of photons and of the direct light beside them, or of a ray more.
 struct LobeNoise {
-    double photons, traced;
+    double photons = 0, direct = 0, traced = 0;
 };
 
 /// Immutable and thread-safe. All arguments by reference or pointer must outlive it.

@@ -17,6 +17,9 @@ constexpr double kRaysOfPixel = 8;
 /// later.
 constexpr int kLeastLobes = 8, kMostLobes = 32;
 constexpr std::int64_t kBlock = 64;
+/// Samples that share the error of a photon: it lights all pixels around, while each of their samples sends rays of its
+/// own, whose errors average out.
+constexpr double kSamplesOfPhoton = 64;
 
 /// Where a gather ray ends on a surface without a diffuse part.
 struct End {
@@ -91,9 +94,11 @@ LobeTechniques::LobeTechniques(const GatherRays& rays, std::uint64_t seed, const
         Sum& sum = sums[met[static_cast<std::size_t>(chosen[i])]];
         ++sum.lobes;
         sum.noise.photons += noise[i]->photons;
+        sum.noise.direct += noise[i]->direct;
         sum.noise.traced += noise[i]->traced;
     }
-    for (const Sum& sum : sums) by_photons_.push_back(sum.lobes >= kLeastLobes && sum.noise.photons < sum.noise.traced);
+    for (const auto& [lobes, n] : sums)
+        by_photons_.push_back(lobes >= kLeastLobes && kSamplesOfPhoton * n.photons + n.direct < n.traced);
 }
 
 } // namespace keyhole

@@ -61,6 +61,15 @@ TEST(LobeTechniques, AskPhotonsOfASmallLampInGroundGlass) {
     EXPECT_TRUE(techniques(*scene).by_photons(last_shape(*scene, 1)));
 }
 
+// A photon errs for all the samples around, a ray for its own: photons have the smaller variance here.
+TEST(LobeTechniques, TraceOnToALargeLampBehindAWindow) {
+    test::SceneMaker m = test::room_with_a_window();
+    test::add_pane(m, test::ground_glass());
+    m.rectangle({0.9f, 0.9f, -1}, {1, 0, 0}, {0, 1, 0}, make_diffuse(Rgb(0.0)), Rgb(10.0));
+    const auto scene = m.camera({2.7f, 1.5f, 2.8f}, {0.8f, 1.0f, 0.2f}, 60).window(16, 16).build();
+    EXPECT_FALSE(techniques(*scene).by_photons(last_shape(*scene, 1)));
+}
+
 /// What rays from a place in the room to the glass find in many maps.
 struct Found {
     RunningStats by_photons, traced, noise; ///< the noise: what is said of that by photons
@@ -84,7 +93,7 @@ Found look(const Scene& scene, const Vec3& place, const Vec3& glass, std::uint64
         }
         found.by_photons.add(one.mean());
         found.traced.add(other.mean());
-        if (const auto n = of_map.rays().lobe_noise(met, -w, 1, rng)) found.noise.add(n->photons);
+        if (const auto n = of_map.rays().lobe_noise(met, -w, 1, rng)) found.noise.add(n->photons + n->direct);
     }
     return found;
 }
