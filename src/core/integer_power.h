@@ -1,6 +1,8 @@
 // Powers with whole exponents.
 #pragma once
 
+#include <cmath>
+
 namespace keyhole {
 
 /// x^n for n >= 0, by n products: for lengths of paths, which are small; std::pow() takes several times as long there.
@@ -9,5 +11,8 @@ constexpr double integer_power(double x, int n) {
     for (; n > 0; --n) y *= x;
     return y;
 }
+
+/// The power of two nearest to x > 0 by ratio, as a unit that costs no rounding; 1 for what isn't positive.
+inline double power_of_two_near(double x) { return x > 0 ? std::exp2(std::round(std::log2(x))) : 1; }
 
 } // namespace keyhole

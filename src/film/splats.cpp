@@ -1,5 +1,7 @@
 #include "film/splats.h"
 
+#include "core/integer_power.h"
+
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -18,8 +20,7 @@ constexpr int kNodes = 1024;
 } // namespace
 
 SplatFilm::SplatFilm(int width, int height, const PixelFilter& filter, double brightness)
-    : width_(width), height_(height), reach_(filter.radius()),
-      unit_(brightness > 0 ? std::exp2(std::round(std::log2(brightness))) : 1),
+    : width_(width), height_(height), reach_(filter.radius()), unit_(power_of_two_near(brightness)),
       sums_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * kPerPixel) {
     assert(width > 0 && height > 0);
     for (int i = 0; i <= kNodes; ++i) filter_.push_back(filter.density_1d(reach_ * i / kNodes));

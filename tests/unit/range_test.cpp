@@ -32,8 +32,6 @@ double mean_of_picture(const char* method, double radiance, float unit = 1) {
     return sum / static_cast<double>(beauty.data.size());
 }
 
-std::string name_of(const testing::TestParamInfo<const char*>& info) { return info.param; }
-
 class BrightnessRange : public testing::TestWithParam<const char*> {};
 
 TEST_P(BrightnessRange, IsThatOfTheScene) {
@@ -44,20 +42,30 @@ TEST_P(BrightnessRange, IsThatOfTheScene) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, BrightnessRange, testing::Values("path", "bdpt", "mlt", "pssmlt", "mmlt", "rjmlt"),
-                         name_of);
+                         [](const auto& info) { return std::string(info.param); });
 
-class SizeRange : public testing::TestWithParam<const char*> {};
+struct LargestRoom {
+    const char* method;
+    float unit = 0x1p24f;
+};
+
+class SizeRange : public testing::TestWithParam<LargestRoom> {};
 
 // Lengths are scaled by powers of two, so that all numbers are the same but for their exponents.
 TEST_P(SizeRange, ChangesNothing) {
-    const double usual = mean_of_picture(GetParam(), 1);
+    const auto [method, most] = GetParam();
+    const double usual = mean_of_picture(method, 1);
     ASSERT_GT(usual, 0);
-    for (const float unit : {0x1p-10f, 0x1p22f})
-        EXPECT_NEAR(mean_of_picture(GetParam(), 1, unit), usual, 1e-3 * usual) << unit;
+    for (const float unit : {0x1p-10f, most})
+        EXPECT_NEAR(mean_of_picture(method, 1, unit), usual, 1e-3 * usual) << unit;
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, SizeRange, testing::Values("path", "bdpt", "mlt", "ipm", "mps", "cps", "pm"),
-                         name_of);
+// From 2^24 on mps differs by half a percent, and it is not known why.
+INSTANTIATE_TEST_SUITE_P(Methods, SizeRange,
+                         testing::Values(LargestRoom{"path"}, LargestRoom{"bdpt"}, LargestRoom{"mlt"},
+                                         LargestRoom{"ipm"}, LargestRoom{"mps", 0x1p22f}, LargestRoom{"cps"},
+                                         LargestRoom{"pm"}),
+                         [](const auto& info) { return std::string(info.param.method); });
 
 } // namespace
 } // namespace keyhole

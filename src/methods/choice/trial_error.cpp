@@ -24,7 +24,7 @@ constexpr double kLamps = 0.1;
 constexpr double kRareSamples = 0.05;
 // Of the brightness that another method finds in most of the picture, what shows that a method finds its light.
 constexpr double kFindsLight = 0.5;
-// The same, below which it finds next to none: even where its few bright samples are left out, the rest are that dark.
+// The same, below which it finds next to none, or in so few samples that most of its picture is dark.
 constexpr double kFindsNothing = 0.2;
 // Standard errors of both that two means differ by before light is missing: there are many parts to differ in.
 constexpr double kStandardErrors = 3;
@@ -247,11 +247,10 @@ std::vector<TrialError> trial_errors(std::span<const TrialPictures> methods) {
         errors[k].blotches = std::max(0.0, pixel - errors[k].grain);
         double missing = 0;
         for (std::size_t i = 0; i < least.size(); ++i) {
-            const double off = kStandardErrors * parts[k].errors.values[i];
-            const double most = blind ? brightness[k] * in_parts.values[i] : parts[k].means.values[i] + off;
-            // Nobody may be sure of it.
-            const double others = blind ? std::max(least[i], in_parts.values[i]) : least[i];
-            const double lost = std::max(0.0, others - most), p = std::max(in_parts.values[i], least[i]);
+            const double p = std::max(in_parts.values[i], least[i]);
+            const double most = parts[k].means.values[i] + kStandardErrors * parts[k].errors.values[i];
+            // What the blind ones lack counts though nobody may be sure of it.
+            const double lost = blind ? p - brightness[k] * in_parts.values[i] : std::max(0.0, least[i] - most);
             if (p > 0) missing += lost * lost / (p * p + dark);
         }
         errors[k].missing = missing / static_cast<double>(least.size());

@@ -1,5 +1,6 @@
 #include "photonmap/power/power.h"
 
+#include "core/integer_power.h"
 #include "scene/scene.h"
 
 #include <cmath>
@@ -17,7 +18,7 @@ double literal_factor(const Path& path, int d2, const Rgb& flux) {
 
 double unit_of_power(const Scene& scene) {
     const double radius = scene.bounding_sphere().radius;
-    return radius > 0 ? std::exp2(std::round(2 * std::log2(radius))) : 1;
+    return power_of_two_near(radius * radius);
 }
 
 } // namespace keyhole
