@@ -13,6 +13,8 @@
 
 namespace keyhole {
 
+class Scene;
+
 /// Power f_map / Y(f_map E), for weight 1: the photons that lie somewhere share f_map E, the integral over all eye
 /// sides. Black where E says that nobody sees it.
 inline Rgb marginal_power(const Rgb& flux, const Rgb& importance) {
