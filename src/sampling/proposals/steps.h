@@ -17,11 +17,14 @@ class LogUniformRadius {
 
     double sample(double u) const { return least_ * std::pow(most_ / least_, u); }
     /// Per unit of radius. Radii are measured again from positions, which are floats: what lies a little outside the
-    /// bounds was drawn inside them. The density is the same both ways, so this slack cancels in an acceptance.
+    /// bounds was drawn inside them, and at 0, too. The density is the same both ways, so this slack cancels in an
+    /// acceptance.
     double density(double r) const {
-        if (!(r > 0 && r <= most_ * 1.02)) return 0;
-        return 1 / (std::max(r, least_) * std::log(most_ / least_));
+        if (!(r <= most_ * 1.02)) return 0;
+        return 1 / (measured(r) * std::log(most_ / least_));
     }
+    /// What a measured radius counts as.
+    double measured(double r) const { return std::max(r, least_); }
 
   private:
     double least_, most_;
@@ -39,7 +42,7 @@ class ImageStep {
     /// Per square pixel.
     double density(const Vec2& step) const {
         const double r = std::hypot(step.x, step.y);
-        return radius_.density(r) / (2 * kPi * r);
+        return radius_.density(r) / (2 * kPi * radius_.measured(r));
     }
 
   private:
@@ -62,7 +65,7 @@ class DirectionStep {
     double density(const Vec3& from, const Vec3& to) const {
         const double chord = Imath::V3d(to - from).length();
         const double theta = 2 * std::asin(std::min(1.0, chord / 2));
-        return angle_.density(theta) / (2 * kPi * std::sin(theta));
+        return angle_.density(theta) / (2 * kPi * std::sin(angle_.measured(theta)));
     }
 
   private:
@@ -105,7 +108,7 @@ class BeamStep {
     double density(const Vec3& displacement, const Vec3& w, double scene_radius) const {
         const Imath::V3d d(displacement), axis(w);
         const double r = (d - axis * d.dot(axis)).length() / scene_radius;
-        return radius_.density(r) / (2 * kPi * r * scene_radius * scene_radius);
+        return radius_.density(r) / (2 * kPi * radius_.measured(r) * scene_radius * scene_radius);
     }
 
   private:
