@@ -199,7 +199,7 @@ TEST(PbrtShapes, MeshesSayWhatIsWrong) {
     EXPECT_THAT(error_of("Shape \"plymesh\""), HasSubstr("found no 'filename'"));
     EXPECT_THAT(error_of("Shape \"plymesh\" \"string filename\" \"no.ply\""),
                 HasSubstr("scene.pbrt:4:1: Shape \"plymesh\": "));
-    EXPECT_THAT(error_of("Shape \"curve\""), HasSubstr("found the shape 'curve', expected one of"));
+    EXPECT_THAT(error_of("Shape \"cone\""), HasSubstr("found the shape 'cone', expected one of"));
     EXPECT_THAT(error_of("Shape \"sphere\" \"float radius\" -1"), HasSubstr("found -1 as 'radius'"));
 }
 

@@ -84,6 +84,22 @@ class Builder {
         });
     }
 
+    /// A curve has texture coordinates only where something reads them.
+    void make_curves() {
+        parallel_attempt(records_.size(), mistakes_, [&](std::size_t i) {
+            ShapeRecord& record = records_[i];
+            if (record.source.curves.curves.empty()) return;
+            const MaterialPtr& material = record.material.material;
+            try {
+                record.source.geometry = mesh_of_curves(
+                    record.source.curves, is_textured(record) || (material && material->reads_parametrisation()));
+            } catch (const InputError& e) {
+                record.directive.fail(e.what());
+            }
+            record.source.curves = {};
+        });
+    }
+
     std::vector<Shape> place() {
         check_limits();
         std::vector<std::vector<Shape>> made(placements_.size());
@@ -117,8 +133,7 @@ class Builder {
         const Transform to_world = record.to_world * placement.to_world;
         if (!(regularity(to_world) > 1e-12))
             record.directive.fail("found a transform that flattens the shape, expected a regular one");
-        if (record.material.is_textured || record.alpha || (record.light && record.light->picture))
-            parametrise(geometry);
+        if (is_textured(record)) parametrise(geometry);
         transform_geometry(geometry, to_world);
         if (auto* mesh = std::get_if<TriangleMesh>(&geometry)) turn_triangles_to_normals(*mesh);
         if (record.reversed) flip(geometry);
@@ -131,6 +146,10 @@ class Builder {
         const std::string& path = record.source.ply_path;
         warnings_.add_flat_mesh(record.directive.position,
                                 record.directive.title() + (path.empty() ? "" : " '" + path + "'"));
+    }
+
+    static bool is_textured(const ShapeRecord& record) {
+        return record.material.is_textured || record.alpha || (record.light && record.light->picture);
     }
 
     static void parametrise(Geometry& geometry) {
@@ -176,13 +195,24 @@ class Builder {
     std::vector<std::size_t> uses_;
 };
 
+bool same_opacity(const FloatTexture& a, const FloatTexture& b) {
+    return a == b || (a && b && a->is_constant() && b->is_constant() && a->value({}) == b->value({}));
+}
+
 } // namespace
+
+bool look_alike(const ShapeRecord& a, const ShapeRecord& b) {
+    return !a.light && !b.light && a.to_world == b.to_world && a.reversed == b.reversed &&
+           a.material.material == b.material.material && a.material_name == b.material_name &&
+           same_opacity(a.alpha, b.alpha) && a.inside == b.inside && a.outside == b.outside;
+}
 
 std::vector<Shape> build_shapes(std::vector<ShapeRecord> records, const std::vector<Placement>& placements,
                                 const Library& library, Warnings& warnings, Mistakes& mistakes) {
     Builder builder(std::move(records), placements, warnings, mistakes);
     builder.resolve_materials(library);
     builder.read_meshes();
+    builder.make_curves();
     std::vector<Shape> shapes;
     if (mistakes.empty()) mistakes.attempt([&] { shapes = builder.place(); });
     return shapes;

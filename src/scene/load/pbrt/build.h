@@ -26,6 +26,10 @@ struct ShapeRecord {
     std::shared_ptr<const Medium> inside, outside; ///< null: vacuum
 };
 
+/// Whether shapes of two directives differ in their geometry alone, so that one mesh may hold both. Area lights are
+/// always apart.
+bool look_alike(const ShapeRecord& a, const ShapeRecord& b);
+
 /// A record where it stands in the world.
 struct Placement {
     std::size_t record;

@@ -87,6 +87,7 @@ class Importer {
     void add_area_light(const Directive& directive);
     void add_light(const Directive& directive);
     void add_shape(const Directive& directive);
+    bool add_to_last(const ShapeRecord& record);
 
     struct Block {
         Directive begin;
@@ -121,6 +122,7 @@ class Importer {
     std::size_t instances_ = 0;
     std::map<std::string, std::vector<std::size_t>> objects_; ///< records by the name of their object
     std::vector<std::size_t>* open_object_ = nullptr;         ///< the one that shapes go to now
+    std::vector<std::size_t>* last_object_ = nullptr;         ///< the one that the last of records_ went to
     std::vector<EmitterPtr> emitters_, environments_;
 };
 

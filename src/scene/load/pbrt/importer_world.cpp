@@ -80,11 +80,23 @@ void Importer::add_shape(const Directive& d) {
     }
     record.inside = find_medium(library_, state_.inside_medium, d);
     record.outside = find_medium(library_, state_.outside_medium, d);
+    if (add_to_last(record)) return;
     records_.push_back(std::move(record));
+    last_object_ = open_object_;
     if (open_object_ != nullptr)
         open_object_->push_back(records_.size() - 1);
     else
         placements_.push_back({records_.size() - 1, Transform()});
+}
+
+/// Hair comes as tens of thousands of directives, one for each curve: those that look alike become one shape. False:
+/// the record is no curve, or not like the last one.
+bool Importer::add_to_last(const ShapeRecord& record) {
+    if (record.source.curves.curves.empty() || records_.empty() || open_object_ != last_object_) return false;
+    ShapeRecord& last = records_.back();
+    if (last.source.curves.curves.empty() || !look_alike(last, record)) return false;
+    last.source.curves.append(record.source.curves);
+    return true;
 }
 
 } // namespace keyhole::pbrt

@@ -141,15 +141,22 @@ ShapeSource bilinear_mesh(Parameters& p) {
     return source;
 }
 
+ShapeSource curve(Parameters& p) {
+    ShapeSource source;
+    source.curves = read_curve(p);
+    source.faces_per_patch = kMaxMeshTriangles; // a curve is one light
+    return source;
+}
+
 using ShapeReader = ShapeSource (*)(Parameters&);
 template <Geometry (*kRead)(Parameters&)> ShapeSource quadric(Parameters& p) { return {kRead(p), {}}; }
 
 const std::map<std::string_view, ShapeReader>& shape_readers() {
     static const std::map<std::string_view, ShapeReader> table{
-        {"trianglemesh", triangle_mesh},     {"plymesh", ply_mesh},
-        {"bilinearmesh", bilinear_mesh},     {"loopsubdiv", loop_subdiv},
-        {"sphere", quadric<read_sphere>},    {"disk", quadric<read_disk>},
-        {"cylinder", quadric<read_cylinder>}};
+        {"trianglemesh", triangle_mesh},      {"plymesh", ply_mesh},
+        {"bilinearmesh", bilinear_mesh},      {"loopsubdiv", loop_subdiv},
+        {"sphere", quadric<read_sphere>},     {"disk", quadric<read_disk>},
+        {"cylinder", quadric<read_cylinder>}, {"curve", curve}};
     return table;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "scene/load/load_mesh.h"
+#include "scene/load/pbrt/curves.h"
 #include "scene/load/pbrt/syntax/parameters.h"
 
 #include <string>
@@ -13,10 +14,11 @@ struct ShapeSource {
     Geometry geometry;               ///< unless a file has it
     std::string ply_path;            ///< of a `plymesh`, not yet read
     std::size_t faces_per_patch = 1; ///< triangles that pbrt counts as one shape: 2 for bilinear patches
+    CurveSet curves{};               ///< not yet a mesh; those of several directives where they look alike
 };
 
 /// Reads the geometry of a shape: `trianglemesh`, `plymesh`, `bilinearmesh`, `loopsubdiv` (its control mesh), `sphere`,
-/// `disk` or `cylinder`. Quadrics that are not whole spheres become meshes.
+/// `disk`, `cylinder` or `curve`. Quadrics that are not whole spheres become meshes.
 /// @throws InputError for other shapes and for geometry that makes no sense.
 ShapeSource read_shape(Parameters& parameters);
 
