@@ -231,7 +231,7 @@ TEST_F(Program, InfoTellsWhatASceneConsistsOf) {
 
 TEST_F(Program, InfoReadsPbrtAndPassesItsWarningsOn) {
     scratch.write("scene.pbrt", "WorldBegin\nObjectBegin \"one\" Shape \"sphere\" ObjectEnd\n"
-                                "ObjectInstance \"one\" Material \"hair\"\n");
+                                "ObjectInstance \"one\" Material \"velvet\"\n");
     EXPECT_EQ(run("info scene.pbrt"), 2);
     scratch.write("scene.pbrt", "Film \"spectral\"\nWorldBegin\nObjectBegin \"one\" Shape \"sphere\" ObjectEnd\n"
                                 "ObjectInstance \"one\" ObjectInstance \"one\"\n");

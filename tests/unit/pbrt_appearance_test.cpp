@@ -118,7 +118,7 @@ TEST(PbrtMaterials, MayBeNamedBeforeTheyAreMade) {
 
 TEST(PbrtMaterials, SayWhatIsWrong) {
     EXPECT_THAT(error_of("NamedMaterial \"no\" "), HasSubstr("found the unknown material 'no'"));
-    EXPECT_THAT(error_of("Material \"subsurface\" "), HasSubstr("found the material 'subsurface', expected one of"));
+    EXPECT_THAT(error_of("Material \"velvet\" "), HasSubstr("found the material 'velvet', expected one of"));
     EXPECT_THAT(error_of("Material \"conductor\" \"float roughness\" -0.1 "), HasSubstr("found -0.1 as 'roughness'"));
     EXPECT_THAT(error_of("Material \"diffuse\" \"rgb reflectance\" [ 0.5 -1 0 ] "),
                 HasSubstr("found -1, expected a number that is not negative"));

@@ -83,6 +83,8 @@ class Properties {
     /// Null where it is not given.
     virtual FloatTexture find_number_texture(Key key, const NumberRange& range) = 0;
     virtual ColorTexture find_color_texture(Key key, const NumberRange& range) = 0;
+    /// Of coefficients of media, which may be above 1; null where it is not given. Our files have none.
+    virtual ColorTexture find_unbounded_texture(Key /*key*/) { return nullptr; }
     FloatTexture number_texture(Key key, const NumberRange& range, double otherwise) {
         FloatTexture texture = find_number_texture(key, range);
         return texture ? texture : constant_texture(otherwise);

@@ -6,8 +6,11 @@
     FILE(conductor)                                                                                                    \
     FILE(dielectric)                                                                                                   \
     FILE(diffuse)                                                                                                      \
+    FILE(hair)                                                                                                         \
+    FILE(measured)                                                                                                     \
     FILE(mix)                                                                                                          \
-    FILE(principled)
+    FILE(principled)                                                                                                   \
+    FILE(subsurface)
 
 namespace keyhole {
 

@@ -69,12 +69,9 @@ class PbrtProperties final : public Properties {
         return key.pbrt.empty() ? nullptr : find_number(std::string(key.pbrt), range);
     }
     ColorTexture find_color_texture(Key key, const NumberRange& /*range*/) override {
-        if (!has(key)) return nullptr;
-        const Parameter* parameter = p_.find(key.pbrt, {"rgb", "spectrum", "texture", "blackbody", "xyz"});
-        if (parameter->type != "texture")
-            return constant_texture(p_.spectrum(key.pbrt, Rgb(0.0), ColorUse::reflectance));
-        return p_.directive().look_up(library_.colors, "spectrum texture", parameter->strings.front(), *parameter);
+        return find_color(key, ColorUse::reflectance);
     }
+    ColorTexture find_unbounded_texture(Key key) override { return find_color(key, ColorUse::index); }
     TextureMapping mapping() override {
         const std::string word = choice({"", "mapping"}, "", {"uv", "planar", "spherical", "cylindrical"});
         const double du = p_.number("udelta", 0), dv = p_.number("vdelta", 0);
@@ -158,6 +155,12 @@ class PbrtProperties final : public Properties {
     void ignore(std::initializer_list<std::string_view> names) override { p_.ignore(names); }
 
   private:
+    ColorTexture find_color(Key key, ColorUse use) {
+        if (!has(key)) return nullptr;
+        const Parameter* parameter = p_.find(key.pbrt, {"rgb", "spectrum", "texture", "blackbody", "xyz"});
+        if (parameter->type != "texture") return constant_texture(p_.spectrum(key.pbrt, Rgb(0.0), use));
+        return p_.directive().look_up(library_.colors, "spectrum texture", parameter->strings.front(), *parameter);
+    }
     FloatTexture find_number(const std::string& name, const Bounds& bounds) {
         const Parameter* parameter = p_.find(name, {"float", "integer", "texture"});
         if (parameter == nullptr) return nullptr;

@@ -1,0 +1,70 @@
+// pbrt's hair, of which we have no model: what lies nearest is a principled surface of its colour.
+#include "scene/load/properties.h"
+#include "scene/materials/computed_texture.h"
+#include "scene/materials/make_material.h"
+
+#include <cmath>
+
+namespace keyhole {
+namespace {
+
+/// Absorption [per radius of the hair] of hair with such concentrations of the two melanins (d'Eon et al. 2011, "An
+/// Energy-Conserving Hair Reflectance Model").
+Rgb absorption_of_melanin(double eumelanin, double pheomelanin) {
+    return Rgb(0.419, 0.697, 1.37) * std::max(0.0, eumelanin) + Rgb(0.187, 0.4, 1.05) * std::max(0.0, pheomelanin);
+}
+
+/// What light that many hairs scatter has of a colour, from their absorption and their azimuthal roughness (Chiang et
+/// al. 2016, "A Practical and Controllable Hair and Fur Model for Production Path Tracing", eq. 9, solved for the
+/// colour).
+Rgb color_of_absorption(const Rgb& absorption, double beta_n) {
+    const double b = clamp01(beta_n);
+    const double steepness = 5.969 + b * (-0.215 + b * (2.532 + b * (-10.73 + b * (5.574 + b * 0.245))));
+    Rgb color;
+    for (int c = 0; c < 3; ++c) color[c] = std::exp(-steepness * std::sqrt(std::max(0.0, absorption[c])));
+    return color;
+}
+
+/// GGX alpha of a longitudinal roughness, whose lobe has the variance of Chiang et al. 2016, eq. 7. A normal that tilts
+/// turns what it reflects by twice as much, and the slope of GGX normals varies by alpha over root 2.
+double alpha_of_hair(double beta_m) {
+    const double b = clamp01(beta_m);
+    return (0.726 * b + 0.812 * b * b + 3.7 * std::pow(b, 20)) / std::sqrt(2.0);
+}
+
+/// The first of: absorption, colour, melanin. Without any, pbrt's brown hair.
+ColorTexture read_hair_color(Properties& p) {
+    const FloatTexture beta_n = p.number_texture({"", "beta_n"}, kShare, 0.3);
+    const FloatTexture eumelanin = p.find_number_texture({"", "eumelanin"}, kNotNegative),
+                       pheomelanin = p.find_number_texture({"", "pheomelanin"}, kNotNegative);
+    ColorTexture reflectance = p.find_color_texture({"", "reflectance"}, kReflectance);
+    if (ColorTexture color = p.find_color_texture({"", "color"}, kReflectance); !reflectance) reflectance = color;
+    ColorTexture absorption = p.find_unbounded_texture({"", "sigma_a"});
+    if (!absorption && reflectance) return reflectance;
+    if (!absorption) {
+        const FloatTexture none = constant_texture(0.0), brown = constant_texture(1.3);
+        absorption = computed_texture(absorption_of_melanin,
+                                      eumelanin     ? eumelanin
+                                      : pheomelanin ? none
+                                                    : brown,
+                                      pheomelanin ? pheomelanin : none);
+    }
+    return computed_texture(color_of_absorption, absorption, beta_n);
+}
+
+MaterialPtr read_hair(Properties& p) {
+    const Key eta{"", "eta"};
+    PrincipledTextures t = principled_textures(p.has(eta) ? p.refractive_index(eta) : 1.55, constant_texture(0.0));
+    t.base_color = read_hair_color(p);
+    t.alpha_x = t.alpha_y = computed_texture(alpha_of_hair, p.number_texture({"", "beta_m"}, kShare, 0.3));
+    p.ignore({"alpha"});
+    p.warn("hair", "the material 'hair' becomes a principled one of its colour, gloss and index: no light goes through "
+                   "it, and its scales lie flat");
+    return make_principled(t);
+}
+
+} // namespace
+
+MaterialKinds hair_kinds() { return {{{"", "hair"}, "", {}, read_hair}}; }
+
+} // namespace keyhole
