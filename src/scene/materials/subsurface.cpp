@@ -25,15 +25,16 @@ Rgb albedo_of_medium(const Rgb& absorption, const Rgb& reduced_scattering) {
     return albedo;
 }
 
-double index_of_medium(Properties& p) {
+/// Kept until the coat has it as well: its tables take as long to make as reading thousands of shapes.
+std::shared_ptr<const CoatInterface> read_interface(Properties& p) {
     const Key eta{"", "eta"};
-    return p.has(eta) ? p.refractive_index(eta) : 1.33;
+    return CoatInterface::of(p.has(eta) ? p.refractive_index(eta) : 1.33);
 }
 
 /// The base under a coat that lets out this share of the light that got in: R = rho (1 - F) / (1 - rho F), with F what
 /// the coat reflects back down.
-ColorTexture base_of_reflectance(ColorTexture reflectance, double eta) {
-    const double back = CoatInterface::of(eta)->internal_reflectance(0, 0);
+ColorTexture base_of_reflectance(ColorTexture reflectance, const CoatInterface& interface) {
+    const double back = interface.internal_reflectance(0, 0);
     return computed_texture(
         [back](const Rgb& color) {
             const Rgb r = clamp01(color);
@@ -45,7 +46,7 @@ ColorTexture base_of_reflectance(ColorTexture reflectance, double eta) {
 }
 
 /// The base of a medium by its name, or by its coefficients, or by its reflectance; pbrt's is milk.
-ColorTexture read_base(Properties& p, double eta) {
+ColorTexture read_base(Properties& p, const CoatInterface& interface) {
     const Key name{"", "name"}, sigma_a{"", "sigma_a"}, sigma_s{"", "sigma_s"};
     const double g = p.number({"", "g"}, {"an anisotropy", -1, 1}, 0);
     ColorTexture absorption = p.find_unbounded_texture(sigma_a), scattering = p.find_unbounded_texture(sigma_s);
@@ -58,7 +59,7 @@ ColorTexture read_base(Properties& p, double eta) {
     }
     if ((absorption == nullptr) != (scattering == nullptr))
         p.fail(fmt::format("found '{}' alone, expected 'sigma_a' and 'sigma_s'", absorption ? "sigma_a" : "sigma_s"));
-    if (!absorption && reflectance) return base_of_reflectance(reflectance, eta);
+    if (!absorption && reflectance) return base_of_reflectance(reflectance, interface);
     if (!absorption) {
         const MeasuredMedium& milk = measured_media().at("Wholemilk");
         absorption = constant_texture(milk.absorption);
@@ -80,14 +81,15 @@ MaterialPtr coat_over(Properties& p, const char* kind, const ColorTexture& base,
 }
 
 MaterialPtr read_subsurface(Properties& p) {
-    const double eta = index_of_medium(p);
-    return coat_over(p, "subsurface", read_base(p, eta), eta);
+    const auto interface = read_interface(p);
+    return coat_over(p, "subsurface", read_base(p, *interface), interface->eta());
 }
 
 /// pbrt-v3's.
 MaterialPtr read_kd_subsurface(Properties& p) {
-    const double eta = index_of_medium(p);
-    return coat_over(p, "kdsubsurface", base_of_reflectance(p.color_texture({"", "Kd"}, 0.5), eta), eta);
+    const auto interface = read_interface(p);
+    const ColorTexture base = base_of_reflectance(p.color_texture({"", "Kd"}, 0.5), *interface);
+    return coat_over(p, "kdsubsurface", base, interface->eta());
 }
 
 } // namespace
