@@ -108,6 +108,33 @@ TEST(TrialErrors, MissLightThatComesInDots) {
     EXPECT_GT(trial_errors(methods)[1].missing, 0.5);
 }
 
+/// A table in bright light and a mirror beside it, a tenth as bright, of which two thirds of the light come in samples
+/// of which `every`-th pixel has one. No part of the picture is darker in the mean than another method finds it.
+TrialPictures mirror_with_dots(int every, std::uint64_t seed) {
+    TrialPictures m = halves(0.3, 0, 1, seed);
+    m.rare_samples = true;
+    Rng rng(seed, StreamPurpose::test, 2);
+    for (Image* image : {&m.first, &m.second})
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth; ++x) {
+                float& v = *image->at(x, y);
+                if (x % 16 >= 8) continue;
+                v *= 0.1f;
+                if (every > 0) v *= rng.next() * every < 1 ? 1.0f / 3 + static_cast<float>(every) * 2 / 3 : 1.0f / 3;
+            }
+    return m;
+}
+
+TEST(TrialErrors, CountLightThatOnlyDotsBring) {
+    const std::vector<TrialPictures> methods{mirror_with_dots(0, 1), mirror_with_dots(500, 2), mirror_with_dots(4, 3)};
+    const std::vector<TrialError> e = trial_errors(methods);
+    EXPECT_EQ(e[1].missing, 0) << "by its means";
+    EXPECT_GT(e[1].dots, 0.1) << "half of the picture lacks two thirds of its light, but in some pixels";
+    EXPECT_LT(e[1].dots, 0.5);
+    EXPECT_LT(e[0].dots, 0.005);
+    EXPECT_LT(e[2].dots, 0.02) << "each block of pixels has some: that is grain";
+}
+
 TEST(TrialErrors, OfNarrowerPixelsAreLessOnlyBeyondChance) {
     EXPECT_EQ(variance_less(halves(1, 0, 1, 1), halves(0.99, 0, 1, 2)), 0);
     EXPECT_NEAR(variance_less(halves(0.3, 0, 1, 1), halves(0.1, 0, 1, 2)), 0.06, 0.02);

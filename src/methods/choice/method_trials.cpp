@@ -226,7 +226,9 @@ double predict_by_trial(const TriedMethod& t, const TrialContext& c, double left
     if (t.method->samples_pixels) {
         // Light that was missed is that of rare, bright samples, and grain where they are found.
         const double missing = e.missing * t.of.cost.pixels / kTrialParts;
-        return (grain_that_counts(c.settings, *t.method) * e.grain + e.blotches + missing) * time * size;
+        // Where dots come closer than one to a block of the trial, they are grain.
+        return (grain_that_counts(c.settings, *t.method) * e.grain + e.blotches + missing) * time * size +
+               e.dots * std::min(1.0, kTrialBlock * time * size);
     }
     if (!t.method->keeps_photons)
         return t.method->trial.doubt * (e.grain * time * size + (e.blotches + e.missing) * time);

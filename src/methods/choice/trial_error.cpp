@@ -10,7 +10,7 @@
 namespace keyhole {
 namespace {
 
-constexpr int kBlock = 4;      // pixels
+constexpr int kBlock = 4;      // pixels, each way
 constexpr int kParts = 4;      // of the picture, each way, in which light may be missing
 constexpr int kSmooth = 1;     // pixels, each way: more than one, for its noise must not be what it is compared with
 constexpr double kDark = 0.01; // squared mean of the picture, lamps in view left out, that is added to a pixel's square
@@ -28,7 +28,13 @@ constexpr double kFindsLight = 0.5;
 constexpr double kFindsNothing = 0.2;
 // Standard errors of both that two means differ by before light is missing: there are many parts to differ in.
 constexpr double kStandardErrors = 3;
+// Times what a block has in all, that a pixel may bring to it: brighter ones are dots.
+constexpr double kBrightestPixel = 3;
+// Standard errors that what dots bring differs by from none.
+constexpr double kErrorsOfDots = 2;
 constexpr double kMedianOfNormal = 0.6745; // of the amounts of normal deviates, over their standard deviation
+
+static_assert(kBlock * kBlock == kTrialBlock);
 
 using Values = std::vector<double>;
 
@@ -91,6 +97,9 @@ template <class F> Grid combined(const Image& a, const Image& b, const F& f) {
     const auto finite = [](float v) { return std::isfinite(v) ? static_cast<double>(v) : 0.0; };
     for (std::size_t i = 0; i < a.data.size(); ++i) g.values.push_back(f(finite(a.data[i]), finite(b.data[i])));
     return g;
+}
+Grid grid_of(const Image& a) {
+    return combined(a, a, [](double v, double /*v*/) { return v; });
 }
 Grid mean_of(const TrialPictures& m) {
     return combined(m.first, m.second, [](double a, double b) { return (a + b) / 2; });
@@ -168,6 +177,37 @@ struct Parts {
     }
 };
 
+/// How much darker than `other` blocks of `picture` are, as (other - picture) / (other + picture), where no pixel
+/// counts for more than all of `blocks`, the same of another method's both renders.
+Grid lack_of(const Image& picture, const Image& other, const Grid& blocks) {
+    Grid clipped = grid_of(picture);
+    for (int y = 0; y < clipped.height; ++y)
+        for (int x = 0; x < clipped.width; ++x) {
+            double& v = clipped.values[static_cast<std::size_t>(y * clipped.width + x)];
+            v = std::min(v, kBrightestPixel * kTrialBlock * std::max(0.0, blocks.at(x / kBlock, y / kBlock)));
+        }
+    Grid lack = clipped.blocks(kBlock, kBlock);
+    const Grid found = grid_of(other).blocks(kBlock, kBlock);
+    const double dark = std::sqrt(least_square(blocks));
+    for (std::size_t i = 0; i < lack.values.size(); ++i) {
+        const double sum = found.values[i] + lack.values[i] + dark;
+        lack.values[i] = sum > 0 ? (found.values[i] - lack.values[i]) / sum : 0;
+    }
+    return lack;
+}
+
+/// The squared error, relative to what `other` finds, of light that `samples` brings in dots: the mean product of what
+/// independent renders lack, less what is there by chance.
+double light_in_dots(const TrialPictures& samples, const TrialPictures& other) {
+    const Grid blocks = mean_of(other).blocks(kBlock, kBlock);
+    const Grid a = lack_of(samples.first, other.first, blocks), b = lack_of(samples.second, other.second, blocks);
+    RunningStats stats;
+    for (std::size_t i = 0; i < a.values.size(); ++i)
+        stats.add(
+            std::copysign(4 * a.values[i] * b.values[i], a.values[i] * b.values[i] * (a.values[i] + b.values[i])));
+    return std::max(0.0, stats.mean() - kErrorsOfDots * stats.standard_error());
+}
+
 } // namespace
 
 Image luminance_of(const Picture& picture, const std::string& layer) {
@@ -242,8 +282,7 @@ std::vector<TrialError> trial_errors(std::span<const TrialPictures> methods) {
         const double trimmed = methods[k].rare_samples ? kTrimmedOfRare : kTrimmed;
         const double pixel = relative_variance(d, smooth, trimmed);
         const double block = relative_variance(d.blocks(kBlock, kBlock), in_blocks, trimmed);
-        constexpr double kPixels = kBlock * kBlock;
-        errors[k].grain = std::max(0.0, pixel - block) * kPixels / (kPixels - 1);
+        errors[k].grain = std::max(0.0, pixel - block) * kTrialBlock / (kTrialBlock - 1);
         errors[k].blotches = std::max(0.0, pixel - errors[k].grain);
         double missing = 0;
         for (std::size_t i = 0; i < least.size(); ++i) {
@@ -254,6 +293,9 @@ std::vector<TrialError> trial_errors(std::span<const TrialPictures> methods) {
             if (p > 0) missing += lost * lost / (p * p + dark);
         }
         errors[k].missing = missing / static_cast<double>(least.size());
+        for (std::size_t j = 0; j < methods.size() && methods[k].rare_samples; ++j)
+            if (j != k && brightness[j] >= kFindsLight)
+                errors[k].dots = std::max(errors[k].dots, light_in_dots(methods[k], methods[j]));
     }
     return errors;
 }

@@ -11,6 +11,8 @@ namespace keyhole {
 
 /// Parts of a picture, 4 x 4 of them, in which light may be missing.
 constexpr int kTrialParts = 16;
+/// Pixels of the blocks that tell what is common to neighbours.
+constexpr int kTrialBlock = 16;
 
 /// Two independent renders of a window by one method at equal cost: luminance, one channel, W/(m^2 sr).
 struct TrialPictures {
@@ -25,6 +27,7 @@ struct TrialError {
     double grain = 0;    ///< independent from pixel to pixel
     double blotches = 0; ///< common to blocks of 4 x 4 pixels
     double missing = 0;  ///< of parts of the picture that are darker than another method finds them, beyond chance
+    double dots = 0;     ///< of light that another method finds everywhere and this one in a few samples, if it is rare
     double blur = 0;     ///< of light, by photons
 };
 
@@ -46,7 +49,8 @@ double blur(const TrialPictures& photons, const TrialPictures& samples);
 
 /// One for each of the methods. The picture that errors are relative to is the mean of all, weighted by how well the
 /// two renders of each agree. Two renders agree on what neither found: where all of a method's are darker than another
-/// one can be, what is missing is an error. All pictures have the same size.
+/// one can be, what is missing is an error. So is what most pixels lack though a few bright ones bring it: their mean
+/// is right, and the picture dark with dots. All pictures have the same size.
 std::vector<TrialError> trial_errors(std::span<const TrialPictures> methods);
 
 } // namespace keyhole
