@@ -66,6 +66,8 @@ MaterialPtr make_dielectric(double eta, FloatTexture alpha_x, FloatTexture alpha
                             ColorTexture transmit_tint);
 /// A pane without thickness, with the reflections between its two faces.
 MaterialPtr make_thin_dielectric(double eta);
+/// With a factor on what goes through.
+MaterialPtr make_thin_dielectric(double eta, ColorTexture transmit_tint);
 /// No surface at all: light goes straight on.
 MaterialPtr make_interface();
 

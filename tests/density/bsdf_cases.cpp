@@ -68,6 +68,7 @@ std::vector<BsdfCase> make_cases() {
                  RoughDielectricBsdf{1.5f, 0.3f, 0.3f, Rgb(0.9, 0.5, 0.2), Rgb(0.3, 0.7, 1.0)}, 1.5});
     c.push_back({"rough_bubble", RoughDielectricBsdf{0.75f, 0.3f, 0.3f}, 0.75});
     c.push_back({"thin_dielectric", ThinDielectricBsdf{1.5}, 1, true, true});
+    c.push_back({"thin_dielectric_tinted", ThinDielectricBsdf{1.5, Rgb(0.9, 0.4, 0.1)}, 1, false, true});
     c.push_back({"interface", InterfaceBsdf{}, 1, true, true});
     c.push_back({"coated_diffuse", CoatedDiffuseBsdf(*coat, white, 0, 0, 0), 1, true, true, 3});
     c.push_back({"coated_diffuse_dark", CoatedDiffuseBsdf(*coat, Rgb(0.5, 0.1, 0.02), 0, 0, 0.01), 1, false, true, 8});

@@ -123,7 +123,8 @@ TEST(ClearGlass, IsNothingThatTurnsLightOrStopsIt) {
 /// A room with a slab, a pane, a ball and a wedge of glass in the light of a sky, a sun and lamps on either side.
 std::unique_ptr<Scene> room_of_glass() {
     SceneMaker m = test::room_with_a_window();
-    const MaterialPtr glass = make_glass(kIndex), pane = make_thin_dielectric(kIndex);
+    const MaterialPtr glass = make_glass(kIndex);
+    const MaterialPtr pane = make_thin_dielectric(kIndex, constant_texture(Rgb(0.9, 0.3, 0.1)));
     m.emitter(make_constant_environment(Rgb(1.0)));
     m.emitter(make_distant_emitter(Vec3(0.1f, -0.6f, 1).normalized(), Rgb(3.0), 10));
     m.rectangle({1, 2.4f, -1.5f}, {1, 0, 0}, {0, 0, 0.5f}, make_diffuse(Rgb(0.0)), Rgb(30.0));

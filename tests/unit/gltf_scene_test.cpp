@@ -105,6 +105,28 @@ TEST_F(GltfScene, MaterialsEmitAndAreClear) {
     EXPECT_THAT(warnings_, Contains(HasSubstr("KHR_materials_sheen is left out")));
 }
 
+TEST_F(GltfScene, PanesHaveTheColourOfTheirBase) {
+    const auto pane = [this](const char* roughness) {
+        return read(fmt::format(R"("scenes": [{{"nodes": [0]}}], "nodes": [{{"mesh": 0}}],
+          "materials": [{{"name": "Rose", "pbrMetallicRoughness": {{"baseColorFactor": [0.8, 0.1, 0.2, 1]{}}},
+            "extensions": {{"KHR_materials_transmission": {{"transmissionFactor": 1}}}}}}])",
+                                roughness))
+            .description.shapes.at(0)
+            .material;
+    };
+    const MaterialPtr clear = pane(R"(, "roughnessFactor": 0)");
+    SurfacePoint point;
+    point.ng = point.ns = Vec3(0, 0, 1);
+    const auto lobe = clear->bsdf(point).delta(point.ns, Event::transmit);
+    ASSERT_TRUE(lobe);
+    EXPECT_NEAR(lobe->coefficient.y / lobe->coefficient.x, 0.125, 1e-6);
+    EXPECT_NEAR(lobe->coefficient.z / lobe->coefficient.x, 0.25, 1e-6);
+    EXPECT_NEAR(lobe->coefficient.x, 0.8 * (1 - 2 * 0.04 / 1.04), 1e-6) << "less what both faces reflect";
+    EXPECT_THAT(warnings_, testing::Not(Contains(HasSubstr("pane"))));
+    pane(R"(, "roughnessFactor": 0.4)");
+    EXPECT_THAT(warnings_, Contains(HasSubstr("'Rose' has the roughness 0.4")));
+}
+
 /// The same file as a .glb.
 std::string glb(std::string json) {
     const auto uri = json.find(R"(, "uri")");

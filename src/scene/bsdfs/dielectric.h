@@ -52,9 +52,11 @@ struct InterfaceBsdf {
     }
 };
 
-/// A pane of smooth glass, with all reflections between its faces: R' = 2R / (1 + R) (Stokes 1862).
+/// A pane of smooth glass, with all reflections between its faces: R' = 2R / (1 + R) (Stokes 1862). What goes through
+/// has the tint.
 struct ThinDielectricBsdf {
     double eta;
+    StoredRgb transmit_tint{Rgb(1.0)};
 
     static constexpr BsdfTraits traits() { return {.delta = true, .clear = ClearGlass::pane}; }
 
@@ -74,7 +76,7 @@ struct ThinDielectricBsdf {
         const double r = reflectance(from);
         if (event == Event::reflect) return DeltaScatter{mirrored(from), Rgb(r), r, 1.0};
         if (event != Event::transmit || r == 1) return std::nullopt;
-        return DeltaScatter{-from, Rgb(1 - r), 1 - r, 1.0};
+        return DeltaScatter{-from, Rgb(transmit_tint) * (1 - r), 1 - r, 1.0};
     }
 };
 

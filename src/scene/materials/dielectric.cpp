@@ -64,9 +64,16 @@ MaterialPtr make_dielectric(double eta, FloatTexture alpha_x, FloatTexture alpha
         alpha_x, alpha_y, reflect_tint, transmit_tint);
 }
 
-MaterialPtr make_thin_dielectric(double eta) {
-    const ThinDielectricBsdf pane{checked_index(eta)};
-    return make_material("thin_dielectric", {}, [pane](const SurfacePoint& /*point*/) -> Bsdf::Model { return pane; });
+MaterialPtr make_thin_dielectric(double eta) { return make_thin_dielectric(eta, constant_texture(Rgb(1.0))); }
+
+MaterialPtr make_thin_dielectric(double eta, ColorTexture transmit_tint) {
+    checked_index(eta);
+    return make_material(
+        "thin_dielectric", ThinDielectricBsdf::traits(),
+        [=](const SurfacePoint& point) -> Bsdf::Model {
+            return ThinDielectricBsdf{eta, clamp01(transmit_tint->value(point))};
+        },
+        transmit_tint);
 }
 
 MaterialPtr make_interface() {
@@ -81,9 +88,10 @@ MaterialKinds dielectric_kinds() {
              read_dielectric},
             {{"thin_dielectric", "thindielectric"},
              "a pane",
-             {"ior", "bump", "normal_map"},
+             {"ior", "transmit_tint", "bump", "normal_map"},
              [](Properties& p) {
-                 return make_thin_dielectric(p.refractive_index({"ior", "eta"}));
+                 const ColorTexture tint = p.color_texture({"transmit_tint", ""}, 1, kTint);
+                 return make_thin_dielectric(p.refractive_index({"ior", "eta"}), tint);
              }},
             {"interface", "an interface", {}, [](Properties&) { return make_interface(); }},
             {{"", "none"}, "", {}, [](Properties&) { return make_interface(); }}};

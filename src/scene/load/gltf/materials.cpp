@@ -13,6 +13,8 @@ namespace {
 
 constexpr int kNearest = 9728, kClamp = 33071, kMirrored = 33648;
 constexpr int kGreen = 1, kBlue = 2, kAlpha = 3;
+/// Roughness from which on one sees that a pane isn't clear.
+constexpr double kSmoothPane = 0.05;
 
 /// A texture times a colour.
 class TintedTexture final : public Texture<Rgb> {
@@ -149,8 +151,12 @@ class Reader {
             t.transmission = share;
             return make_principled(t);
         }
-        document_.warn("panes without thickness are smooth and without colour");
-        return make_mix(make_principled(t), make_thin_dielectric(eta), share);
+        if (const auto rough = value_or(metal_, "roughnessFactor", 1.0); rough > kSmoothPane)
+            document_.warn(
+                fmt::format("panes without thickness are smooth: that of the material '{}' has the roughness "
+                            "{:.2g}",
+                            value_or<std::string>(material_, "name", ""), rough));
+        return make_mix(make_principled(t), make_thin_dielectric(eta, t.base_color), share);
     }
 
     SurfaceEmission emission() const {
