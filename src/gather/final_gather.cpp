@@ -150,8 +150,9 @@ FinalGather::Light FinalGather::gather_glossy(const Vertex& v, const Vec3& back,
         scene_, v, back, rays_.faces_left(scatterings), source,
         [&](const SurfacePoint& /*emitter*/, const Rgb& value) { sum.direct += value * (finite * (1 - glossy)); });
     const Bsdf lobe = v.bsdf.glossy_part();
-    // A coat of a few percent is worth a ray now and then.
-    const double rays = samples_.rays * glossy;
+    // A coat of a few percent is worth a ray now and then; not in proportion, for what few rays find each has counts
+    // for much: dots.
+    const double rays = samples_.rays * std::sqrt(glossy);
     const int drawn = static_cast<int>(rays + source.take<1>()[0]);
     const AimedRay aimed(spots_, v, lobe, back, luminance(sum.direct + besides), rays);
     sum.rays = drawn;
@@ -160,7 +161,7 @@ FinalGather::Light FinalGather::gather_glossy(const Vertex& v, const Vec3& back,
         if (!first) continue;
         const auto arrival = rays_.trace(v, first->w, first->pdf, scatterings, source);
         sum.indirect += first->part * arrival.indirect * (first->part_pdf / aimed.density(first->w, first->part_pdf));
-        sum.direct += first->whole * arrival.emitted * (finite / samples_.rays);
+        sum.direct += first->whole * arrival.emitted * (finite * glossy / rays);
     }
     sum.indirect += gather_aimed(aimed, v, lobe, back, scatterings, source);
     return sum;
