@@ -185,12 +185,11 @@ LoadedScene load_for(const RenderOptions& options, std::vector<std::string>& war
         overrides.insert(overrides.begin(), "passes=0");
         named.insert("passes"); // an effort has no say in it
     }
+    const auto quality = choice_of<Quality>(options.quality);
+    if (!quality && !options.quality.empty())
+        throw InputError("found quality '" + options.quality + "', expected draft, good or final");
     LoadedScene loaded = load(options.scene, overrides, &warnings);
-    if (!options.quality.empty()) {
-        const auto quality = choice_of<Quality>(options.quality);
-        if (!quality) throw InputError("found quality '" + options.quality + "', expected draft, good or final");
-        loaded.settings = with_quality(loaded.settings, *quality, named);
-    }
+    if (quality) loaded.settings = with_quality(loaded.settings, *quality, named);
     for (const auto& [option, file] : {std::pair{"--save-map", &options.save_map}, {"--load-map", &options.load_map}})
         if (!file->empty() && !loaded.settings.method->keeps_photons)
             throw InputError(fmt::format("{}: found method {}, expected one that keeps photons: {}", option,

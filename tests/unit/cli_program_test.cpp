@@ -2,6 +2,7 @@
 #include "film/files/exr.h"
 #include "support/program.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -42,6 +43,28 @@ TEST_F(Program, OptionsAndSettingsMeanTheSameAndTheLastSettingWins) {
     for (const auto& [name, image] : a.layers) EXPECT_EQ(image.data, b.layers.at(name).data) << name;
 }
 
+// Whatever shares are tried where none is given.
+TEST_F(Program, AShareOfChainsThatIsGivenIsTheShare) {
+    // Light goes from one side of a corner to the other.
+    scratch.write("corner.yaml",
+                  "film: {resolution: [24, 16]}\n"
+                  "camera: {from: [3, 2, 3], to: [0, 0.5, 0]}\n"
+                  "materials: {white: {type: diffuse}}\n"
+                  "shapes:\n"
+                  "  - {type: rectangle, corner: [0, 0, 0], u: [0, 0, 4], v: [4, 0, 0], material: white}\n"
+                  "  - {type: rectangle, corner: [0, 0, 0], u: [0, 4, 0], v: [0, 0, 4], material: white}\n"
+                  "  - {type: rectangle, corner: [1, 3, 1], u: [1, 0, 0], v: [0, 0, 1], emission: {power: 60}}\n");
+    for (const double share : {0.0, 0.3, 0.77}) {
+        ASSERT_EQ(
+            run(fmt::format("render corner.yaml --method cps -D plan=all -D light_paths=2000 -D mutations=2000 -D "
+                            "chain_share={} -q --no-png -o a.exr --stats s.json",
+                            share)),
+            0)
+            << read("err");
+        EXPECT_EQ(nlohmann::json::parse(read("s.json"))["values"]["share of chains"], share);
+    }
+}
+
 TEST_F(Program, BadInputExitsWithTwoAndOneLine) {
     scratch.write("bad.exr", "no picture");
     scratch.write("broken.yaml", "paths: [{points: 3}]\n");
@@ -75,6 +98,7 @@ TEST_F(Program, BadInputExitsWithTwoAndOneLine) {
                                   "render scene.yaml --cpu-time 0",
                                   "render scene.yaml --cpu-time 1 --timeout 1",
                                   "render scene.yaml --quality best",
+                                  "render none.yaml --quality best",
                                   "chart none.yaml",
                                   "chart scene.yaml --times 1,x",
                                   "chart scene.yaml --methods path,frobnicate",

@@ -2,6 +2,8 @@
 #include "methods/choice/trial_error.h"
 
 #include "core/rng.h"
+#include "methods/choice/method_trials.h"
+#include "methods/method.h"
 
 #include <gtest/gtest.h>
 
@@ -133,6 +135,15 @@ TEST(TrialErrors, CountLightThatOnlyDotsBring) {
     EXPECT_LT(e[1].dots, 0.5);
     EXPECT_LT(e[0].dots, 0.005);
     EXPECT_LT(e[2].dots, 0.02) << "each block of pixels has some: that is grain";
+}
+
+TEST(TrialErrors, WarnOfLightThatOnlyDotsBring) {
+    RenderStats stats;
+    warn_of_dots(methods::bdpt, {.grain = 1, .missing = 1}, stats);
+    EXPECT_TRUE(stats.warnings.empty());
+    warn_of_dots(methods::bdpt, {.dots = 0.1}, stats);
+    ASSERT_EQ(stats.warnings.size(), 1u);
+    EXPECT_NE(stats.warnings[0].find("bdpt brings in a few bright samples"), std::string::npos);
 }
 
 TEST(TrialErrors, OfNarrowerPixelsAreLessOnlyBeyondChance) {

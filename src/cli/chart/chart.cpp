@@ -16,6 +16,7 @@
 #include <atomic>
 #include <filesystem>
 #include <set>
+#include <string_view>
 #include <thread>
 
 namespace keyhole {
@@ -23,11 +24,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The scene's hash, with the settings that change every picture.
+/// The scene's hash, with what changes every picture: settings, and the program's version.
 std::uint64_t hash_of(const Scene& scene, const std::vector<std::string>& settings) {
     Hash hash;
     hash.add(scene_hash(scene));
-    for (const std::string& setting : settings) hash.add(std::vector<char>(setting.begin(), setting.end()));
+    const auto add = [&](std::string_view text) { hash.add(std::vector<char>(text.begin(), text.end())); };
+    add(KEYHOLE_VERSION);
+    for (const std::string& setting : settings) add(setting);
     return hash.value();
 }
 

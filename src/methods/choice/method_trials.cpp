@@ -379,4 +379,12 @@ std::string describe_choice(std::span<const TriedMethod> tried) {
     return text;
 }
 
+void warn_of_dots(const Method& method, const TrialError& error, RenderStats& stats) {
+    if (!(error.dots > 0)) return;
+    stats.warn(Doubt::samples,
+               fmt::format("its trial shows that {} brings in a few bright samples what other methods find everywhere: "
+                           "expect dots there, and darkness between them. Try another method, or more time",
+                           method.name));
+}
+
 } // namespace keyhole

@@ -73,4 +73,7 @@ Settings settings_of_same_work(const TrialContext& c, std::span<const TriedMetho
 /// In words, for the record: the method, and by how much it is ahead.
 std::string describe_choice(std::span<const TriedMethod> tried);
 
+/// Warns of light that `method` found in a few bright samples of its trial only, and another one everywhere.
+void warn_of_dots(const Method& method, const TrialError& error, RenderStats& stats);
+
 } // namespace keyhole

@@ -277,6 +277,8 @@ class RenderInTime {
                                           "that there are: what has to do with less makes noise. Leave "
                                           "them out, or give it more time",
                                           start_));
+        for (const TriedMethod& t : tried_)
+            if (t.method == method_) warn_of_dots(*method_, t.error, result.stats);
         if (direct_light_) direct_light_->report(result.stats);
         if (paths_) paths_->report(result.stats);
         return result;

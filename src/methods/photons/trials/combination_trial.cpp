@@ -17,7 +17,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <ranges>
+#include <span>
 #include <utility>
 
 namespace keyhole {
@@ -234,9 +236,9 @@ WorkShares try_shares(const SamplerContext& c, const RunContext& run) {
     // The smallest share of those that are about as good: what chains never reach doesn't show.
     WorkShares best{0, 1};
     double least = std::numeric_limits<double>::infinity();
-    for (const double share : kShares)
+    const std::optional<double>& given = c.settings.chain_share.value;
+    for (const double share : given ? std::span(&*given, 1) : std::span<const double>(kShares))
         for (const double correlation : kCorrelations) {
-            if (c.settings.chain_share.value.value_or(share) != share) continue;
             const Combination combination(trial, c.settings, {share, correlation});
             const double error = combination.variance(trial, mean) * combination.rays(trial);
             const double better = share == best.chains ? 1.0 : best.chains == 0 ? kWorthIt : kWorthMore;
