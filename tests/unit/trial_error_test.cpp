@@ -139,7 +139,7 @@ TEST(TrialErrors, CountLightThatOnlyDotsBring) {
 
 TEST(TrialErrors, WarnOfLightThatOnlyDotsBring) {
     RenderStats stats;
-    warn_of_dots(methods::bdpt, {.grain = 1, .missing = 1}, stats);
+    warn_of_dots(methods::bdpt, {.grain = 1, .missing = 1, .dots = 0.001}, stats);
     EXPECT_TRUE(stats.warnings.empty());
     warn_of_dots(methods::bdpt, {.dots = 0.1}, stats);
     ASSERT_EQ(stats.warnings.size(), 1u);

@@ -43,6 +43,8 @@ constexpr double kBlurSlope = 0.35;
 constexpr double kCausticLight = 0.1;
 /// Of the grain that a trial shows, what stays at least where pixels of the picture are smaller.
 constexpr double kLeastGrain = 0.3;
+/// Squared error from which on dots are told: a tenth of the light.
+constexpr double kDotsToTell = 0.01;
 /// Of trials by work: seconds that a window of their size is for, and samples of its pixels.
 constexpr double kTrialOfWork = 0.7;
 constexpr std::int64_t kSamplesOfTrial = 4;
@@ -380,7 +382,7 @@ std::string describe_choice(std::span<const TriedMethod> tried) {
 }
 
 void warn_of_dots(const Method& method, const TrialError& error, RenderStats& stats) {
-    if (!(error.dots > 0)) return;
+    if (!(error.dots > kDotsToTell)) return;
     stats.warn(Doubt::samples,
                fmt::format("its trial shows that {} brings in a few bright samples what other methods find everywhere: "
                            "expect dots there, and darkness between them. Try another method, or more time",
