@@ -1,6 +1,7 @@
 // Scenes of pbrt's format for tests, from strings.
 #pragma once
 
+#include "core/error.h"
 #include "scene/load/load_pbrt.h"
 #include "support/scratch_directory.h"
 
@@ -28,6 +29,16 @@ struct PbrtScene {
     LoadedScene scene;
     std::vector<std::string> warnings;
 };
+
+/// What reading such a scene fails with; empty where it doesn't.
+inline std::string pbrt_error(const std::string& world, const std::string& options = "") {
+    try {
+        PbrtScene(world, options);
+    } catch (const InputError& e) {
+        return e.what();
+    }
+    return "";
+}
 
 inline const std::string kPbrtTriangle = "Shape \"trianglemesh\" \"point3 P\" [ 0 0 0  1 0 0  0 1 0 ]\n";
 

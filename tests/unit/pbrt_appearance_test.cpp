@@ -1,5 +1,4 @@
 // Materials, textures, spectra, lights and media of pbrt's format: each becomes the model that docs/pbrt.md names.
-#include "core/error.h"
 #include "scene/load/pbrt/spectrum.h"
 #include "support/pbrt_scenes.h"
 
@@ -19,14 +18,7 @@ void expect_near(const Rgb& a, const Rgb& b, double tolerance = 1e-6) {
     EXPECT_NEAR(a.z, b.z, tolerance);
 }
 
-std::string error_of(const std::string& world) {
-    try {
-        PbrtScene(world + kPbrtTriangle);
-    } catch (const InputError& e) {
-        return e.what();
-    }
-    return "";
-}
+std::string error_of(const std::string& world) { return pbrt_error(world + kPbrtTriangle); }
 
 SurfacePoint point_at(const Vec2& uv) {
     SurfacePoint p;

@@ -1,5 +1,4 @@
 // Curves of pbrt's format against what one can calculate: tubes and ribbons where and as large as they should be.
-#include "core/error.h"
 #include "core/statistics.h"
 #include "sampling/paths/path_tracer.h"
 #include "scene/geometry.h"
@@ -26,15 +25,6 @@ std::string curve(const std::string& parameters) { return "Shape \"curve\" " + p
 const std::string kStraight = "\"point3 P\" [ 0 0 0  1 0 0  2 0 0  3 0 0 ] ";
 const std::string kBow = "\"point3 P\" [ 0 0 0  0 1 0  1 1 0  1 0 0 ] ";
 const std::string kTube = "\"string type\" \"cylinder\" ";
-
-std::string error_of(const std::string& world) {
-    try {
-        PbrtScene{world};
-    } catch (const InputError& e) {
-        return e.what();
-    }
-    return "";
-}
 
 Imath::Box3f box_of(const TriangleMesh& mesh) {
     Imath::Box3f box;
@@ -264,7 +254,9 @@ TEST(PbrtCurves, WithoutLengthAreLeftOut) {
 }
 
 TEST(PbrtCurves, SayWhatIsWrong) {
-    const auto wrong = [](const std::string& parameters) { return error_of(kPbrtTriangle + "\n" + curve(parameters)); };
+    const auto wrong = [](const std::string& parameters) {
+        return pbrt_error(kPbrtTriangle + "\n" + curve(parameters));
+    };
     EXPECT_THAT(wrong(""), HasSubstr("scene.pbrt:6:1: Shape \"curve\": found no 'P', expected the points of a curve"));
     EXPECT_THAT(wrong("\"point3 P\" [ 0 0 0 1 1 1 2 2 2 ]"),
                 HasSubstr("scene.pbrt:6:15: Shape \"curve\": found 3 points in 'P', expected 4, and 3 for each further "

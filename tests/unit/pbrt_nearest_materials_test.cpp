@@ -1,6 +1,6 @@
 // Materials of pbrt's format that we have no model of: each becomes the nearest of ours, which is said.
-#include "core/error.h"
 #include "core/rng.h"
+#include "scene/warp.h"
 #include "support/pbrt_scenes.h"
 
 #include <gmock/gmock.h>
@@ -36,14 +36,7 @@ Rgb reflectance(const Material& material, float mu) {
     return sum;
 }
 
-std::string error_of(const std::string& world) {
-    try {
-        PbrtScene(world + kPbrtTriangle);
-    } catch (const InputError& e) {
-        return e.what();
-    }
-    return "";
-}
+std::string error_of(const std::string& world) { return pbrt_error(world + kPbrtTriangle); }
 
 Rgb base_of(const std::string& parameters) {
     const PbrtScene s("Material \"hair\" " + parameters + " " + kPbrtTriangle);
@@ -54,9 +47,9 @@ Rgb base_of(const std::string& parameters) {
 }
 
 /// A direction about the unit vector `n`, by its cosine.
-Vec3 cosine_hemisphere(const Vec3& n, Rng& rng) {
-    const auto radius = static_cast<float>(std::sqrt(rng.next())), phi = static_cast<float>(2 * kPi * rng.next());
-    return Frame(n).to_world({radius * std::cos(phi), radius * std::sin(phi), std::sqrt(1 - radius * radius)});
+Vec3 cosine_about(const Vec3& n, Rng& rng) {
+    const double u0 = rng.next(), u1 = rng.next();
+    return Frame(n).to_world(cosine_hemisphere(u0, u1));
 }
 
 /// A walk of light, diffuse as it comes, into a half-space: the share that comes out again. `scatter(w)` is a direction
@@ -67,7 +60,7 @@ template <class Scatter> double walked_albedo(double single_scattering_albedo, c
     constexpr int kWalks = 40'000;
     for (int i = 0; i < kWalks; ++i) {
         double depth = 0, weight = 1;
-        Vec3 w = -cosine_hemisphere({0, 0, 1}, rng);
+        Vec3 w = -cosine_about({0, 0, 1}, rng);
         for (;;) {
             depth -= static_cast<double>(w.z) * -std::log(1 - rng.next());
             if (depth < 0) sum += weight;
@@ -122,7 +115,7 @@ TEST(PbrtHair, HasTheColourThatItsAbsorptionStandsFor) {
 
 /// Many diffuse hairs, each of which catches light where it faces it, reflect the colour as a whole.
 TEST(PbrtHair, HasItsColourAsAWhole) {
-    const auto off_a_ball = [](const Vec3& w, Rng& rng) { return cosine_hemisphere(cosine_hemisphere(-w, rng), rng); };
+    const auto off_a_ball = [](const Vec3& w, Rng& rng) { return cosine_about(cosine_about(-w, rng), rng); };
     // What the gloss takes of the diffuse part is not lost.
     const Rgb albedo = base_of("\"rgb reflectance\" [ 0.8 0.4 0.05 ]") / base_of("\"rgb reflectance\" [ 1 1 1 ]");
     EXPECT_NEAR(walked_albedo(albedo.x, off_a_ball), 0.8, 0.02);

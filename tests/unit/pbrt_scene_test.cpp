@@ -32,15 +32,6 @@ Vec3 moved(const std::string& transform) {
     return PbrtScene(transform + " Shape \"trianglemesh\" \"point3 P\" [ 1 2 3  5 0 0  0 5 0 ]").mesh().positions[0];
 }
 
-std::string error_of(const std::string& world, const std::string& options = "") {
-    try {
-        PbrtScene(world, options);
-    } catch (const InputError& e) {
-        return e.what();
-    }
-    return "";
-}
-
 TEST(PbrtTransforms, ActInTheirOrder) {
     expect_near(moved("Translate 10 0 0 Scale 2 2 2"), {12, 4, 6}); // the last one acts first
     expect_near(moved("Scale 2 2 2 Translate 10 0 0"), {22, 4, 6});
@@ -52,9 +43,9 @@ TEST(PbrtTransforms, ActInTheirOrder) {
     expect_near(moved("TransformBegin Scale 2 2 2 TransformEnd"), {1, 2, 3});
     expect_near(moved("Scale 2 2 2 CoordinateSystem \"big\" Identity CoordSysTransform \"big\""), {2, 4, 6});
     expect_near(moved("ActiveTransform EndTime Translate 5 5 5 ActiveTransform All"), {1, 2, 3});
-    EXPECT_THAT(error_of("Scale 1 0 1 " + kTriangle), HasSubstr("flattens the shape"));
-    EXPECT_THAT(error_of("Rotate 90 0 0 0 " + kTriangle), HasSubstr("found the axis 0 0 0"));
-    EXPECT_THAT(error_of("CoordSysTransform \"no\" " + kTriangle), HasSubstr("unknown coordinate system 'no'"));
+    EXPECT_THAT(pbrt_error("Scale 1 0 1 " + kTriangle), HasSubstr("flattens the shape"));
+    EXPECT_THAT(pbrt_error("Rotate 90 0 0 0 " + kTriangle), HasSubstr("found the axis 0 0 0"));
+    EXPECT_THAT(pbrt_error("CoordSysTransform \"no\" " + kTriangle), HasSubstr("unknown coordinate system 'no'"));
 }
 
 TEST(PbrtCamera, LooksWhereLookAtSays) {
@@ -79,8 +70,8 @@ TEST(PbrtCamera, MayBeMirroredAndScaled) {
     expect_near(s.origin, {0, 0, 4});
     EXPECT_FLOAT_EQ(s.lens_radius, 0.2f);
     EXPECT_FLOAT_EQ(s.focus_distance, 6);
-    EXPECT_THAT(error_of(kTriangle, "Scale 1 2 1 Camera \"perspective\""), HasSubstr("stretches the camera"));
-    EXPECT_THAT(error_of(kTriangle, "Camera \"spherical\""), HasSubstr("expected perspective or orthographic"));
+    EXPECT_THAT(pbrt_error(kTriangle, "Scale 1 2 1 Camera \"perspective\""), HasSubstr("stretches the camera"));
+    EXPECT_THAT(pbrt_error(kTriangle, "Camera \"spherical\""), HasSubstr("expected perspective or orthographic"));
 }
 
 TEST(PbrtCamera, ScreenWindowNarrowsTheView) {
@@ -184,7 +175,7 @@ TEST(PbrtShapes, TrianglesFaceTheirNormals) {
 }
 
 TEST(PbrtShapes, MeshesSayWhatIsWrong) {
-    const auto in_mesh = [](const std::string& rest) { return error_of("Shape \"trianglemesh\" " + rest); };
+    const auto in_mesh = [](const std::string& rest) { return pbrt_error("Shape \"trianglemesh\" " + rest); };
     const std::string p = "\"point3 P\" [ 0 0 0  1 0 0  0 1 0  1 1 1 ] ";
     EXPECT_THAT(in_mesh(""), HasSubstr("found no 'P'"));
     EXPECT_THAT(in_mesh(p), HasSubstr("found 0 'indices'"));
@@ -196,11 +187,11 @@ TEST(PbrtShapes, MeshesSayWhatIsWrong) {
     EXPECT_THAT(in_mesh(p + "\"normal N\" [ 0 0 1 ] \"integer indices\" [ 0 1 2 ]"),
                 HasSubstr("found 1 normals for 4 positions"));
     EXPECT_THAT(in_mesh("\"point3 P\" [ 0 0 0  1e20 0 0  0 1 0 ]"), HasSubstr("expected one within 1e12"));
-    EXPECT_THAT(error_of("Shape \"plymesh\""), HasSubstr("found no 'filename'"));
-    EXPECT_THAT(error_of("Shape \"plymesh\" \"string filename\" \"no.ply\""),
+    EXPECT_THAT(pbrt_error("Shape \"plymesh\""), HasSubstr("found no 'filename'"));
+    EXPECT_THAT(pbrt_error("Shape \"plymesh\" \"string filename\" \"no.ply\""),
                 HasSubstr("scene.pbrt:4:1: Shape \"plymesh\": "));
-    EXPECT_THAT(error_of("Shape \"cone\""), HasSubstr("found the shape 'cone', expected one of"));
-    EXPECT_THAT(error_of("Shape \"sphere\" \"float radius\" -1"), HasSubstr("found -1 as 'radius'"));
+    EXPECT_THAT(pbrt_error("Shape \"cone\""), HasSubstr("found the shape 'cone', expected one of"));
+    EXPECT_THAT(pbrt_error("Shape \"sphere\" \"float radius\" -1"), HasSubstr("found -1 as 'radius'"));
 }
 
 TEST(PbrtShapes, SpheresStayExactWhereTheyCan) {
@@ -223,8 +214,8 @@ TEST(PbrtShapes, QuadricsHaveTheirAreasAndSides) {
     const auto& mesh = bowl.mesh();
     for (std::size_t i = 0; i < mesh.triangles.size(); i += 97)
         EXPECT_GT(normal(mesh, i).dot(mesh.positions[mesh.triangles[i][0]]), 0.9f);
-    EXPECT_THAT(error_of("Shape \"disk\" \"float innerradius\" 1"), HasSubstr("inner radius"));
-    EXPECT_THAT(error_of("Shape \"sphere\" \"float zmin\" 2"), HasSubstr("expected some of the sphere"));
+    EXPECT_THAT(pbrt_error("Shape \"disk\" \"float innerradius\" 1"), HasSubstr("inner radius"));
+    EXPECT_THAT(pbrt_error("Shape \"sphere\" \"float zmin\" 2"), HasSubstr("expected some of the sphere"));
 }
 
 TEST(PbrtShapes, PatchesAreTrianglesWhereFlatAndFacetsWhereNot) {

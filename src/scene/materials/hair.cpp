@@ -51,19 +51,16 @@ double alpha_of_hair(double beta_m) {
 /// The first of: absorption, colour, melanin. Without any, pbrt's brown hair.
 ColorTexture read_hair_color(Properties& p) {
     const FloatTexture beta_n = p.number_texture({"", "beta_n"}, kShare, 0.3);
-    const FloatTexture eumelanin = p.find_number_texture({"", "eumelanin"}, kNotNegative),
-                       pheomelanin = p.find_number_texture({"", "pheomelanin"}, kNotNegative);
+    FloatTexture eumelanin = p.find_number_texture({"", "eumelanin"}, kNotNegative);
+    FloatTexture pheomelanin = p.find_number_texture({"", "pheomelanin"}, kNotNegative);
     ColorTexture reflectance = p.find_color_texture({"", "reflectance"}, kReflectance);
     if (ColorTexture color = p.find_color_texture({"", "color"}, kReflectance); !reflectance) reflectance = color;
     ColorTexture absorption = p.find_unbounded_texture({"", "sigma_a"});
     if (!absorption && reflectance) return reflectance;
     if (!absorption) {
-        const FloatTexture none = constant_texture(0.0), brown = constant_texture(1.3);
-        absorption = computed_texture(absorption_of_melanin,
-                                      eumelanin     ? eumelanin
-                                      : pheomelanin ? none
-                                                    : brown,
-                                      pheomelanin ? pheomelanin : none);
+        if (!eumelanin) eumelanin = constant_texture(pheomelanin ? 0.0 : 1.3);
+        if (!pheomelanin) pheomelanin = constant_texture(0.0);
+        absorption = computed_texture(absorption_of_melanin, eumelanin, pheomelanin);
     }
     return computed_texture(color_of_absorption, absorption, beta_n);
 }

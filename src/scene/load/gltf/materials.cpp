@@ -153,8 +153,7 @@ class Reader {
         }
         if (const auto rough = value_or(metal_, "roughnessFactor", 1.0); rough > kSmoothPane)
             document_.warn(
-                fmt::format("panes without thickness are smooth: that of the material '{}' has the roughness "
-                            "{:.2g}",
+                fmt::format("panes without thickness are smooth: that of the material '{}' has the roughness {:.2g}",
                             value_or<std::string>(material_, "name", ""), rough));
         return make_mix(make_principled(t), make_thin_dielectric(eta, t.base_color), share);
     }

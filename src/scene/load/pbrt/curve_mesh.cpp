@@ -1,6 +1,7 @@
 #include "scene/load/load_mesh.h"
 #include "scene/load/pbrt/curves.h"
 
+#include <Imath/ImathBox.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -71,13 +72,9 @@ struct CurvePoint {
 class CurveMesher {
   public:
     CurveMesher(const CurveSet& set, bool parametrised) : set_(set), parametrised_(parametrised) {
-        Vec low(1e30), high(-1e30);
-        for (const Vec3& p : set.points)
-            for (int axis = 0; axis < 3; ++axis) {
-                low[axis] = std::min(low[axis], static_cast<double>(p[axis]));
-                high[axis] = std::max(high[axis], static_cast<double>(p[axis]));
-            }
-        extent_ = (high - low).length();
+        Imath::Box3d box;
+        for (const Vec3& p : set.points) box.extendBy(Vec(p));
+        extent_ = box.size().length();
     }
 
     TriangleMesh make() {
