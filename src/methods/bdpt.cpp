@@ -108,6 +108,7 @@ RenderResult render_bdpt(const RenderTask& task) {
 constinit const Method methods::bdpt{.name = "bdpt",
                                      .help = "bidirectional path tracing",
                                      .samples_pixels = true,
+                                     .scatters_in_media = true,
                                      .trial = {.share = 0.10, .by_work = true},
                                      .render = render_bdpt};
 

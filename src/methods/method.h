@@ -40,6 +40,7 @@ struct Method {
     bool samples_pixels = false;        ///< one by one, and needs nothing before that
     bool follows_user_paths = false;    ///< that a scene has
     bool asks_for_direct_light = false; ///< by next-event estimation, which may be learned
+    bool scatters_in_media = false;     ///< shows scenes with media that scatter
     ImportanceUse importance = ImportanceUse::none;
 
     /// What `auto` tries it with; docs/charts.md.
@@ -72,12 +73,12 @@ namespace methods {
 /// Names of the methods that `is` holds for, separated by commas.
 std::string names_of(bool Method::*is);
 
-/// Whether the method can do what the settings ask for: save photons, or weigh them by pixels; and whether they leave
-/// it anything to do.
-bool can_do(const Settings& settings, const Method& method);
+/// Whether the method can do what the settings ask for: save photons, or weigh them by pixels; whether they leave it
+/// anything to do; and whether it can show the scene.
+bool can_do(const Scene& scene, const Settings& settings, const Method& method);
 
 /// The method that the settings name, without render()'s care for renders that are stopped before they have a picture.
-/// @throws Interrupted, and InputError as render()
+/// @throws Interrupted, and InputError as render() and if the method can't show the scene
 RenderResult render_by_method(const RenderTask& task);
 
 /// Everything that renders from photon maps; the method is the sampler that fills them.

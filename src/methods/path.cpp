@@ -46,6 +46,7 @@ constinit const Method methods::path{.name = "path",
                                      .help = "path tracing, the reference",
                                      .samples_pixels = true,
                                      .asks_for_direct_light = true,
+                                     .scatters_in_media = true,
                                      .trial = {.share = 0.10, .by_work = true},
                                      .render = render_path};
 

@@ -67,7 +67,7 @@ RenderPaths::RenderPaths(const Scene& scene, const Settings& settings, const Use
                          const RunContext& context)
     : paths_(bind_user_paths(scene, given)) {
     if (!settings.find_openings || !settings.method->follows_user_paths || !settings.load_map.empty() ||
-        !has_emitters_with_a_place(scene) || (!paths_.empty() && !has_openings(paths_)))
+        scene.has_scattering_media() || !has_emitters_with_a_place(scene) || (!paths_.empty() && !has_openings(paths_)))
         return;
     const StageClock clock(own_, kOpenings);
     OpeningSearch search = search_of(settings, context);

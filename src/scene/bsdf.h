@@ -7,6 +7,7 @@
 #include "scene/bsdfs/conductor.h"
 #include "scene/bsdfs/dielectric.h"
 #include "scene/bsdfs/diffuse.h"
+#include "scene/bsdfs/phase.h"
 #include "scene/bsdfs/principled.h"
 #include "scene/scattering.h"
 #include "scene/surface_point.h"
@@ -32,7 +33,7 @@ class Bsdf {
   public:
     using Model = std::variant<BlackBsdf, DiffuseBsdf, DiffuseTransmissionBsdf, MirrorBsdf, ConductorBsdf,
                                RoughConductorBsdf, GlassBsdf, RoughDielectricBsdf, ThinDielectricBsdf, InterfaceBsdf,
-                               CoatedDiffuseBsdf, CoatedConductorBsdf, PrincipledBsdf>;
+                               CoatedDiffuseBsdf, CoatedConductorBsdf, PrincipledBsdf, PhaseBsdf>;
 
   private:
     /// std::visit(), with the commonest model inlined: the others are behind a table of functions.

@@ -7,7 +7,7 @@
 #include "scene/emitter.h"
 #include "scene/emitters/direct_light_sampler.h"
 #include "scene/light_tree.h"
-#include "scene/media.h"
+#include "scene/media/media.h"
 #include "scene/shape.h"
 
 #include <memory>
@@ -52,6 +52,15 @@ class Scene {
     /// Share of light that absorption leaves along the edge between two points, as far as media go: 1 without them.
     Rgb transmittance(const SurfacePoint& a, const SurfacePoint& b) const {
         return media_.empty() ? Rgb(1.0) : media_.transmittance(a, b);
+    }
+
+    /// Whether any medium scatters light.
+    bool has_scattering_media() const { return media_.scatter(); }
+    Attenuation attenuation(const SurfacePoint& a, const SurfacePoint& b) const { return media_.attenuation(a, b); }
+    /// Media::fly().
+    std::optional<Collision> fly(const SurfacePoint& from, const Vec3& w, const SurfacePoint* to,
+                                 SampleSource& source) const {
+        return media_.fly(from, w, to, source);
     }
 
     const Camera& camera() const { return camera_; }

@@ -4,7 +4,7 @@
 #include "core/vec.h"
 #include "scene/emitters/emission_profile.h"
 #include "scene/material.h"
-#include "scene/medium.h"
+#include "scene/media/medium.h"
 
 #include <array>
 #include <cstdint>

@@ -13,6 +13,7 @@ class Material;
 enum class Site : std::uint8_t {
     surface,  ///< on geometry: cosine and area measure
     point,    ///< a point in space (pinhole, point light): no cosine
+    medium,   ///< a point where a medium scatters: no cosine, and volume measure
     infinite, ///< a direction (environment, distant light): `ng` points from there to the scene
 };
 

@@ -74,6 +74,15 @@ TEST_P(Furnace_HasItsClosedForm, InEveryBlock) {
     EXPECT_LT(bound, 0.08) << "power off by a tenth would go unnoticed";
 }
 
+INSTANTIATE_TEST_SUITE_P(Media, Furnace_HasItsClosedForm,
+                         testing::Combine(testing::Values(MethodCase{"path"}, MethodCase{"bdpt", 24},
+                                                          MethodCase{"pssmlt"}, MethodCase{"mmlt", 32}),
+                                          testing::Values(FurnaceCase{"Foggy", [] { return test::foggy_furnace(kRho); },
+                                                                      true})),
+                         [](const auto& info) {
+                             return fmt::format("{}_{}", std::get<0>(info.param).method, std::get<1>(info.param).name);
+                         });
+
 INSTANTIATE_TEST_SUITE_P(Methods, Furnace_HasItsClosedForm,
                          testing::Combine(testing::Values(MethodCase{"path"}, MethodCase{"bdpt"}, MethodCase{"mlt", 16},
                                                           MethodCase{"pssmlt"}, MethodCase{"mmlt", 16},

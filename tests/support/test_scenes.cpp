@@ -60,10 +60,19 @@ SceneMaker& SceneMaker::media(std::shared_ptr<const Medium> inside, std::shared_
     return *this;
 }
 
-SceneMaker& SceneMaker::cloud(const Vec3& lower, const Vec3& upper, const std::shared_ptr<const Medium>& inside) {
+SceneMaker& SceneMaker::medium(std::shared_ptr<const Medium> outermost) {
+    d_.medium = std::move(outermost);
+    return *this;
+}
+
+SceneMaker& SceneMaker::cloud(const Vec3& lower, const Vec3& upper, const std::shared_ptr<const Medium>& inside,
+                              const std::shared_ptr<const Medium>& around) {
     const std::size_t first = d_.shapes.size();
     room(lower, upper, nullptr); // its sides face inwards: their outside is the cloud's inside
-    for (std::size_t i = first; i < d_.shapes.size(); ++i) d_.shapes[i].outside = inside;
+    for (std::size_t i = first; i < d_.shapes.size(); ++i) {
+        d_.shapes[i].outside = inside;
+        d_.shapes[i].inside = around;
+    }
     return *this;
 }
 
@@ -155,6 +164,22 @@ std::unique_ptr<Scene> hazy_box() {
     return m.build();
 }
 
+std::unique_ptr<Scene> foggy_box() {
+    const auto fog = std::make_shared<Medium>(Medium{Rgb(0.05, 0.1, 0.02), Rgb(0.3, 0.2, 0.25), 0.5f});
+    const auto milk = std::make_shared<Medium>(Medium{Rgb(0.1, 0.3, 1.0), Rgb(3, 4, 2)});
+    DensityGrid::Values values{{2, 3, 2}, {1, 0, 3, 0.5f, 0, 2, 1, 1, 2, 0, 0.2f, 4}};
+    const Imath::Box3d box(Imath::V3d(-0.9, 0.3, -0.8), Imath::V3d(-0.4, 1.6, 1.5));
+    const auto grid = std::make_shared<const DensityGrid>(std::move(values), box, Imath::M44d());
+    const auto smoke = std::make_shared<Medium>(Medium{Rgb(1.0, 0.5, 0.5), Rgb(1.0), -0.3f, grid});
+    const auto dye = std::make_shared<Medium>(Medium{Rgb(2.0, 0.4, 1.5)}); // which scatters nothing
+    SceneMaker m = box_shell(make_mirror(Rgb(0.9)));
+    add_light(m);
+    m.sphere({0.1f, 0.4f, 0.5f}, 0.4f, make_glass(1.3)).media(milk, fog);
+    m.sphere({0.5f, 0.3f, -0.4f}, 0.3f, make_glass(1.5)).media(dye, fog);
+    m.cloud({-0.9f, 0.3f, -0.8f}, {-0.4f, 1.6f, 1.5f}, smoke, fog);
+    return m.medium(fog).build();
+}
+
 std::unique_ptr<Scene> coated_box() {
     const auto white = make_diffuse(Rgb(0.7));
     const auto number = [](double x) { return constant_texture(x); };
@@ -216,6 +241,19 @@ std::unique_ptr<Scene> furnace(double rho, bool specular) {
         m.sphere({-0.5f, 0.1f, -0.5f}, 0.35f, make_mirror(Rgb(1.0))).sphere({0.4f, 0, 0}, 0.35f, make_glass(1.5));
     m.camera({0, 0, 0.9f}, {0, 0, -1}, 60).window(32, 32);
     return m.build();
+}
+
+std::unique_ptr<Scene> foggy_furnace(double rho) {
+    const auto fog = std::make_shared<Medium>(Medium{Rgb(0.0), Rgb(0.2, 0.5, 0.8), 0.6f});
+    const auto milk = std::make_shared<Medium>(Medium{Rgb(0.0), Rgb(3.0), -0.4f});
+    SceneMaker m;
+    m.room({-1, -1, -1}, {1, 1, 1}, make_diffuse(Rgb(rho)), Rgb(1.0))
+        .sphere({0.4f, 0, 0}, 0.35f, make_glass(1.3))
+        .media(milk, fog)
+        .sphere({-0.45f, 0.2f, -0.4f}, 0.35f, make_diffuse(Rgb(1.0)))
+        .camera({0, 0, 0.9f}, {0, 0, -1}, 60)
+        .window(32, 32);
+    return m.medium(fog).build();
 }
 
 namespace {

@@ -25,8 +25,11 @@ class SceneMaker {
     SceneMaker& profile(const EmissionProfile& profile);
     /// The media inside and outside of the last shape.
     SceneMaker& media(std::shared_ptr<const Medium> inside, std::shared_ptr<const Medium> outside = nullptr);
-    /// A box of `inside` without a surface, in vacuum.
-    SceneMaker& cloud(const Vec3& lower, const Vec3& upper, const std::shared_ptr<const Medium>& inside);
+    /// Fills what no shape encloses.
+    SceneMaker& medium(std::shared_ptr<const Medium> outermost);
+    /// A box of `inside` without a surface, in `around`; null: vacuum.
+    SceneMaker& cloud(const Vec3& lower, const Vec3& upper, const std::shared_ptr<const Medium>& inside,
+                      const std::shared_ptr<const Medium>& around = nullptr);
     SceneMaker& emitter(std::unique_ptr<Emitter> e);
     SceneMaker& camera(const Vec3& from, const Vec3& to, float fov, float lens_radius = 0, float focus = 1);
     /// Makes the camera see along parallels, `size` metres of the film's shorter side.
@@ -71,12 +74,18 @@ std::unique_ptr<Scene> varnished_furnace(double rho);
 /// there, and a screen that is a pane of glass.
 std::unique_ptr<Scene> patchy_furnace(double rho);
 
+/// furnace() full of fog, with balls of milk and of white; nothing is swallowed.
+std::unique_ptr<Scene> foggy_furnace(double rho);
+
 /// Two diffuse rooms joined by a slit of the given width [m]; the light is in the far one. `thin`: what parts them is a
 /// plane, in which an opening lies as well.
 std::unique_ptr<Scene> two_rooms(float slit, bool thin = false, bool mirror_outside = false);
 
 /// mirror_glass_box() with a ball of green glass, and a block of haze that has no surface.
 std::unique_ptr<Scene> hazy_box();
+
+/// mirror_glass_box() full of fog, with balls of milk and of dye, and a cloud of uneven smoke.
+std::unique_ptr<Scene> foggy_box();
 
 /// Two rough walls of metal under a smooth coat, which now and then swallow what they scatter, in a diffuse room.
 std::unique_ptr<Scene> coated_box();

@@ -1,5 +1,6 @@
 // Materials, textures, spectra, lights and media of pbrt's format: each becomes the model that docs/pbrt.md names.
 #include "scene/load/pbrt/spectrum.h"
+#include "scene/materials/measured_media.h"
 #include "support/pbrt_scenes.h"
 
 #include <gmock/gmock.h>
@@ -227,7 +228,7 @@ TEST(PbrtLights, SayWhatIsWrong) {
     EXPECT_THAT(error_of("AreaLightSource \"diffuse\" \"blackbody L\" -5 "), HasSubstr("found -5 kelvin"));
 }
 
-TEST(PbrtMedia, AbsorbOrAreRefused) {
+TEST(PbrtMedia, AbsorbAndScatter) {
     const std::string tea = "MakeNamedMedium \"tea\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 1 2 3 ] \"rgb "
                             "sigma_s\" [ 0 0 0 ] \"float scale\" 2 ";
     const PbrtScene s(tea + "MediumInterface \"tea\" \"\" Material \"interface\" " + kPbrtTriangle + kPbrtTriangle);
@@ -237,10 +238,40 @@ TEST(PbrtMedia, AbsorbOrAreRefused) {
     EXPECT_EQ(s.shape().outside, nullptr);
     const PbrtScene under(kPbrtTriangle, tea + "MediumInterface \"\" \"tea\" Camera \"perspective\" ");
     EXPECT_EQ(under.scene.description.medium->absorption, Rgb(2, 4, 6));
-    EXPECT_EQ(error_of("MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" "), "") << "nothing is in it";
-    EXPECT_THAT(error_of("MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" MediumInterface \"fog\" \"\" "),
-                HasSubstr("found a medium that scatters"));
+    const std::string in_fog = kPbrtTriangle, fog = "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" ",
+                      camera = " MediumInterface \"\" \"fog\" Camera \"perspective\" ";
+    const auto medium = [&](const std::string& parameters) {
+        return PbrtScene(in_fog, fog + parameters + camera).scene.description.medium;
+    };
+    EXPECT_EQ(medium("\"float scale\" 10")->scattering, Rgb(25.5, 32.1, 37.7)) << "pbrt's own";
+    EXPECT_NEAR(medium("")->absorption.z, 0.014, 1e-6);
+    const auto thick = medium("\"rgb sigma_a\" [ 0 0 0 ] \"rgb sigma_s\" [ 3 2 1 ] \"float g\" 0.5");
+    EXPECT_EQ(thick->extinction(), Rgb(3, 2, 1));
+    EXPECT_EQ(thick->anisotropy, 0.5f);
+    EXPECT_EQ(thick->density, nullptr);
+    const auto milk = medium("\"string preset\" \"Wholemilk\"");
+    EXPECT_EQ(milk->scattering, measured_media().at("Wholemilk").reduced_scattering);
     EXPECT_THAT(error_of("MediumInterface \"no\" \"\" "), HasSubstr("found the unknown medium 'no'"));
+}
+
+TEST(PbrtMedia, VaryOverAGrid) {
+    const std::string grid = "Scale 2 2 2 MakeNamedMedium \"smoke\" \"string type\" \"uniformgrid\" \"integer nx\" 2 "
+                             "\"point3 p1\" [ 2 1 1 ] ",
+                      use = "Identity MediumInterface \"smoke\" \"\" Material \"interface\" " + kPbrtTriangle;
+    const PbrtScene s(grid + "\"float density\" [ 1 3 ] \"rgb sigma_a\" [ 0 1 2 ] " + use);
+    const auto smoke = s.shape().inside;
+    ASSERT_NE(smoke, nullptr);
+    ASSERT_NE(smoke->density, nullptr);
+    EXPECT_EQ(smoke->absorption, Rgb(0, 1, 2));
+    EXPECT_EQ(smoke->scattering, Rgb(1.0));
+    EXPECT_NEAR(smoke->density->density({1, 1, 1}), 1, 1e-6) << "the world is twice as large";
+    EXPECT_NEAR(smoke->density->density({3, 1, 1}), 3, 1e-6);
+    EXPECT_THAT(error_of(grid + "\"float density\" [ 1 3 2 ] " + use), HasSubstr("found 3 numbers in 'density'"));
+    EXPECT_THAT(error_of(grid + "\"float density\" [ 1 -3 ] " + use), HasSubstr("found the density -3"));
+    EXPECT_THAT(error_of(grid + "\"float density\" [ 1 3 ] \"point3 p0\" [ 2 0 0 ] " + use), HasSubstr("beyond 'p0'"));
+    EXPECT_THAT(error_of(grid + "\"float density\" [ 1 3 ] \"rgb Le\" [ 1 1 1 ] " + use), HasSubstr("emits"));
+    EXPECT_THAT(error_of("MakeNamedMedium \"smoke\" \"string type\" \"cloud\" " + use), HasSubstr("type 'cloud'"));
+    EXPECT_EQ(error_of("MakeNamedMedium \"smoke\" \"string type\" \"cloud\" "), "") << "nothing is in it";
 }
 
 TEST(PbrtMaterials, OfIndicesGivenAsColoursTakeTheMiddleOfRedAndGreen) {

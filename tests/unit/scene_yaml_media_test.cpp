@@ -57,6 +57,16 @@ TEST_F(SceneYamlMedia, AlphaIsANumberOrATexture) {
     EXPECT_EQ(scene.shapes[2].alpha, nullptr);
 }
 
+TEST_F(SceneYamlMedia, MayScatter) {
+    const auto scene = load(directory.write(
+        "milk.yaml", "camera: {from: [0, 0, 3], to: [0, 0, 0]}\nmedia: {milk: {scattering: [1, 2, 3], anisotropy: "
+                     "0.7}}\nshapes: [{type: sphere, material: {type: interface}, inside: milk}]\n"));
+    const Medium& milk = *scene.description.shapes[0].inside;
+    EXPECT_EQ(milk.absorption, Rgb(0.0));
+    EXPECT_EQ(milk.scattering, Rgb(1, 2, 3));
+    EXPECT_EQ(milk.anisotropy, 0.7f);
+}
+
 TEST_F(SceneYamlMedia, BumpTurnsTheShadingNormal) {
     const auto scene = load_shapes("{type: rectangle, material: {type: diffuse, bump: {type: mix, a: 0, b: 0.1, "
                                    "amount: {type: image, file: ramp.pfm}}}}",
@@ -86,7 +96,8 @@ TEST_F(SceneYamlMedia, MistakesAreErrors) {
     const std::string world = "camera: {from: [0, 0, 3], to: [0, 0, 0]}\nshapes: [{type: sphere, material: {type: "
                               "diffuse}}]\n";
     for (const char* media : {"media: {a: {absorption: -1}}\n", "media: {a: {}}\n", "media: {a: 1}\n", "media: 1\n",
-                              "media: {a: {absorption: 1, scattering: 1}}\n"})
+                              "media: {a: {scattering: -1}}\n", "media: {a: {scattering: 1, anisotropy: 1}}\n",
+                              "media: {a: {anisotropy: 0}}\n"})
         EXPECT_THROW(load(directory.write("bad.yaml", world + media)), InputError) << media;
 }
 

@@ -326,7 +326,7 @@ std::vector<TriedMethod> try_methods(const TrialContext& c, double most) {
     std::vector<TriedMethod> tried;
     for (const Method* method : all_methods()) {
         const double part = method->trial.share * budget;
-        if (part == 0 || !can_do(c.settings, *method)) continue;
+        if (part == 0 || !can_do(c.scene, c.settings, *method)) continue;
         const double spent = start - c.context.stop->seconds_left();
         if (c.context.stopped() || spent + part > budget) break;
         if (method->keeps_photons && !plan(c, std::min(kPlan * start, most))) continue;
@@ -347,7 +347,7 @@ std::vector<TriedMethod> try_methods_by_work(const TrialContext& c) {
         const double asked = static_cast<double>(std::max(c.settings.light_paths, c.settings.mutations)) / 500e3;
         const double effort = std::clamp(0.02 * asked, 0.001, 0.01);
         for (const Method* method : all_methods()) {
-            if (!method->trial.by_work || !can_do(c.settings, *method)) continue;
+            if (!method->trial.by_work || !can_do(c.scene, c.settings, *method)) continue;
             Settings s = trial_settings(c, *method, effort);
             if (method->samples_pixels) s.spp = kSamplesOfTrial;
             const auto render = [&](const Settings& of, bool) { return render_trial(c, of, effort, context); };

@@ -50,7 +50,9 @@ Rgb Connection::leave_light(const Vec3& to_eye) {
     const ScatterValue f = scatter(y.point, y.bsdf, Event::finite, back, to_eye);
     from_light_[0] = solid_angle_to_area(f.pdf_to_eye, y.point, vertex(s_).point, to_eye);
     const bool unreachable = s_ == 2 && scene_->emitter(before.point.emitter).is_delta();
-    from_eye_[1] = unreachable ? 0.0 : solid_angle_to_area(f.pdf_to_light, y.point, before.point, back);
+    from_eye_[1] =
+        unreachable ? 0.0
+                    : solid_angle_to_area(f.pdf_to_light, y.point, before.point, back) * light_->notes[end].flight_back;
     return light_->notes[end].throughput * f.value;
 }
 
@@ -69,7 +71,7 @@ Rgb Connection::leave_eye(const Vec3& to_light) {
     const Vec3& back = note.back;
     const ScatterValue f = scatter(z.point, z.bsdf, Event::finite, to_light, back);
     from_eye_[0] = unreachable ? 0.0 : solid_angle_to_area(f.pdf_to_light, z.point, y.point, to_light);
-    from_light_[1] = solid_angle_to_area(f.pdf_to_eye, z.point, next, back);
+    from_light_[1] = solid_angle_to_area(f.pdf_to_eye, z.point, next, back) * note.flight_back;
     return note.throughput * f.value;
 }
 
@@ -80,13 +82,17 @@ Rgb Connection::join() {
         if (!(geometry > 0)) return Rgb(0.0);
         const Rgb from_light = leave_light(to_eye_);
         if (is_black(from_light)) return from_light;
-        return from_light * leave_eye(-to_eye_) * scene_->transmittance(y, z) * geometry;
+        const Rgb carried = from_light * leave_eye(-to_eye_) * geometry;
+        const Attenuation attenuation = scene_->attenuation(y, z);
+        from_light_[0] *= flight_density(attenuation.uncollided, vertex(s_));
+        from_eye_[0] *= flight_density(attenuation.uncollided, vertex(s_ - 1));
+        return carried * attenuation.transmittance;
     }
     const SurfacePoint &x0 = vertex(0).point, &x1 = vertex(1).point;
     const Emitter& emitter = scene_->emitter(x0.emitter);
     const TracedSubPath::Note& note = eye_->notes[static_cast<std::size_t>(t_) - 1];
     from_light_[0] = emitter_point_pdf(*scene_, x0);
-    from_light_[1] = solid_angle_to_area(emitter.ray_pdf(x0, note.back), x0, x1, note.back);
+    from_light_[1] = solid_angle_to_area(emitter.ray_pdf(x0, note.back), x0, x1, note.back) * note.flight_back;
     return note.throughput * emitter.radiance(x0, note.back);
 }
 

@@ -36,6 +36,7 @@ struct TracedSubPath {
                         ///< included
         Vec3 back;      ///< unit, towards the vertex before it
         ShorterTechniques shorter; ///< than the one that makes all vertices before it; not of the last vertex
+        double flight_back = 1;    ///< flight_density() of the vertex before it, from it
     };
     InlineVector<Note, kMaxScatterings + 2> notes; ///< of each vertex
 

@@ -35,15 +35,17 @@ struct SubPathTracing : WalkHooks {
     Vertex& place() const { return walk.vertices.emplace_back(); }
     void lost() const { walk.vertices.pop_back(); }
     bool arrive(Vertex& v, const WalkRay& ray) const {
-        walk.notes.push_back({ray.throughput, -ray.w, {}});
-        density(v, from) = solid_angle_to_area(pdf, *ray.last, v.point, ray.w);
+        const Vertex& before = walk.vertices[walk.vertices.size() - 2];
+        walk.notes.push_back({ray.throughput, -ray.w, {}, flight_density(ray.uncollided, before)});
+        density(v, from) = solid_angle_to_area(pdf, *ray.last, v.point, ray.w) * flight_density(ray.uncollided, v);
         return v.point.site != Site::infinite;
     }
     bool leave(const Vertex& v, const Continuation& next, const WalkRay& ray) {
         Vertex& before = walk.vertices[walk.vertices.size() - 2];
         const bool reachable = walk.vertices.size() > 2 || start_reachable;
         density(before, from == From::eye ? From::light : From::eye) =
-            reachable ? solid_angle_to_area(next.backward, v.point, before.point, ray.w) : 0.0;
+            reachable ? solid_angle_to_area(next.backward, v.point, before.point, ray.w) * walk.notes.back().flight_back
+                      : 0.0;
         note_shorter_techniques(walk, from);
         carried *= ray.clear * next.weight;
         pdf = next.forward;

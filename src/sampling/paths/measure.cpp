@@ -1,5 +1,6 @@
 #include "sampling/paths/measure.h"
 
+#include "sampling/paths/walk.h"
 #include "scene/emitters/emitters.h"
 
 namespace keyhole {
@@ -33,9 +34,11 @@ void measure(const Scene& scene, Path& path) {
 
     // The light's end.
     const Emitter& emitter = scene.emitter(x[0].point.emitter);
-    x[0].value = emitter.radiance(x[0].point, to_eye) * scene.transmittance(x[0].point, x[1].point);
+    Attenuation attenuation = scene.attenuation(x[0].point, x[1].point);
+    x[0].value = emitter.radiance(x[0].point, to_eye) * attenuation.transmittance;
     x[0].pdf_from_light = emitter_point_pdf(scene, x[0].point);
-    x[1].pdf_from_light = solid_angle_to_area(emitter.ray_pdf(x[0].point, to_eye), x[0].point, x[1].point);
+    x[1].pdf_from_light = solid_angle_to_area(emitter.ray_pdf(x[0].point, to_eye), x[0].point, x[1].point) *
+                          flight_density(attenuation.uncollided, x[1]);
     Rgb f = x[0].value * geometry_term(x[0].point, x[1].point);
 
     for (std::size_t i = 1; i < eye; ++i) {
@@ -43,9 +46,12 @@ void measure(const Scene& scene, Path& path) {
         const Vec3 to_light = -to_eye;
         to_eye = direction(v.point, x[i + 1].point);
         const ScatterValue s = scatter(v.point, v.bsdf, v.event, to_light, to_eye);
-        v.value = s.value * scene.transmittance(v.point, x[i + 1].point);
-        x[i + 1].pdf_from_light = solid_angle_to_area(s.pdf_to_eye, v.point, x[i + 1].point);
-        x[i - 1].pdf_from_eye = solid_angle_to_area(s.pdf_to_light, v.point, x[i - 1].point);
+        x[i - 1].pdf_from_eye = solid_angle_to_area(s.pdf_to_light, v.point, x[i - 1].point) *
+                                flight_density(attenuation.uncollided, x[i - 1]);
+        attenuation = scene.attenuation(v.point, x[i + 1].point);
+        v.value = s.value * attenuation.transmittance;
+        x[i + 1].pdf_from_light = solid_angle_to_area(s.pdf_to_eye, v.point, x[i + 1].point) *
+                                  flight_density(attenuation.uncollided, x[i + 1]);
         f *= v.value * geometry_term(v.point, x[i + 1].point);
     }
 
@@ -54,7 +60,8 @@ void measure(const Scene& scene, Path& path) {
     const double direction_pdf = camera.direction_pdf(-to_eye);
     x[eye].pdf_from_eye = camera.eye_pdf();
     x[eye].value = Rgb(camera.eye_pdf() * direction_pdf);
-    x[eye - 1].pdf_from_eye = solid_angle_to_area(direction_pdf, x[eye].point, x[eye - 1].point);
+    x[eye - 1].pdf_from_eye = solid_angle_to_area(direction_pdf, x[eye].point, x[eye - 1].point) *
+                              flight_density(attenuation.uncollided, x[eye - 1]);
     x[eye].pdf_from_light = 0; // light never hits the lens by chance
     if (emitter.is_delta()) x[0].pdf_from_eye = 0;
     const bool unseen = eye == 1 && is_invisible(emitter);

@@ -29,7 +29,9 @@ inline ScatterValue scatter(const SurfacePoint& point, const Bsdf& bsdf, Event e
     if (is_specular(event)) return scatter_specular(point, bsdf, event, to_light, to_eye);
     const double ng_light = point.abs_cos(to_light);
     if (ng_light == 0) return {};
-    const double shading = std::abs(static_cast<double>(bsdf.shading_normal().dot(to_light))) / ng_light;
+    const double shading = point.site == Site::surface
+                               ? std::abs(static_cast<double>(bsdf.shading_normal().dot(to_light))) / ng_light
+                               : 1.0;
     const Bsdf::Finite f = bsdf.finite(to_light, to_eye);
     return {f.value * shading, f.pdf_to_light, f.pdf_to_eye};
 }

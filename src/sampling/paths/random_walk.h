@@ -35,9 +35,7 @@ template <class Hooks>
 void random_walk(const Scene& scene, From from, WalkRay ray, int most, SampleSource& source, Hooks& hooks) {
     for (int n = 1; n <= most; ++n) {
         Vertex& v = hooks.place();
-        if (!next_vertex(scene, *ray.origin, ray.w, v)) return hooks.lost();
-        // From where light sets out: its ray may start nearer than an infinite vertex.
-        ray.clear = scene.transmittance(*ray.last, v.point);
+        if (!follow(scene, ray, v, source)) return hooks.lost();
         ray.throughput *= ray.clear;
         if (!hooks.arrive(v, std::as_const(ray)) || n == most) return;
         const auto next = hooks.go_on(v, -ray.w, from, source);

@@ -64,6 +64,43 @@ std::optional<Vertex> next_vertex(const Scene& scene, const SurfacePoint& from, 
     return v;
 }
 
+namespace {
+
+/// The vertex where a medium scatters a ray along `w`. Its normal is for those who show it.
+void make_vertex(const Collision& collision, const Vec3& w, Vertex& v) {
+    v.point = {};
+    v.point.p = collision.p;
+    v.point.ng = v.point.ns = -w;
+    v.point.site = Site::medium;
+    v.bsdf = Bsdf(Frame(-w), PhaseBsdf{collision.scattering, collision.extinction, collision.anisotropy});
+}
+
+} // namespace
+
+double flight_density(const Rgb& uncollided, const Vertex& to) {
+    const auto* phase = to.point.site == Site::medium ? std::get_if<PhaseBsdf>(&to.bsdf.model()) : nullptr;
+    const Rgb density = phase != nullptr ? uncollided * Rgb(phase->extinction) : uncollided;
+    return (density.x + density.y + density.z) / 3;
+}
+
+bool follow(const Scene& scene, WalkRay& ray, Vertex& v, SampleSource& source) {
+    const bool met = next_vertex(scene, *ray.origin, ray.w, v);
+    if (!scene.has_scattering_media()) {
+        // From where light sets out: its ray may start nearer than an infinite vertex.
+        if (met) ray.clear = scene.transmittance(*ray.last, v.point);
+        return met;
+    }
+    const auto collision = scene.fly(*ray.origin, ray.w, met ? &v.point : nullptr, source);
+    if (collision) make_vertex(*collision, ray.w, v);
+    if (!collision && !met) return false;
+    const Attenuation attenuation = scene.attenuation(*ray.last, v.point);
+    const double density = flight_density(attenuation.uncollided, v);
+    if (!(density > 0)) return false;
+    ray.clear = attenuation.transmittance / Rgb(density);
+    ray.uncollided = attenuation.uncollided;
+    return true;
+}
+
 std::optional<Continuation> continue_walk(const Vertex& v, const Vec3& back, From from, SampleSource& source) {
     const auto s = v.bsdf.sample(back, source);
     if (!s || !(s->pdf > 0)) return std::nullopt;

@@ -59,8 +59,18 @@ struct WalkRay {
     const SurfacePoint* last;   ///< the walk's last vertex
     Vec3 w;                     ///< unit
     Rgb throughput{1.0};        ///< contribution over density of the vertices so far, roulette included
-    Rgb clear{1.0};             ///< what media leave of light along it
+    Rgb clear{1.0};             ///< what media leave of light along it, over flight_density()
+    Rgb uncollided{1.0};        ///< Attenuation::uncollided along it
 };
+
+/// What media make of the density of a vertex that is drawn by a ray, at the end of an edge: in one that scatters, the
+/// density of a free flight that ends there per length [1/m]; elsewhere the probability that it gets there. Product
+/// with solid_angle_to_area().
+double flight_density(const Rgb& uncollided, const Vertex& to);
+
+/// Makes the new vertex `v` the next one along the ray: what it meets, or where a medium scatters it before that. Notes
+/// what media leave of its light. False where there is nothing.
+bool follow(const Scene& scene, WalkRay& ray, Vertex& v, SampleSource& source);
 
 /// The ray through window point `image` from the eye vertex at `eye`, which must stay in its place.
 inline WalkRay eye_ray(const Scene& scene, const SurfacePoint& eye, const Vec2& image) {

@@ -41,7 +41,7 @@ struct LightQuestions : WalkHooks {
 
     Vertex& place() { return vertices.place(); }
     bool arrive(const Vertex& v, const WalkRay& ray) {
-        if (v.point.site != Site::surface) return false;
+        if (v.point.site == Site::infinite) return false;
         ++scatterings;
         if (!v.bsdf.traits().finite) return true;
         for (int i = 0; i < kShadowRays; ++i) ask(v, -ray.w);

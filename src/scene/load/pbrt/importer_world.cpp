@@ -34,7 +34,7 @@ void Importer::define_material(const Directive& d) {
 
 void Importer::define_medium(const Directive& d) {
     Parameters p = parameters(d, "medium");
-    pbrt::define_medium(p, library_);
+    pbrt::define_medium(p, library_, state_.to_world);
 }
 
 void Importer::use_material(const Directive& d) {

@@ -255,34 +255,4 @@ FloatTexture find_number_texture(Parameters& p, const Library& library, const ch
     return PbrtProperties(p, library).find_number_texture({"", name}, range);
 }
 
-void define_medium(Parameters& p, Library& library) {
-    const std::string type = p.string("type", "");
-    MediumEntry entry;
-    Medium medium;
-    if (type != "homogeneous") {
-        entry.refusal = fmt::format("found a medium of type '{}', expected homogeneous", type);
-    } else if (p.has("preset") || !p.has("sigma_a") || !p.has("sigma_s")) {
-        entry.refusal =
-            "found a medium that scatters, as it does unless 'sigma_s' is 0, expected one that only absorbs";
-    } else {
-        // v3 and v4 measure in inverse units of the scene; v4 calls the factor 'scale'.
-        medium.absorption = p.spectrum("sigma_a", Rgb(0.0), ColorUse::index) * p.number("scale", 1, kNotNegative);
-        if (!is_black(p.spectrum("sigma_s", Rgb(0.0), ColorUse::index)))
-            entry.refusal = "found a medium that scatters, expected one whose 'sigma_s' is 0";
-        if (!is_black(p.spectrum("Le", Rgb(0.0), ColorUse::light)))
-            entry.refusal = "found a medium that emits, expected one that only absorbs";
-        p.ignore({"g", "Lescale"});
-        p.warn_of_the_rest();
-    }
-    if (!is_black(medium.absorption)) entry.medium = std::make_shared<const Medium>(medium);
-    library.media[p.directive().words[0]] = entry;
-}
-
-std::shared_ptr<const Medium> find_medium(const Library& library, const std::string& name, const Directive& user) {
-    if (name.empty()) return nullptr;
-    const MediumEntry& entry = user.look_up(library.media, "medium", name);
-    if (!entry.refusal.empty()) user.fail(entry.refusal);
-    return entry.medium;
-}
-
 } // namespace keyhole::pbrt

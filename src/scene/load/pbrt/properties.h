@@ -4,7 +4,7 @@
 #include "scene/load/load_mesh.h"
 #include "scene/load/pbrt/syntax/parameters.h"
 #include "scene/load/properties.h"
-#include "scene/medium.h"
+#include "scene/media/medium.h"
 
 #include <map>
 #include <memory>
@@ -18,7 +18,7 @@ struct MaterialEntry {
     bool is_textured = false;  ///< looks at texture coordinates
 };
 
-/// A medium that scatters, emits or varies is refused only where something is put into it.
+/// A medium that we have no likeness of is refused only where something is put into it.
 struct MediumEntry {
     std::shared_ptr<const Medium> medium; ///< the same object for the same name, so that shapes can tell media apart
     std::string refusal;                  ///< why it can't be rendered; empty: it can
@@ -39,8 +39,8 @@ struct Library {
 void define_texture(Parameters& parameters, Library& library, const Transform& to_world);
 /// A `MakeNamedMaterial` directive, whose type is a parameter.
 void define_material(Parameters& parameters, Library& library);
-/// A `MakeNamedMedium` directive.
-void define_medium(Parameters& parameters, Library& library);
+/// A `MakeNamedMedium` directive; media.cpp.
+void define_medium(Parameters& parameters, Library& library, const Transform& to_world);
 
 MaterialEntry read_material(const std::string& type, Parameters& parameters, const Library& library);
 /// A `LightSource` directive. Null for a black light.
@@ -53,7 +53,7 @@ FloatTexture find_number_texture(Parameters& parameters, const Library& library,
                                  const NumberRange& range);
 
 /// Null for the vacuum, whose name is empty.
-/// @throws InputError with the position of `user` for an unknown name, and for media that do more than absorb.
+/// @throws InputError with the position of `user` for an unknown name, and for media that are refused.
 std::shared_ptr<const Medium> find_medium(const Library& library, const std::string& name, const Directive& user);
 
 } // namespace keyhole::pbrt

@@ -136,9 +136,14 @@ class SceneReader {
     }
 
     static std::shared_ptr<const Medium> read_medium(const YamlNode& node) {
-        const MapReader map(node, "a medium", {"absorption"});
-        return std::make_shared<const Medium>(
-            Medium{read_color(map.at("absorption"), {"an absorption coefficient", 0, 1e30})});
+        const MapReader map(node, "a medium", {"absorption", "scattering", "anisotropy"});
+        const YamlNode *absorption = map.find("absorption"), *scattering = map.find("scattering");
+        if (absorption == nullptr && scattering == nullptr) fail_expected(node, "'absorption', 'scattering' or both");
+        Medium medium;
+        if (absorption != nullptr) medium.absorption = read_color(*absorption, {"an absorption coefficient", 0, 1e30});
+        if (scattering != nullptr) medium.scattering = read_color(*scattering, {"a scattering coefficient", 0, 1e30});
+        medium.anisotropy = static_cast<float>(map.number("anisotropy", {"an anisotropy", -0.9999, 0.9999}, 0));
+        return std::make_shared<const Medium>(std::move(medium));
     }
 
     void read_includes(const YamlNode& node) {
