@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cassert>
+#include <concepts>
 #include <cstddef>
 #include <memory>
 #include <new>
@@ -29,12 +30,12 @@ template <class T, std::size_t N> class InlineVector {
     bool empty() const { return size_ == 0; }
     bool full() const { return size_ == N; }
 
-    T& operator[](std::size_t i) {
-        assert(i < size_);
+    T& operator[](std::integral auto i) {
+        assert(static_cast<std::size_t>(i) < size_);
         return items_[i];
     }
-    const T& operator[](std::size_t i) const {
-        assert(i < size_);
+    const T& operator[](std::integral auto i) const {
+        assert(static_cast<std::size_t>(i) < size_);
         return items_[i];
     }
     T& back() { return (*this)[size_ - 1]; }

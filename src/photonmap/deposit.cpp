@@ -31,9 +31,9 @@ void PathDepositor::Tally::merge(const Tally& o) {
 }
 
 bool PathDepositor::Pending::holds(const Path& path, const StoragePoint& at, const Rgb& its_flux) const {
-    const auto i = static_cast<std::size_t>(at.vertex);
+    const int i = at.vertex;
     // Another emitter may send another colour along the same last edge.
-    return kind == at.kind && scatterings == at.vertex && vertex.point.p == path.x[i].point.p &&
+    return kind == at.kind && scatterings == i && vertex.point.p == path.x[i].point.p &&
            to_light == direction(path.x[i].point, path.x[i - 1].point) && flux == its_flux;
 }
 
@@ -46,9 +46,9 @@ void PathDepositor::Pending::watch(const Path& path) {
 void PathDepositor::deposit(const Path& path, double weight) {
     const StoragePoint at = path.storage;
     if (at.kind == PhotonKind::none || !(weight > 0)) return;
-    const auto i = static_cast<std::size_t>(at.vertex);
+    const int i = at.vertex;
     Rgb flux(1.0);
-    for (std::size_t k = 0; k < i; ++k) flux *= path.x[k].value / luminance(path.x[k].value);
+    for (int k = 0; k < i; ++k) flux *= path.x[k].value / luminance(path.x[k].value);
     if (!recent_.holds(path, at, flux)) {
         std::swap(recent_, older_);
         if (!recent_.holds(path, at, flux)) {

@@ -84,11 +84,11 @@ double camera_subpath_density(const Scene& scene, const Path& path, int d2) {
     const bool straight_to_eye = d1 == eye - 1, straight_to_d2 = d1 == d2 + 1;
     if (d1 <= d2 || !(straight_to_eye || straight_to_d2)) return 0;
     // The lens has a density of its own; the image point is as uniform as the window.
-    double density = path.x[static_cast<std::size_t>(eye)].pdf_from_eye;
+    double density = path.x[eye].pdf_from_eye;
     density *= straight_to_eye ? 1 - share_from_eye(scene) : share_from_eye(scene);
     const int first = straight_to_eye ? d2 + 1 : d1, last = straight_to_eye ? d1 : eye - 1;
     for (int i = first; i <= last; ++i) {
-        const Vertex& v = path.x[static_cast<std::size_t>(i)];
+        const Vertex& v = path.x[i];
         density *= (straight_to_eye ? v.pdf_from_light : v.pdf_from_eye) * (ambiguous(v) ? 0.5 : 1.0);
     }
     return density;

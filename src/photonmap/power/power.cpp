@@ -8,10 +8,9 @@
 namespace keyhole {
 
 double literal_factor(const Path& path, int d2, const Rgb& flux) {
-    const auto eye = static_cast<std::size_t>(path.vertices()) - 1;
+    const int eye = path.vertices() - 1;
     Rgb rest = flux * path.x[eye].value;
-    for (auto i = static_cast<std::size_t>(d2); i < eye; ++i)
-        rest *= path.x[i].value * geometry_term(path.x[i].point, path.x[i + 1].point);
+    for (int i = d2; i < eye; ++i) rest *= path.x[i].value * geometry_term(path.x[i].point, path.x[i + 1].point);
     const double visible = luminance(rest);
     return visible > 0 && std::isfinite(1 / visible) ? 1 / visible : 0.0;
 }

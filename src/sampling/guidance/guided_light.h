@@ -95,7 +95,7 @@ void trace_guided_light_path(const Scene& scene, const LightPathSampling& sampli
     }
     if constexpr (requires { sink.sets_out(walk.path().x[0].point, along_user_path); }) {
         sink.sets_out(walk.path().x[0].point, along_user_path);
-        for (int i = 1; i + 1 < walk.vertices(); ++i) sink.passes(walk.path().x[static_cast<std::size_t>(i)]);
+        for (int i = 1; i + 1 < walk.vertices(); ++i) sink.passes(walk.path().x[i]);
     }
     while (sink.arrival(walk.last(), walk.to_light(), walk.power(), walk.past()) &&
            walk.vertices() <= max_scatterings) {

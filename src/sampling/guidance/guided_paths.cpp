@@ -38,13 +38,12 @@ double GuidedPaths::expected_connections(const Path& y) const {
         double light = guide.density(y) * chosen;
         if (light > 0) light *= integer_power(kGoOn, n - first - 1); // of both walks together
         for (int s = first; s < n && light > 0; ++s) {
-            const auto k = static_cast<std::size_t>(s);
-            if (joinable(y.x[k - 1], y.x[k])) {
+            if (joinable(y.x[s - 1], y.x[s])) {
                 double product = light;
-                for (std::size_t i = k; i < y.x.size() && product > 0; ++i) product *= y.x[i].pdf_from_eye;
+                for (int i = s; i < y.vertices() && product > 0; ++i) product *= y.x[i].pdf_from_eye;
                 expected += product;
             }
-            light *= y.x[k].pdf_from_light;
+            light *= y.x[s].pdf_from_light;
         }
     });
     return expected;

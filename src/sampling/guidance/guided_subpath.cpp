@@ -90,12 +90,12 @@ bool GuidedSubPath::through_portal(const Vertex& from, const Vertex& to, int i) 
 }
 
 double GuidedSubPath::cross_density(const Path& y, int back) const {
-    const auto point = [&](int i) -> const SurfacePoint& { return y.x[static_cast<std::size_t>(i)].point; };
+    const auto point = [&](int i) -> const SurfacePoint& { return y.x[i].point; };
     const SurfacePoint &near = point(crossed_ - 1), &far = point(crossed_);
     const double line = user_vertex(crossed_).portal->line_density(point(0).p, near.p, far.p);
     double density = line > 0 ? line * geometry_term(near, far) : 0.0;
     for (int i = crossed_ - 1; i > crossed_ - 1 - back && density > 0; --i) {
-        const Vertex& v = y.x[static_cast<std::size_t>(i)];
+        const Vertex& v = y.x[i];
         const SurfacePoint &before = point(i - 1), &after = point(i + 1);
         const ScatterValue s =
             scatter(v.point, v.bsdf, Event::finite, direction(v.point, before), direction(v.point, after));
@@ -125,8 +125,7 @@ bool GuidedSubPath::trace(SubPath& light, Rng& rng, Failure& why) const {
         }
         const Vec3 w = sample_direction(light.back(), i + 1, rng);
         if (!retrace_specular_chain(*scene_, light, light.back().point, w, events_, i + 1, next, why)) return false;
-        if (!through_portal(light[static_cast<std::size_t>(i)], light[static_cast<std::size_t>(i) + 1], i + 1))
-            return why = Failure::blocked, false;
+        if (!through_portal(light[i], light[i + 1], i + 1)) return why = Failure::blocked, false;
         i = next;
     }
     return true;
@@ -135,16 +134,14 @@ bool GuidedSubPath::trace(SubPath& light, Rng& rng, Failure& why) const {
 double GuidedSubPath::density(const Path& y) const {
     const int last = vertices() - 1;
     if (last >= y.vertices()) return 0;
-    for (int i = 1; i <= last; ++i) {
-        const auto k = static_cast<std::size_t>(i);
-        if (y.x[k].event != events_.x[k].event || !through_portal(y.x[k - 1], y.x[k], i)) return 0;
-    }
+    for (int i = 1; i <= last; ++i)
+        if (y.x[i].event != events_.x[i].event || !through_portal(y.x[i - 1], y.x[i], i)) return 0;
     double density = path_.patch.pdf(y.x[0].point), by_line = 0;
     for (int i = 0; i < last && density + by_line > 0;) {
         for (int back = 0; back <= most_back_; ++back)
             if (i + 2 + back == crossed_) by_line += probability_of_back(back) * density * cross_density(y, back);
         const int next = next_finite(events_, i, +1);
-        const Vertex &from = y.x[static_cast<std::size_t>(i)], &to = y.x[static_cast<std::size_t>(i) + 1];
+        const Vertex &from = y.x[i], &to = y.x[i + 1];
         if (user_vertex(i + 1).bounce) {
             density *= to.pdf_from_light;
         } else {

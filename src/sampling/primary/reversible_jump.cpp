@@ -7,8 +7,6 @@
 namespace keyhole {
 namespace {
 
-const Vertex& at(const Path& path, int i) { return path.x[static_cast<std::size_t>(i)]; }
-
 /// Ratio of the MIS weights of two techniques of the same path, whose densities have the ratio `densities`.
 double weight_ratio(double densities, MisHeuristic heuristic) {
     switch (heuristic) {
@@ -70,7 +68,7 @@ bool ReversibleJump::set_eye_number(const Path& path, int j, bool used, Rng& rng
         return true;
     }
     const int i = path.vertices() - 1 - j;
-    const auto u = invert_bsdf(at(path, i), leaving_direction(path, i, 1), leaving_direction(path, i, -1), rng);
+    const auto u = invert_bsdf(path.x[i], leaving_direction(path, i, 1), leaving_direction(path, i, -1), rng);
     if (u) edits.set(stream, eye_bsdf(j), *u, used, rng);
     return u.has_value();
 }
@@ -78,7 +76,7 @@ bool ReversibleJump::set_eye_number(const Path& path, int j, bool used, Rng& rng
 /// The numbers with which light vertex j finds vertex j + 1; j = -1: those of the emitter's point.
 bool ReversibleJump::set_light_number(const Path& path, int j, bool used, Rng& rng, Edits& edits) const {
     PrimaryStream& stream = edits.state().light();
-    const SurfacePoint& x0 = at(path, 0).point;
+    const SurfacePoint& x0 = path.x[0].point;
     if (j == -1) {
         const auto u = emitters_->point(x0, rng);
         if (u) edits.set(stream, 0, *u, used, rng);
@@ -91,7 +89,7 @@ bool ReversibleJump::set_light_number(const Path& path, int j, bool used, Rng& r
     }
     // Other emitters ask for fewer numbers.
     if (x0.site != Site::surface) return false;
-    const auto u = invert_bsdf(at(path, j), leaving_direction(path, j, -1), leaving_direction(path, j, 1), rng);
+    const auto u = invert_bsdf(path.x[j], leaving_direction(path, j, -1), leaving_direction(path, j, 1), rng);
     if (u) edits.set(stream, light_bsdf(j), *u, used, rng);
     return u.has_value();
 }

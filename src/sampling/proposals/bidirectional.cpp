@@ -118,8 +118,8 @@ std::optional<Path> Bidirectional::propose(const Path& x, Rng& rng, Failure& why
     const int t = added - s;
 
     SubPath light, eye;
-    for (int i = 0; i <= cut->light; ++i) light.push_back(x.x[static_cast<std::size_t>(i)]);
-    for (int i = n - 1; i >= cut->eye; --i) eye.push_back(x.x[static_cast<std::size_t>(i)]);
+    for (int i = 0; i <= cut->light; ++i) light.push_back(x.x[i]);
+    for (int i = n - 1; i >= cut->eye; --i) eye.push_back(x.x[i]);
     Vec2 image = x.image;
 
     for (int i = 0; i < s; ++i) {
@@ -168,15 +168,14 @@ double Bidirectional::transition_density(const Path& x, const Path& y) const {
     std::array<double, kMaxScatterings + 3> eye_density{};
     for (int s = added; s >= 0; --s) {
         eye_density[static_cast<std::size_t>(s)] = from_eye;
-        if (s > 0) from_eye *= y.x[static_cast<std::size_t>(first + s - 1)].pdf_from_eye;
+        if (s > 0) from_eye *= y.x[first + s - 1].pdf_from_eye;
     }
     double from_light = 1;
     for (int s = 0; s <= most; ++s) {
         const int last = cut.light + s; // last vertex on the light's side of the connection
-        const bool connection =
-            last < 0 || joinable(y.x[static_cast<std::size_t>(last)], y.x[static_cast<std::size_t>(last) + 1]);
+        const bool connection = last < 0 || joinable(y.x[last], y.x[last + 1]);
         if (connection) sum += from_light * eye_density[static_cast<std::size_t>(s)];
-        if (s < most) from_light *= y.x[static_cast<std::size_t>(first + s)].pdf_from_light;
+        if (s < most) from_light *= y.x[first + s].pdf_from_light;
     }
     return chosen / total * insertion_probability(x, cut, added) * sum / (most + 1);
 }

@@ -30,10 +30,9 @@ class CausticPerturbation final : public Proposal<Path> {
     static Starts chains(const Path& x) {
         Starts starts;
         for (int a = 0; a + 3 < x.vertices(); ++a) {
-            if (x.x[static_cast<std::size_t>(a)].specular() || !x.x[static_cast<std::size_t>(a) + 1].specular())
-                continue;
+            if (x.x[a].specular() || !x.x[a + 1].specular()) continue;
             const int b = next_finite(x, a, +1);
-            if (b + 1 < x.vertices() && !x.x[static_cast<std::size_t>(b) + 1].specular()) starts.push_back(a);
+            if (b + 1 < x.vertices() && !x.x[b + 1].specular()) starts.push_back(a);
         }
         return starts;
     }
@@ -52,24 +51,22 @@ class CausticPerturbation final : public Proposal<Path> {
 };
 
 CausticPerturbation::Ray CausticPerturbation::perturbed_ray(const Path& x, int a, Rng& rng) const {
-    const SurfacePoint& start = x.x[static_cast<std::size_t>(a)].point;
+    const SurfacePoint& start = x.x[a].point;
     const Vec3 w = leaving_direction(x, a, +1);
     if (start.site != Site::infinite) return {start, kStep.sample(w, rng)};
     const float radius = scene_.bounding_sphere().radius;
     Ray ray{{}, w};
     ray.origin.site = Site::point;
-    ray.origin.p = x.x[static_cast<std::size_t>(a) + 1].point.p - w * (2 * radius) + kBeamStep.sample(w, radius, rng);
+    ray.origin.p = x.x[a + 1].point.p - w * (2 * radius) + kBeamStep.sample(w, radius, rng);
     return ray;
 }
 
 double CausticPerturbation::ray_density(const Path& x, const Path& y, int a) const {
-    const SurfacePoint &start = y.x[static_cast<std::size_t>(a)].point,
-                       &to = y.x[static_cast<std::size_t>(a) + 1].point;
+    const SurfacePoint &start = y.x[a].point, &to = y.x[a + 1].point;
     const Vec3 w = leaving_direction(x, a, +1);
-    const double density =
-        start.site == Site::infinite
-            ? kBeamStep.density(to.p - x.x[static_cast<std::size_t>(a) + 1].point.p, w, scene_.bounding_sphere().radius)
-            : kStep.density(w, leaving_direction(y, a, +1));
+    const double density = start.site == Site::infinite
+                               ? kBeamStep.density(to.p - x.x[a + 1].point.p, w, scene_.bounding_sphere().radius)
+                               : kStep.density(w, leaving_direction(y, a, +1));
     return solid_angle_to_area(density, start, to);
 }
 
@@ -77,10 +74,10 @@ std::optional<Path> CausticPerturbation::propose(const Path& x, Rng& rng, Failur
     const Starts starts = chains(x);
     const int a = starts[rng.below(static_cast<std::uint32_t>(starts.size()))], b = next_finite(x, a, +1);
     SubPath light, eye;
-    for (int i = 0; i <= a; ++i) light.push_back(x.x[static_cast<std::size_t>(i)]);
+    for (int i = 0; i <= a; ++i) light.push_back(x.x[i]);
     const Ray ray = perturbed_ray(x, a, rng);
     if (!retrace_specular_chain(scene_, light, ray.origin, ray.w, x, a + 1, b, why)) return std::nullopt;
-    for (int i = x.vertices() - 1; i > b; --i) eye.push_back(x.x[static_cast<std::size_t>(i)]);
+    for (int i = x.vertices() - 1; i > b; --i) eye.push_back(x.x[i]);
     return join(scene_, set_, light, eye, x.image, why);
 }
 

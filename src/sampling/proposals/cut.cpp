@@ -6,7 +6,7 @@ namespace keyhole {
 
 bool can_keep_light(const Scene& scene, const Path& x, int i) {
     if (i == 0) return !scene.emitter(x.x[0].point.emitter).is_delta();
-    return !x.x[static_cast<std::size_t>(i)].specular();
+    return !x.x[i].specular();
 }
 
 Cut cut_between(const Scene& scene, const Path& x, const Path& y) {

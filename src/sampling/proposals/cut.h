@@ -20,7 +20,7 @@ struct Cut {
 /// Whether x[i] may be the last vertex that is kept on the light's side.
 bool can_keep_light(const Scene& scene, const Path& x, int i);
 /// Whether x[i] may be the first vertex that is kept on the eye's side.
-inline bool can_keep_eye(const Path& x, int i) { return !x.x[static_cast<std::size_t>(i)].specular(); }
+inline bool can_keep_eye(const Path& x, int i) { return !x.x[i].specular(); }
 
 /// The cut by which y came from x: what the two have in common, but for ends that are never kept. The new vertices of y
 /// are what a transition density has to be a density of.

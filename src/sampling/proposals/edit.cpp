@@ -13,7 +13,7 @@ std::optional<Vertex> first_vertex(const Scene& scene, const Vertex& end, From f
 
 /// Whether x[pivot], now at `from`, is left for `to` just as the old path leaves it towards x[pivot + step].
 bool rounded_away(const Path& x, int pivot, int step, const SurfacePoint& from, const SurfacePoint& to) {
-    if (from.site == Site::infinite) return to.p == x.x[static_cast<std::size_t>(pivot + step)].point.p;
+    if (from.site == Site::infinite) return to.p == x.x[pivot + step].point.p;
     return direction(from, to) == leaving_direction(x, pivot, step);
 }
 
@@ -70,7 +70,7 @@ bool retrace_specular_chain(const Scene& scene, SubPath& walk, SurfacePoint orig
             return why = Failure::unchanged, false;
         walk.push_back(*hit);
         Vertex& v = walk.back();
-        v.event = x.x[static_cast<std::size_t>(i)].event;
+        v.event = x.x[i].event;
         if (i == last) {
             v.event = Event::finite;
             return i == 0 || v.bsdf.traits().finite || (why = Failure::signature, false);
@@ -86,8 +86,8 @@ double specular_chain_density(const Path& y, double first_density, int first, in
     const int step = first <= last ? 1 : -1;
     double density = first_density;
     for (int i = first; i != last; i += step) {
-        const Vertex& specular = y.x[static_cast<std::size_t>(i)];
-        const Vertex& next = y.x[static_cast<std::size_t>(i + step)];
+        const Vertex& specular = y.x[i];
+        const Vertex& next = y.x[i + step];
         const auto lobe = specular.bsdf.delta(leaving_direction(y, i, -step), specular.event);
         if (!lobe || !(lobe->probability > 0)) return 0;
         density *= (step > 0 ? next.pdf_from_light : next.pdf_from_eye) / lobe->probability;
@@ -97,13 +97,11 @@ double specular_chain_density(const Path& y, double first_density, int first, in
 
 int next_finite(const Path& path, int i, int step) {
     do i += step;
-    while (path.x[static_cast<std::size_t>(i)].specular());
+    while (path.x[i].specular());
     return i;
 }
 
-Vec3 leaving_direction(const Path& path, int i, int step) {
-    return direction(path.x[static_cast<std::size_t>(i)].point, path.x[static_cast<std::size_t>(i + step)].point);
-}
+Vec3 leaving_direction(const Path& path, int i, int step) { return direction(path.x[i].point, path.x[i + step].point); }
 
 bool same_events(const Path& x, const Path& y) {
     if (x.x.size() != y.x.size()) return false;

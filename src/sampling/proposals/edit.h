@@ -26,9 +26,7 @@ inline int common_prefix(const Path& x, const Path& y) {
 inline int common_suffix(const Path& x, const Path& y, int prefix) {
     const int most = std::min(x.vertices(), y.vertices()) - prefix;
     int i = 0;
-    while (i < most && same_place(x.x[x.x.size() - 1 - static_cast<std::size_t>(i)],
-                                  y.x[y.x.size() - 1 - static_cast<std::size_t>(i)]))
-        ++i;
+    while (i < most && same_place(x.x[x.vertices() - 1 - i], y.x[y.vertices() - 1 - i])) ++i;
     return i;
 }
 
@@ -39,7 +37,7 @@ inline bool joinable(const Vertex& a, const Vertex& b) { return !a.specular() &&
 /// that can be replaced; 0 otherwise.
 inline int lens_subpath_start(const Path& path) {
     const int d1 = nth_finite_from_eye(path, 1);
-    return d1 > 0 && !path.x[static_cast<std::size_t>(d1) - 1].specular() ? d1 : 0;
+    return d1 > 0 && !path.x[d1 - 1].specular() ? d1 : 0;
 }
 
 /// Adds the vertex that `walk` meets next, sampling the event at its last vertex; from the eye alone along `image`.

@@ -7,7 +7,7 @@ Pieces pieces_from_eye(const Path& x, int pivot) {
     for (;;) {
         const int last = next_finite(x, pivot, -1);
         pieces.push_back({pivot, last});
-        if (last == 0 || !x.x[static_cast<std::size_t>(last) - 1].specular()) return pieces;
+        if (last == 0 || !x.x[last - 1].specular()) return pieces;
         pivot = last;
     }
 }
@@ -25,7 +25,7 @@ std::optional<Path> perturb_from_eye(const Scene& scene, PathSet set, const Path
     const int last = pieces.back().last;
     if (last == 0 && !eye.back().point.is_emitter()) return why = Failure::no_light, std::nullopt;
     SubPath light;
-    for (int i = 0; i < last; ++i) light.push_back(x.x[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < last; ++i) light.push_back(x.x[i]);
     return join(scene, set, light, eye, edge.image, why);
 }
 
@@ -35,8 +35,8 @@ double eye_perturbation_density(const Path& x, const Path& y, const Pieces& piec
     for (std::size_t i = 1; i < pieces.size(); ++i) {
         const auto [pivot, last] = pieces[i];
         const double w = step.density(leaving_direction(x, pivot, -1), leaving_direction(y, pivot, -1));
-        const auto p = static_cast<std::size_t>(pivot);
-        density *= specular_chain_density(y, solid_angle_to_area(w, y.x[p].point, y.x[p - 1].point), pivot - 1, last);
+        density *=
+            specular_chain_density(y, solid_angle_to_area(w, y.x[pivot].point, y.x[pivot - 1].point), pivot - 1, last);
     }
     return density;
 }

@@ -25,7 +25,7 @@ class EyePerturbation final : public Proposal<Path> {
     }
     double suitability(const Path& x) const override {
         const int d1 = nth_finite_from_eye(x, 1);
-        const bool joinable_at_d1 = d1 > 0 && !x.x[static_cast<std::size_t>(d1) - 1].specular();
+        const bool joinable_at_d1 = d1 > 0 && !x.x[d1 - 1].specular();
         return d1 > 0 && joinable_at_d1 == (chains_ == Chains::one) ? 1 : 0;
     }
 

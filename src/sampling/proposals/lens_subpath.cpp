@@ -62,7 +62,7 @@ bool LensSubpath::trace_eye(SubPath& eye, const Vec2& image, int room, Rng& rng,
 std::optional<Path> LensSubpath::propose(const Path& x, Rng& rng, Failure& why) const {
     const int d1 = lens_subpath_start(x);
     SubPath light, eye;
-    for (int i = 0; i < d1; ++i) light.push_back(x.x[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < d1; ++i) light.push_back(x.x[i]);
     const auto [u, v] = rng.next_point();
     const Vec2 image(static_cast<float>(u), static_cast<float>(v));
     if (!trace_eye(eye, image, max_vertices_ - d1, rng, why)) return std::nullopt;
@@ -73,10 +73,10 @@ double LensSubpath::transition_density(const Path& x, const Path& y) const {
     const int d1 = lens_subpath_start(y);
     if (d1 == 0 || d1 != lens_subpath_start(x)) return 0;
     double density = 1;
-    for (std::size_t i = static_cast<std::size_t>(d1); i < y.x.size(); ++i) density *= y.x[i].pdf_from_eye;
+    for (int i = d1; i < y.vertices(); ++i) density *= y.x[i].pdf_from_eye;
     // At d1 the walk also had to choose to stop.
-    const Vertex& last = y.x[static_cast<std::size_t>(d1)];
-    return density * finite_probability(last, direction(last.point, y.x[static_cast<std::size_t>(d1) + 1].point));
+    const Vertex& last = y.x[d1];
+    return density * finite_probability(last, direction(last.point, y.x[d1 + 1].point));
 }
 
 } // namespace

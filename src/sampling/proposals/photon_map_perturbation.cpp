@@ -19,7 +19,7 @@ class PhotonMapPerturbation final : public Proposal<Path> {
     std::optional<Path> propose(const Path& x, Rng& rng, Failure& why) const override {
         const int d1 = nth_finite_from_eye(x, 1);
         SubPath eye;
-        for (int i = x.vertices() - 1; i >= d1; --i) eye.push_back(x.x[static_cast<std::size_t>(i)]);
+        for (int i = x.vertices() - 1; i >= d1; --i) eye.push_back(x.x[i]);
         const Vec3 w = kNeighbourStep.sample(leaving_direction(x, d1, -1), rng);
         return perturb_from_eye(scene_, set_, x, pieces_from_eye(x, d1), eye, {w, x.image}, kNeighbourStep, rng, why);
     }
@@ -27,9 +27,8 @@ class PhotonMapPerturbation final : public Proposal<Path> {
     double transition_density(const Path& x, const Path& y) const override {
         if (!same_events(x, y)) return 0;
         const int d1 = nth_finite_from_eye(x, 1);
-        const auto i = static_cast<std::size_t>(d1);
         const double w = kNeighbourStep.density(leaving_direction(x, d1, -1), leaving_direction(y, d1, -1));
-        const double first = solid_angle_to_area(w, y.x[i].point, y.x[i - 1].point);
+        const double first = solid_angle_to_area(w, y.x[d1].point, y.x[d1 - 1].point);
         return eye_perturbation_density(x, y, pieces_from_eye(x, d1), first, kNeighbourStep);
     }
 

@@ -34,7 +34,7 @@ class UserPathProposal final : public Proposal<Path> {
     /// replaced as are traced, so that the length of the path stays.
     double join_weight(const Path& x, int m) const {
         const bool new_eye = m == x.vertices();
-        if (new_eye ? !guide_.user_path().seen : x.x[static_cast<std::size_t>(m)].specular()) return 0;
+        if (new_eye ? !guide_.user_path().seen : x.x[m].specular()) return 0;
         return 1.0 / (1 + std::abs((new_eye ? m - 1 : m) - guide_.vertices()));
     }
     template <class Visit> void for_each_join(const Path& x, Visit&& visit) const {
@@ -70,7 +70,7 @@ std::optional<Path> UserPathProposal::propose(const Path& x, Rng& rng, Failure& 
     const bool new_eye = kept == x.vertices();
     SubPath light, eye;
     if (new_eye) eye.push_back(sample_eye(scene_, rng));
-    for (int i = x.vertices() - 1; i >= kept; --i) eye.push_back(x.x[static_cast<std::size_t>(i)]);
+    for (int i = x.vertices() - 1; i >= kept; --i) eye.push_back(x.x[i]);
     if (guide_.vertices() + static_cast<int>(eye.size()) > max_vertices_) return why = Failure::length, std::nullopt;
     if (!guide_.trace(light, rng, why)) return std::nullopt;
     auto y = join(scene_, set_, light, eye, x.image, why);

@@ -142,7 +142,7 @@ void try_chains(const SamplerContext& c, const EmissionGuide& guide, const Light
                 const StoragePoint at = path.storage;
                 if (at.kind == PhotonKind::none) return;
                 const auto visible = weights.visible(c.scene, at.kind, path, at.vertex);
-                const Vec3& p = path.x[static_cast<std::size_t>(at.vertex)].point.p;
+                const Vec3& p = path.x[at.vertex].point.p;
                 trial.chains[k].push_back({part_of_scene(c.scene, p), visible.known ? visible.value : 0,
                                            trial.brightness * weight / kStepsOfChain});
             });

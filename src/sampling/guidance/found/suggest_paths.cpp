@@ -23,7 +23,7 @@ struct Candidate {
 int light_vertices(const Path& path) {
     const int d1 = nth_finite_from_eye(path, 1);
     if (d1 == 0) return 0;
-    const int n = path.x[static_cast<std::size_t>(d1) - 1].specular() ? d1 + 1 : d1;
+    const int n = path.x[d1 - 1].specular() ? d1 + 1 : d1;
     return n >= 2 ? n : 0;
 }
 
@@ -46,9 +46,8 @@ std::vector<Candidate> candidates(const Scene& scene, const std::vector<Path>& p
 bool alike(const Candidate& a, const Candidate& b, double radius) {
     if (a.vertices != b.vertices) return false;
     for (int i = 0; i < a.vertices; ++i) {
-        const auto k = static_cast<std::size_t>(i);
-        if (a.path.x[k].event != b.path.x[k].event && i + 1 < a.vertices) return false;
-        if ((a.path.x[k].point.p - b.path.x[k].point.p).length() > radius) return false;
+        if (a.path.x[i].event != b.path.x[i].event && i + 1 < a.vertices) return false;
+        if ((a.path.x[i].point.p - b.path.x[i].point.p).length() > radius) return false;
     }
     return true;
 }
@@ -60,8 +59,8 @@ double cone_of(const Candidate& middle, const std::vector<const Candidate*>& clu
     if (cluster.size() < 3) return std::clamp(kDefaultBeta, least, most);
     double sum = 0, weights = 0;
     for (const Candidate* c : cluster) {
-        const Vec3& from = c->path.x[static_cast<std::size_t>(i)].point.p;
-        const Vec3 axis = (middle.path.x[static_cast<std::size_t>(i) + 1].point.p - from).normalized();
+        const Vec3& from = c->path.x[i].point.p;
+        const Vec3 axis = (middle.path.x[i + 1].point.p - from).normalized();
         const double chord = (leaving_direction(c->path, i, +1) - axis).length();
         sum += c->weight * chord * chord;
         weights += c->weight;
@@ -73,8 +72,7 @@ UserPathSpec spec_of(const Candidate& middle, const std::vector<const Candidate*
     UserPathSpec spec;
     spec.weight = 0;
     for (const Candidate* c : cluster) spec.weight += c->weight;
-    for (int i = 0; i < middle.vertices; ++i)
-        spec.points.push_back({Imath::V3d(middle.path.x[static_cast<std::size_t>(i)].point.p)});
+    for (int i = 0; i < middle.vertices; ++i) spec.points.push_back({Imath::V3d(middle.path.x[i].point.p)});
     for (int i = 0; i + 1 < middle.vertices; ++i) spec.beta.push_back(cone_of(middle, cluster, i));
     return spec;
 }
