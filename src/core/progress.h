@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <concepts>
 #include <cstdint>
 #include <ctime>
 #include <limits>
@@ -128,12 +129,27 @@ struct RunContext {
     void begin(std::string_view stage, std::uint64_t total, std::string_view unit) const {
         if (progress != nullptr) progress->begin(stage, total, unit);
     }
-    void advance(std::uint64_t units) const {
-        if (progress != nullptr) progress->advance(units);
+    void advance(std::integral auto units) const {
+        if (progress != nullptr) progress->advance(static_cast<std::uint64_t>(units));
     }
     void end() const {
         if (progress != nullptr) progress->end();
     }
+};
+
+/// A stage that `context` is told of until the end of its scope, however that is left.
+class ProgressStage {
+  public:
+    ProgressStage(const RunContext& context, std::string_view name, std::integral auto total, std::string_view unit)
+        : context_(context) {
+        context.begin(name, static_cast<std::uint64_t>(total), unit);
+    }
+    ~ProgressStage() { context_.end(); }
+    ProgressStage(const ProgressStage&) = delete;
+    ProgressStage& operator=(const ProgressStage&) = delete;
+
+  private:
+    const RunContext& context_;
 };
 
 } // namespace keyhole

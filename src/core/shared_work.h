@@ -42,6 +42,16 @@ template <class Body> void parallel_blocks(std::int64_t n, std::int64_t block, c
     });
 }
 
+/// What make(range) gives of blocks of `size` of the items, in their order; made on many threads. @throws Interrupted
+template <class Make> auto make_blocks(Range items, std::int64_t size, const RunContext& context, const Make& make) {
+    std::vector<decltype(make(items))> blocks(static_cast<std::size_t>((items.size() + size - 1) / size));
+    parallel_for(static_cast<std::int64_t>(blocks.size()), context, [&](std::int64_t b) {
+        const std::int64_t begin = items.begin + b * size;
+        blocks[static_cast<std::size_t>(b)] = make(Range{begin, std::min(items.end, begin + size)});
+    });
+    return blocks;
+}
+
 /// The part of `n` items that this process does: all of them where it is alone.
 inline Range own_part(std::int64_t n, const RunContext& context) {
     if (context.communicator == nullptr) return {0, n};
@@ -84,7 +94,7 @@ template <class T, class Body> void shared_blocks(std::vector<T>& items, const R
     parallel_for(blocks_of(own), context, [&](std::int64_t b) {
         const Range block{own.begin + b * kBlockOfItems, std::min(own.end, own.begin + (b + 1) * kBlockOfItems)};
         for (std::int64_t i = block.begin; i < block.end; ++i) body(b, i);
-        context.advance(static_cast<std::uint64_t>(block.size()));
+        context.advance(block.size());
     });
     exchange_parts(items, context);
 }
@@ -100,7 +110,7 @@ void leading_blocks(std::int64_t count, std::int64_t size, const RunContext& con
         if (context.stopped()) return;
         const Range range{b * size, std::min(count, (b + 1) * size)};
         blocks[static_cast<std::size_t>(b)].emplace(make(range));
-        context.advance(static_cast<std::uint64_t>(range.size()));
+        context.advance(range.size());
     });
     for (auto& block : blocks) {
         if (!block) break;

@@ -80,11 +80,10 @@ bool draw_chains(const Scene& scene, const Settings& settings, const UserPaths& 
     constexpr std::int64_t kRound = 64;
     const std::int64_t per_chain =
         std::max<std::int64_t>(1, settings.mutations / static_cast<std::int64_t>(start.seeds.size()));
-    context.begin("chains", static_cast<std::uint64_t>(per_chain * chains.size()), "mutations");
+    const ProgressStage progress(context, "chains", per_chain * chains.size(), "mutations");
     const auto draw = [&](std::int64_t, const Path& path, double weight) { splat(splats, window, path, weight); };
     ChainRounds::of_length(per_chain, std::clamp<std::int64_t>(per_chain / 32, 1, kRound))
         .run(context, [&](std::int64_t n) { chains.advance(n, context, draw); });
-    context.end();
 
     const bool whole = chains.steps() == per_chain;
     const ChainSummary summary = chains.summary();

@@ -176,7 +176,7 @@ Emission trace_and_store(const Scene& scene, const EmissionGuide& guide, const E
     const std::int64_t round =
         std::clamp<std::int64_t>(static_cast<std::int64_t>(options.photons) / 32 / kPathsOfBlock, 4, 512) *
         kPathsOfBlock;
-    context.begin("photons", static_cast<std::uint64_t>(options.paths), "light paths");
+    const ProgressStage progress(context, "photons", options.paths, "light paths");
     while (out.paths < options.paths && !(context.stopped() && out.paths > 0)) {
         const Range range{out.paths, std::min(options.paths, out.paths + round)};
         const PhotonWeighing weighing{guide, learnt.weights.unknown_scale(),
@@ -191,9 +191,8 @@ Emission trace_and_store(const Scene& scene, const EmissionGuide& guide, const E
             learnt.learn(b);
         }
         out.paths = range.end;
-        context.advance(static_cast<std::uint64_t>(range.size()));
+        context.advance(range.size());
     }
-    context.end();
     out.arrivals = learnt.arrivals;
     if (learnt.weights.known() > 0) out.cut = learnt.cut / learnt.weights.known();
     return out;

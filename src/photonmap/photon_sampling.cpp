@@ -59,7 +59,7 @@ PhotonChains run_photon_chains(const ChainSeeds& seeds, const Mixture<Path>& mix
     const std::int64_t per_chain = steps_of_chain(seeds, options);
     const auto photons = static_cast<std::int64_t>(options.global_photons + options.caustic_photons);
     const std::int64_t round = round_length(photons, chains);
-    context.begin("photons", static_cast<std::uint64_t>(per_chain * own.size()), "mutations");
+    const ProgressStage progress(context, "photons", per_chain * own.size(), "mutations");
     ChainRounds::of_length(per_chain, round).run(context, [&](std::int64_t n) {
         for (PathDepositor& depositor : depositors) depositor.set_thresholds(stores.thresholds(depositor.role()));
         set->advance(n, context, [&](std::int64_t c, const Path& path, double weight) {
@@ -67,7 +67,6 @@ PhotonChains run_photon_chains(const ChainSeeds& seeds, const Mixture<Path>& mix
         });
         stores.absorb(buffers, role_of, context);
     });
-    context.end();
     for (PathDepositor& depositor : depositors) depositor.flush();
     stores.absorb(buffers, role_of, context);
 

@@ -111,11 +111,9 @@ struct Trial {
 Trial try_technique(const Scene& scene, const StageOneSettings& settings, Technique technique,
                     const RunContext& context) {
     const std::int64_t blocks = std::clamp<std::int64_t>(settings.samples / kBlock / 2, 1, 16);
-    std::vector<RunningStats> parts(static_cast<std::size_t>(blocks));
     const std::uint64_t rays = rays_traced();
-    parallel_for(blocks, context, [&](std::int64_t b) {
-        parts[static_cast<std::size_t>(b)] =
-            run_block(scene, settings, technique, {kTrial + b * kBlock, kTrial + (b + 1) * kBlock}).brightness;
+    const auto parts = make_blocks({kTrial, kTrial + blocks * kBlock}, kBlock, context, [&](Range range) {
+        return run_block(scene, settings, technique, range).brightness;
     });
     Trial trial{{}, static_cast<double>(rays_traced() - rays)};
     for (const RunningStats& part : parts) trial.brightness.merge(part);
@@ -183,7 +181,7 @@ StageOne run_stage_one(const Scene& scene, const StageOneSettings& settings, con
         if (stage.technique == Technique::path) stage.wanted = enough_samples(settings, path.brightness);
     }
     const Technique technique = stage.technique;
-    context.begin("brightness", static_cast<std::uint64_t>(stage.wanted), "paths");
+    const ProgressStage progress(context, "brightness", stage.wanted, "paths");
     leading_blocks(
         stage.wanted, kBlock, context, [&](Range range) { return run_block(scene, settings, technique, range); },
         [&](const Block& block) {
@@ -191,7 +189,6 @@ StageOne run_stage_one(const Scene& scene, const StageOneSettings& settings, con
             stage.caustic.merge(block.caustic);
             stage.groups.insert(stage.groups.end(), block.groups.begin(), block.groups.end());
         });
-    context.end();
     stage.samples = static_cast<std::int64_t>(stage.brightness.count());
     return stage;
 }

@@ -84,7 +84,7 @@ bool PixelSampling::take_round(Film& film, std::int64_t round, const RunContext&
         for (int y = y0; y < y1; ++y)
             for (int x = x0; x < x1; ++x)
                 sample_pixel(film, x, y, round, tiles[static_cast<std::size_t>(tile)], sample);
-        context.advance(static_cast<std::uint64_t>((x1 - x0) * (y1 - y0)));
+        context.advance((x1 - x0) * (y1 - y0));
     });
     samples_ = 0;
     for (const Tile& t : tiles) {
@@ -117,21 +117,12 @@ void PixelSampling::sample_pixel(Film& film, int x, int y, std::int64_t round, T
     }
 }
 
-/// A stage of `rounds` rounds. Begins in its constructor, ends at the end of its scope.
-class SamplingStage {
-  public:
+/// A stage of `rounds` rounds.
+struct SamplingStage : ProgressStage {
     SamplingStage(const Scene& scene, std::int64_t rounds, std::string_view name, const RunContext& context)
-        : context_(context) {
-        const ImageWindow& window = scene.camera().window();
-        const auto pixels = static_cast<std::uint64_t>(window.width) * static_cast<std::uint64_t>(window.height);
-        context.begin(name, pixels * static_cast<std::uint64_t>(rounds), "samples");
-    }
-    ~SamplingStage() { context_.end(); }
-    SamplingStage(const SamplingStage&) = delete;
-    SamplingStage& operator=(const SamplingStage&) = delete;
-
-  private:
-    const RunContext& context_;
+        : ProgressStage(context, name,
+                        static_cast<std::uint64_t>(scene.camera().window().size()) * static_cast<std::uint64_t>(rounds),
+                        "samples") {}
 };
 
 } // namespace keyhole

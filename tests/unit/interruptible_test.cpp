@@ -32,6 +32,28 @@ TEST(Interruptible, LoopsEndWhereTheyAreTold) {
     EXPECT_EQ(done, 7);
 }
 
+class ToldStages final : public Progress {
+  public:
+    void begin(std::string_view /*stage*/, std::uint64_t /*total*/, std::string_view /*unit*/) override { ++open; }
+    void advance(std::uint64_t /*units*/) override {}
+    void end() override { --open; }
+
+    int open = 0;
+};
+
+TEST(Interruptible, StagesEndWhereverTheyAreLeft) {
+    ToldStages told;
+    RunContext context;
+    context.progress = &told;
+    const auto leave = [&] {
+        const ProgressStage stage(context, "stage", 1, "units");
+        EXPECT_EQ(told.open, 1);
+        throw Interrupted();
+    };
+    EXPECT_THROW(leave(), Interrupted);
+    EXPECT_EQ(told.open, 0);
+}
+
 class StoppedAtOnce : public testing::TestWithParam<const char*> {};
 
 TEST_P(StoppedAtOnce, RendersLeaveALook) {

@@ -38,7 +38,7 @@ Importons trace_importance(const Scene& scene, const ImportanceTracing& options,
     // vectors to grow then.
     all.second.reserve(static_cast<std::size_t>(options.samples));
     if (options.at_d1) all.first.reserve(static_cast<std::size_t>(options.samples));
-    context.begin("importance", static_cast<std::uint64_t>(options.samples), "paths");
+    const ProgressStage progress(context, "importance", options.samples, "paths");
     for (std::int64_t begin = 0; begin < options.samples; begin += kBlock * kBlocks) {
         shared_for(parts, context, [&](std::int64_t b) {
             check_stop(context);
@@ -53,9 +53,8 @@ Importons trace_importance(const Scene& scene, const ImportanceTracing& options,
             append(part.first, all.first);
             append(part.second, all.second);
         }
-        context.advance(static_cast<std::uint64_t>(std::min(kBlock * kBlocks, options.samples - begin)));
+        context.advance(std::min(kBlock * kBlocks, options.samples - begin));
     }
-    context.end();
     return all;
 }
 

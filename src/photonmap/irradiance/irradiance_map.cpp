@@ -46,7 +46,7 @@ IrradianceMap::IrradianceMap(const PhotonMap& pilots, const PhotonMap& main_phot
     if (options.by_length) shares_.resize(estimates_.size());
     const Range own = own_part(static_cast<std::int64_t>(estimates_.size()), context);
     std::vector<Count> used(static_cast<std::size_t>(blocks_of(own)));
-    context.begin("irradiance", static_cast<std::uint64_t>(own.size()), "estimates");
+    const ProgressStage progress(context, "irradiance", own.size(), "estimates");
     shared_blocks(estimates_, context, [&](std::int64_t b, std::int64_t i) {
         used[static_cast<std::size_t>(b)] += estimate(static_cast<std::uint32_t>(i), main_photons, options);
     });
@@ -55,7 +55,6 @@ IrradianceMap::IrradianceMap(const PhotonMap& pilots, const PhotonMap& main_phot
         grid_.emplace(
             options.scene->shapes(), std::max(options.grid_bytes, kGridBytesPerPlace * estimates_.size()),
             [this](const Vec3& middle, const Vec3& normal) { return place_for_cell(middle, normal); }, context);
-    context.end();
     if (own.size() == 0) return;
     for (const Count& u : used) mean_ += u;
     mean_.photons /= static_cast<double>(own.size());

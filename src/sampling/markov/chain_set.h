@@ -81,7 +81,7 @@ class ChainSet {
                     if (tally_) tally_->add(c, path.image, weight);
                     deposit(c, path, weight);
                 });
-            context.advance(static_cast<std::uint64_t>(steps));
+            context.advance(steps);
         });
         monitor_.end_round(steps);
         steps_ += steps;

@@ -97,7 +97,7 @@ void PrimaryChains::advance(const PrimaryKernel& kernel, std::int64_t steps, con
         space.drop_candidate();
         space.leave(chain.state.sample());
         chain.count_failed_large_steps(0);
-        context.advance(static_cast<std::uint64_t>(steps));
+        context.advance(steps);
     });
     for (const auto& chain : chains_) {
         counts_[chain->stratum] += chain->counts;

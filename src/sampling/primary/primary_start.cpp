@@ -61,12 +61,11 @@ PrimaryStart::Block PrimaryStart::run_samples(std::size_t strata, const PrimaryS
     };
     Block all;
     all.brightness.resize(strata);
-    context.begin("brightness", static_cast<std::uint64_t>(options.samples), "samples");
+    const ProgressStage progress(context, "brightness", options.samples, "samples");
     leading_blocks(options.samples, kBlock, context, run_block, [&](const Block& block) {
         for (std::size_t k = 0; k < strata; ++k) all.brightness[k].merge(block.brightness[k]);
         all.finds.insert(all.finds.end(), block.finds.begin(), block.finds.end());
     });
-    context.end();
     return all;
 }
 

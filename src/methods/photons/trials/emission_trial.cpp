@@ -64,10 +64,9 @@ EmissionTrial try_emission(const Scene& scene, const EmissionGuide& guide, const
                            const LearnedEmission& learned, std::uint64_t seed, const RunContext& context) {
     const PhotonWeighing weighing{guide, 0};
     const VisibleSums none{.hidden = std::vector<double>(scene.emitters().size())};
-    std::vector<VisibleSums> parts(kPathsOfTrial / kPathsOfPart, none);
-    parallel_for(static_cast<std::int64_t>(parts.size()), context, [&](std::int64_t b) {
-        check_stop(context);
-        for (std::int64_t i = b * kPathsOfPart; i < (b + 1) * kPathsOfPart; ++i) {
+    const auto trace = [&](Range paths) {
+        VisibleSums sums = none;
+        for (std::int64_t i = paths.begin; i < paths.end; ++i) {
             Rng rng(seed, StreamPurpose::emission_trial, static_cast<std::uint64_t>(i));
             const bool by_power = i % 2 == 0;
             const auto light = by_power ? emit_light(scene, rng) : learned.sample(rng);
@@ -75,9 +74,11 @@ EmissionTrial try_emission(const Scene& scene, const EmissionGuide& guide, const
             VisibleLight visible{weighing, rule};
             trace_light_path(scene, *light, rule.max_scatterings, rng, visible);
             const double ratio = learned.density_ratio(light->x0, light->ray.w, light->ray.origin.p);
-            parts[static_cast<std::size_t>(b)].add(visible, light->x0.emitter, ratio, by_power);
+            sums.add(visible, light->x0.emitter, ratio, by_power);
         }
-    });
+        return sums;
+    };
+    const std::vector<VisibleSums> parts = make_blocks({0, kPathsOfTrial}, kPathsOfPart, context, trace);
     // Without the part that found most: one path in thousands may have all of a second moment.
     const auto most = std::ranges::max_element(parts, {}, &VisibleSums::learned);
     VisibleSums all = none;

@@ -79,16 +79,17 @@ struct MomentSink {
 double gain_by_guides(const Scene& scene, const LightGuides& guides, const std::vector<TransportEnd>& eye,
                       std::uint64_t seed, const RunContext& context, const LearnedEmission* learned) {
     const Cells cells(scene);
-    std::vector<MomentsByCell> parts(kLightPaths / kPathsOfPart);
-    parallel_for(static_cast<std::int64_t>(parts.size()), context, [&](std::int64_t part) {
-        MomentSink sink{cells, parts[static_cast<std::size_t>(part)], learned};
-        for (std::int64_t i = part * kPathsOfPart; i < (part + 1) * kPathsOfPart; ++i) {
+    const auto trace = [&](Range part) {
+        MomentsByCell moments;
+        MomentSink sink{cells, moments, learned};
+        for (std::int64_t i = part.begin; i < part.end; ++i) {
             Rng rng(seed, StreamPurpose::guidance_gain, static_cast<std::uint64_t>(i));
             trace_guided_light_path(scene, {&guides, learned}, kMostScatterings, rng, sink);
         }
-    });
+        return moments;
+    };
     MomentsByCell all;
-    for (const MomentsByCell& part : parts)
+    for (const MomentsByCell& part : make_blocks({0, kLightPaths}, kPathsOfPart, context, trace))
         for (const auto& [cell, moments] : part) all[cell] += moments;
     std::map<Cells::Cell, double> importance;
     for (const TransportEnd& end : eye) importance[cells(end.point.p, end.n)] += end.weight;

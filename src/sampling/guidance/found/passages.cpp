@@ -100,13 +100,9 @@ std::vector<Passage> find_passages(const Scene& scene, const TransportEnds& ends
     const double until = context.seconds_left() - search.seconds;
     for (std::int64_t begin = 0; begin < search.pairs && found.size() < search.enough;) {
         const std::int64_t end = std::min(search.pairs, begin + kRound);
-        std::vector<Tried> parts(static_cast<std::size_t>((end - begin + kPairsOfBlock - 1) / kPairsOfBlock));
-        parallel_for(static_cast<std::int64_t>(parts.size()), context, [&](std::int64_t b) {
-            const std::int64_t first = begin + b * kPairsOfBlock;
-            parts[static_cast<std::size_t>(b)] =
-                try_pairs(scene, light, eye, {first, std::min(end, first + kPairsOfBlock)}, search.seed);
-        });
-        for (Tried& part : parts) std::ranges::move(part.passages, std::back_inserter(found));
+        const auto try_block = [&](Range pairs) { return try_pairs(scene, light, eye, pairs, search.seed); };
+        for (Tried& block : make_blocks({begin, end}, kPairsOfBlock, context, try_block))
+            std::ranges::move(block.passages, std::back_inserter(found));
         if (std::isfinite(until) && context.seconds_left() < until) break;
         begin = end;
     }

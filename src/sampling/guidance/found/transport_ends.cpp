@@ -1,6 +1,5 @@
 #include "sampling/guidance/found/transport_ends.h"
 
-#include "core/parallel.h"
 #include "core/shared_work.h"
 #include "sampling/paths/image_lattice.h"
 #include "sampling/paths/random_walk.h"
@@ -51,28 +50,23 @@ void trace_from_eye(const Scene& scene, const Vec2& image, Rng& rng, std::vector
     random_walk(scene, From::eye, eye_ray(scene, eye.point, image), kMostVertices, rng, walk);
 }
 
-void append(std::vector<TransportEnd>& to, const std::vector<TransportEnd>& from) {
-    to.insert(to.end(), from.begin(), from.end());
-}
-
 } // namespace
 
 TransportEnds trace_transport_ends(const Scene& scene, std::int64_t paths, std::uint64_t seed,
                                    const RunContext& context) {
-    const std::int64_t blocks = (paths + kPathsOfBlock - 1) / kPathsOfBlock;
-    std::vector<TransportEnds> parts(static_cast<std::size_t>(blocks));
-    parallel_for(blocks, context, [&](std::int64_t b) {
-        TransportEnds& part = parts[static_cast<std::size_t>(b)];
-        for (std::int64_t i = b * kPathsOfBlock; i < std::min(paths, (b + 1) * kPathsOfBlock); ++i) {
+    const auto trace = [&](Range block) {
+        TransportEnds ends;
+        for (std::int64_t i = block.begin; i < block.end; ++i) {
             Rng rng(seed, StreamPurpose::openings, static_cast<std::uint64_t>(i));
-            trace_from_light(scene, rng, part.light);
-            trace_from_eye(scene, lattice_image_point(seed, StreamPurpose::openings, i), rng, part.eye);
+            trace_from_light(scene, rng, ends.light);
+            trace_from_eye(scene, lattice_image_point(seed, StreamPurpose::openings, i), rng, ends.eye);
         }
-    });
+        return ends;
+    };
     TransportEnds all;
-    for (const TransportEnds& part : parts) {
-        append(all.light, part.light);
-        append(all.eye, part.eye);
+    for (const TransportEnds& ends : make_blocks({0, paths}, kPathsOfBlock, context, trace)) {
+        all.light.insert(all.light.end(), ends.light.begin(), ends.light.end());
+        all.eye.insert(all.eye.end(), ends.eye.begin(), ends.eye.end());
     }
     return all;
 }

@@ -77,20 +77,20 @@ struct LightQuestions : WalkHooks {
 Round look(const Scene& scene, const LearnedDirectLight* sampler, const DirectLightLearning& learning, Range paths,
            const RunContext& context) {
     constexpr std::int64_t kBlock = 64;
-    std::vector<Round> parts(static_cast<std::size_t>((paths.size() + kBlock - 1) / kBlock));
-    parallel_for(static_cast<std::int64_t>(parts.size()), context, [&](std::int64_t b) {
-        const std::int64_t begin = paths.begin + b * kBlock, end = std::min(paths.end, begin + kBlock);
-        for (std::int64_t i = begin; i < end; ++i) {
+    const auto look_along = [&](Range block) {
+        Round found;
+        for (std::int64_t i = block.begin; i < block.end; ++i) {
             Rng rng(learning.seed, StreamPurpose::learned_direct_light, static_cast<std::uint64_t>(i));
-            LightQuestions questions{{}, scene, sampler, rng, parts[static_cast<std::size_t>(b)]};
+            LightQuestions questions{{}, scene, sampler, rng, found};
             const Vertex eye = sample_eye(scene, rng);
             const Vec2 image = lattice_image_point(learning.seed, StreamPurpose::learned_direct_light, i);
             random_walk(scene, From::eye, eye_ray(scene, eye.point, image), learning.max_scatterings, rng, questions);
         }
-        context.advance(static_cast<std::uint64_t>(end - begin));
-    });
+        context.advance(block.size());
+        return found;
+    };
     Round all;
-    for (const Round& part : parts) {
+    for (const Round& part : make_blocks(paths, kBlock, context, look_along)) {
         all.found.insert(all.found.end(), part.found.begin(), part.found.end());
         all.samples += part.samples;
     }
@@ -152,7 +152,7 @@ std::shared_ptr<const LearnedDirectLight> learn_direct_light(const Scene& scene,
                                                              const RunContext& context) {
     if (!has_choice_of_direct_light(scene) || learning.paths <= 0) return nullptr;
     const Spent spent(context);
-    context.begin("direct light", static_cast<std::uint64_t>(learning.paths), "paths");
+    const ProgressStage progress(context, "direct light", learning.paths, "paths");
     Memory memory;
     std::shared_ptr<const LearnedDirectLight> learned;
     for (std::int64_t done = 0, paths = std::min(kFirstPaths, learning.paths); paths > 0;) {
@@ -168,7 +168,6 @@ std::shared_ptr<const LearnedDirectLight> learn_direct_light(const Scene& scene,
                          learning.paths - done);
         if (paths < std::min(least, learning.paths - done)) break;
     }
-    context.end();
     return learned && learned->second_moment_ratio() <= kNoGain ? learned : nullptr;
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 /// Light that `v` scatters from the vertex before it to the one behind it; none where that is a choice without a
 /// density, or one among such.
-std::optional<SeenScattering> scattering_at(const Path& path, std::size_t i, double weight) {
+std::optional<SeenScattering> scattering_at(const Path& path, int i, double weight) {
     const Vertex& v = path.x[i];
     if (v.specular() || v.bsdf.traits().delta) return std::nullopt;
     const Vec3 to_light = direction(v.point, path.x[i - 1].point), towards = direction(v.point, path.x[i + 1].point);
@@ -39,8 +39,7 @@ struct Eye {
         const int before = storage_point(diffuse_vertices(path), kind).vertex - 1;
         if (before < 1) return;
         const auto i = 1 + std::min(static_cast<int>(source.next() * before), before - 1);
-        if (const auto seen = scattering_at(path, static_cast<std::size_t>(i), y * before))
-            found.scatterings.push_back(*seen);
+        if (const auto seen = scattering_at(path, i, y * before)) found.scatterings.push_back(*seen);
     }
 };
 
@@ -48,25 +47,23 @@ struct Eye {
 
 FoundLightPaths look_for_light(const Scene& scene, const LightSearch& search, const RunContext& context) {
     constexpr std::int64_t kBlock = 256;
-    const std::int64_t blocks = (search.paths + kBlock - 1) / kBlock;
-    std::vector<FoundLightPaths> parts(static_cast<std::size_t>(blocks));
+    const auto blocks = static_cast<std::size_t>((search.paths + kBlock - 1) / kBlock);
     const std::size_t most =
-        search.most_bytes / (sizeof(SeenLight) + sizeof(SeenScattering)) / std::max<std::size_t>(parts.size(), 1);
-    context.begin("emission", static_cast<std::uint64_t>(search.paths), "paths");
-    parallel_for(blocks, context, [&](std::int64_t b) {
-        FoundLightPaths& found = parts[static_cast<std::size_t>(b)];
-        const std::int64_t end = std::min(search.paths, (b + 1) * kBlock);
-        for (std::int64_t i = b * kBlock; i < end && found.ends.size() < most; ++i) {
+        search.most_bytes / (sizeof(SeenLight) + sizeof(SeenScattering)) / std::max<std::size_t>(blocks, 1);
+    const ProgressStage progress(context, "emission", search.paths, "paths");
+    const auto look = [&](Range paths) {
+        FoundLightPaths found;
+        for (std::int64_t i = paths.begin; i < paths.end && found.ends.size() < most; ++i) {
             Rng rng(search.seed, StreamPurpose::learned_emission, static_cast<std::uint64_t>(i));
             Eye eye{found, rng};
             const Vec2 image = lattice_image_point(search.seed, StreamPurpose::learned_emission, i);
             trace_independent(Technique::path, scene, image, {search.max_scatterings, search.set}, rng, eye);
         }
-        context.advance(kBlock);
-    });
-    context.end();
+        context.advance(paths.size());
+        return found;
+    };
     FoundLightPaths all;
-    for (const FoundLightPaths& part : parts) {
+    for (const FoundLightPaths& part : make_blocks({0, search.paths}, kBlock, context, look)) {
         all.ends.insert(all.ends.end(), part.ends.begin(), part.ends.end());
         all.scatterings.insert(all.scatterings.end(), part.scatterings.begin(), part.scatterings.end());
     }
