@@ -72,17 +72,6 @@ std::shared_ptr<const Texture<T>> checkerboard_texture(std::shared_ptr<const Tex
                                                        std::shared_ptr<const Texture<T>> b,
                                                        const TextureMapping& mapping);
 
-/// Unit cubes of `a` (that at the origin) and `b` in turn, in the space that `from_world` leads to.
-template <class T>
-std::shared_ptr<const Texture<T>> solid_checkerboard_texture(std::shared_ptr<const Texture<T>> a,
-                                                             std::shared_ptr<const Texture<T>> b,
-                                                             const Imath::M44d& from_world);
-
-/// |cos| a + (1 - |cos|) b, of the angle between the geometric normal and the unit vector `axis`.
-template <class T>
-std::shared_ptr<const Texture<T>> direction_mix_texture(std::shared_ptr<const Texture<T>> a,
-                                                        std::shared_ptr<const Texture<T>> b, const Vec3& axis);
-
 /// An image in memory, for what a scene tells about itself.
 struct LoadedImage {
     std::string path;

@@ -1,7 +1,7 @@
 // pbrt's hair, of which we have no model: what lies nearest is a principled surface of its colour.
 #include "scene/load/properties.h"
-#include "scene/materials/computed_texture.h"
 #include "scene/materials/make_material.h"
+#include "scene/textures/function_texture.h"
 
 #include <cmath>
 

@@ -1,5 +1,6 @@
 #include "scene/load/properties.h"
 #include "scene/material.h"
+#include "scene/textures/function_texture.h"
 
 #include <fmt/format.h>
 
@@ -28,7 +29,15 @@ class MixMaterial final : public Material {
         const auto* mix = dynamic_cast<const MixMaterial*>(&m);
         return mix != nullptr ? mix->salt_ : 0;
     }
-    SurfaceDefaults mixed_surface() const;
+    /// The opacity of the material that is at a place.
+    SurfaceDefaults mixed_surface() const {
+        const FloatTexture a = a_->surface().alpha, b = b_->surface().alpha;
+        if (a == nullptr && b == nullptr) return {};
+        return {function_texture<double>([a, b, amount = amount_, salt = salt_](const SurfacePoint& point) {
+            const FloatTexture& here = place_hash(point, salt) < amount->value(point) ? b : a;
+            return here != nullptr ? here->value(point) : 1.0;
+        })};
+    }
     FloatTexture mixed_share() const {
         const FloatTexture a = a_->finite_share(), b = b_->finite_share();
         if (a == nullptr && b == nullptr && a_->traits().finite == b_->traits().finite) return nullptr;
@@ -45,27 +54,6 @@ class MixMaterial final : public Material {
     SurfaceDefaults surface_;
     FloatTexture finite_share_;
 };
-
-/// The opacity of the material that is at a place.
-class MixedOpacity final : public Texture<double> {
-  public:
-    MixedOpacity(FloatTexture a, FloatTexture b, FloatTexture amount, std::uint32_t salt)
-        : a_(std::move(a)), b_(std::move(b)), amount_(std::move(amount)), salt_(salt) {}
-    double value(const SurfacePoint& point) const override {
-        const FloatTexture& here = place_hash(point, salt_) < amount_->value(point) ? b_ : a_;
-        return here != nullptr ? here->value(point) : 1.0;
-    }
-
-  private:
-    FloatTexture a_, b_, amount_;
-    std::uint32_t salt_;
-};
-
-SurfaceDefaults MixMaterial::mixed_surface() const {
-    const FloatTexture a = a_->surface().alpha, b = b_->surface().alpha;
-    if (a == nullptr && b == nullptr) return {};
-    return {std::make_shared<MixedOpacity>(a, b, amount_, salt_)};
-}
 
 void refuse_emission(Properties& p, const MaterialPtr& part) {
     if (!is_black(part->surface().emission))

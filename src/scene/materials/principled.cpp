@@ -1,43 +1,18 @@
 #include "scene/load/properties.h"
 #include "scene/materials/make_material.h"
+#include "scene/textures/function_texture.h"
 
 #include <cmath>
 
 namespace keyhole {
 namespace {
 
-/// The GGX alpha of a roughness and an anisotropy (Burley 2012, 5.4): alpha = roughness^2, stretched along the tangent
-/// to an aspect of at most 10.
-class BurleyAlpha final : public Texture<double> {
-  public:
-    BurleyAlpha(FloatTexture roughness, FloatTexture anisotropy, bool along)
-        : roughness_(std::move(roughness)), anisotropy_(std::move(anisotropy)), along_(along) {}
-    double value(const SurfacePoint& point) const override {
-        const double r = clamp01(roughness_->value(point));
-        const double aspect = std::sqrt(1 - 0.9 * clamp01(anisotropy_->value(point)));
-        return std::min(1.0, along_ ? r * r / aspect : r * r * aspect);
-    }
-    bool is_constant() const override { return roughness_->is_constant() && anisotropy_->is_constant(); }
-
-  private:
-    FloatTexture roughness_, anisotropy_;
-    bool along_;
-};
-
 /// How glass looks that has the given colour once light went in and out (Burley 2015, "Extending the Disney BRDF to a
 /// BSDF with Integrated Subsurface Scattering").
-class TintOfGlass final : public Texture<Rgb> {
-  public:
-    explicit TintOfGlass(ColorTexture color) : color_(std::move(color)) {}
-    Rgb value(const SurfacePoint& point) const override {
-        const Rgb c = clamp01(color_->value(point));
-        return {std::sqrt(c.x), std::sqrt(c.y), std::sqrt(c.z)};
-    }
-    bool is_constant() const override { return color_->is_constant(); }
-
-  private:
-    ColorTexture color_;
-};
+Rgb tint_of_glass(const Rgb& color) {
+    const Rgb c = clamp01(color);
+    return {std::sqrt(c.x), std::sqrt(c.y), std::sqrt(c.z)};
+}
 
 /// What all surfaces have of it but glass.
 Bsdf::Model opaque_model(const PrincipledTextures& t, const SurfacePoint& point) {
@@ -66,8 +41,15 @@ MaterialPtr make_opaque(const PrincipledTextures& t) {
         t.alpha_x, t.alpha_y, t.specular, t.specular_tint, t.clearcoat, t.clearcoat_alpha, t.sheen, t.sheen_tint);
 }
 
+/// The GGX alpha of a roughness and an anisotropy (Burley 2012, 5.4): alpha = roughness^2, stretched along the tangent
+/// to an aspect of at most 10.
 FloatTexture alpha_of(const FloatTexture& roughness, const FloatTexture& anisotropy, bool along) {
-    return std::make_shared<BurleyAlpha>(roughness, anisotropy, along);
+    return computed_texture(
+        [along](double roughness, double anisotropy) {
+            const double r = clamp01(roughness), aspect = std::sqrt(1 - 0.9 * clamp01(anisotropy));
+            return std::min(1.0, along ? r * r / aspect : r * r * aspect);
+        },
+        roughness, anisotropy);
 }
 
 /// The reflectance along the normal of an interface.
@@ -157,7 +139,7 @@ MaterialPtr make_principled(const PrincipledTextures& t) {
     const bool constant = t.metallic->is_constant() && t.transmission->is_constant();
     const double share = constant ? glass->value({}) : 0.5;
     if (share <= 0) return make_opaque(t);
-    const ColorTexture tint = std::make_shared<TintOfGlass>(t.base_color);
+    const ColorTexture tint = computed_texture(tint_of_glass, t.base_color);
     const MaterialPtr clear = make_dielectric(t.eta, t.alpha_x, t.alpha_y, constant_texture(Rgb(1.0)), tint);
     return share >= 1 ? clear : make_mix(make_opaque(t), clear, glass);
 }

@@ -2,9 +2,9 @@
 #include "scene/bsdfs/coat.h"
 #include "scene/load/input.h"
 #include "scene/load/properties.h"
-#include "scene/materials/computed_texture.h"
 #include "scene/materials/make_material.h"
 #include "scene/materials/measured_media.h"
+#include "scene/textures/function_texture.h"
 
 #include <fmt/format.h>
 

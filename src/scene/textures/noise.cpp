@@ -1,6 +1,6 @@
 // Textures from gradient noise in space: Perlin, "Improving Noise", SIGGRAPH 2002; sums of octaves as in pbrt-v4's.
 #include "scene/load/properties.h"
-#include "scene/texture.h"
+#include "scene/textures/function_texture.h"
 
 #include <algorithm>
 #include <array>
@@ -88,17 +88,10 @@ Rgb marble(Imath::V3d p, const Octaves& octaves, double scale, double variation)
 }
 
 /// A value that is a function of the place in the space of the texture.
-template <class T, class F> class SolidTexture final : public Texture<T> {
-  public:
-    SolidTexture(const Imath::M44d& from_world, F f) : from_world_(from_world), f_(std::move(f)) {}
-    T value(const SurfacePoint& point) const override { return T(f_(Imath::V3d(point.p) * from_world_)); }
-
-  private:
-    Imath::M44d from_world_;
-    F f_;
-};
 template <class T, class F> std::shared_ptr<const Texture<T>> solid(Properties& p, F f) {
-    return std::make_shared<SolidTexture<T, F>>(p.texture_space("transform"), std::move(f));
+    return function_texture<T>([f, from_world = p.texture_space("transform")](const SurfacePoint& point) {
+        return T(f(Imath::V3d(point.p) * from_world));
+    });
 }
 
 Octaves read_octaves(Properties& p) {

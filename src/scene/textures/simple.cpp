@@ -1,6 +1,6 @@
 // Textures that need no files.
 #include "scene/load/properties.h"
-#include "scene/texture.h"
+#include "scene/textures/function_texture.h"
 
 #include <fmt/format.h>
 
@@ -19,81 +19,6 @@ template <class T> class ConstantTexture final : public Texture<T> {
 
   private:
     T value_;
-};
-
-template <class T> class ScaleTexture final : public Texture<T> {
-  public:
-    using Ptr = std::shared_ptr<const Texture<T>>;
-    ScaleTexture(Ptr value, FloatTexture factor) : value_(std::move(value)), factor_(std::move(factor)) {}
-    T value(const SurfacePoint& point) const override { return value_->value(point) * factor_->value(point); }
-
-  private:
-    Ptr value_;
-    FloatTexture factor_;
-};
-
-template <class T> class MixTexture final : public Texture<T> {
-  public:
-    using Ptr = std::shared_ptr<const Texture<T>>;
-    MixTexture(Ptr a, Ptr b, FloatTexture amount) : a_(std::move(a)), b_(std::move(b)), amount_(std::move(amount)) {}
-    T value(const SurfacePoint& point) const override {
-        const double t = std::clamp(amount_->value(point), 0.0, 1.0);
-        if (t == 0) return a_->value(point);
-        if (t == 1) return b_->value(point);
-        return a_->value(point) * (1 - t) + b_->value(point) * t;
-    }
-
-  private:
-    Ptr a_, b_;
-    FloatTexture amount_;
-};
-
-template <class T> class CheckerboardTexture final : public Texture<T> {
-  public:
-    using Ptr = std::shared_ptr<const Texture<T>>;
-    CheckerboardTexture(Ptr a, Ptr b, const TextureMapping& mapping)
-        : a_(std::move(a)), b_(std::move(b)), mapping_(mapping) {}
-    T value(const SurfacePoint& point) const override {
-        const Imath::V2d place = mapping_(point);
-        const double squares = std::floor(place.x) + std::floor(place.y);
-        return (std::fmod(squares, 2) == 0 ? a_ : b_)->value(point);
-    }
-
-  private:
-    Ptr a_, b_;
-    TextureMapping mapping_;
-};
-
-template <class T> class SolidCheckerboardTexture final : public Texture<T> {
-  public:
-    using Ptr = std::shared_ptr<const Texture<T>>;
-    SolidCheckerboardTexture(Ptr a, Ptr b, const Imath::M44d& from_world)
-        : a_(std::move(a)), b_(std::move(b)), from_world_(from_world) {}
-    T value(const SurfacePoint& point) const override {
-        const Imath::V3d place = Imath::V3d(point.p) * from_world_;
-        const double cubes = std::floor(place.x) + std::floor(place.y) + std::floor(place.z);
-        return (std::fmod(cubes, 2) == 0 ? a_ : b_)->value(point);
-    }
-
-  private:
-    Ptr a_, b_;
-    Imath::M44d from_world_;
-};
-
-template <class T> class DirectionMixTexture final : public Texture<T> {
-  public:
-    using Ptr = std::shared_ptr<const Texture<T>>;
-    DirectionMixTexture(Ptr a, Ptr b, const Vec3& axis) : a_(std::move(a)), b_(std::move(b)), axis_(axis) {}
-    T value(const SurfacePoint& point) const override {
-        const double t = std::min(1.0, std::abs(static_cast<double>(point.ng.dot(axis_))));
-        if (t == 0) return b_->value(point);
-        if (t == 1) return a_->value(point);
-        return a_->value(point) * t + b_->value(point) * (1 - t);
-    }
-
-  private:
-    Ptr a_, b_;
-    Vec3 axis_;
 };
 
 /// pbrt-v3 has 'tex2' for v4's 'scale', and 'tex1' for 'tex'.
@@ -116,18 +41,26 @@ template <class T> std::shared_ptr<const Texture<T>> read_checkerboard(Propertie
         p.fail_at("dimension", fmt::format("found a checkerboard of {} dimensions, expected 2 or 3", dimension));
     p.ignore({"aamode"});
     auto a = p.operand<T>({"a", "tex1"}, 1), b = p.operand<T>({"b", "tex2"}, 0);
-    if (dimension == 3) {
-        for (const char* key : {"mapping", "repeat", "rotate", "shift"})
-            if (p.has({key, ""}))
-                p.fail_at(key, fmt::format("found '{}' beside 3 dimensions, expected 'transform'", key));
-        return solid_checkerboard_texture<T>(std::move(a), std::move(b), p.texture_space("transform"));
-    }
-    return checkerboard_texture<T>(std::move(a), std::move(b), p.mapping());
+    if (dimension == 2) return checkerboard_texture<T>(std::move(a), std::move(b), p.mapping());
+    for (const char* key : {"mapping", "repeat", "rotate", "shift"})
+        if (p.has({key, ""})) p.fail_at(key, fmt::format("found '{}' beside 3 dimensions, expected 'transform'", key));
+    return function_texture<T>([a, b, from_world = p.texture_space("transform")](const SurfacePoint& point) {
+        const Imath::V3d place = Imath::V3d(point.p) * from_world;
+        const double cubes = std::floor(place.x) + std::floor(place.y) + std::floor(place.z);
+        return (std::fmod(cubes, 2) == 0 ? a : b)->value(point);
+    });
 }
 
+/// |cos| a + (1 - |cos|) b, of the angle between the geometric normal and an axis.
 template <class T> std::shared_ptr<const Texture<T>> read_direction_mix(Properties& p) {
     auto a = p.operand<T>({"a", "tex1"}, 0), b = p.operand<T>({"b", "tex2"}, 1);
-    return direction_mix_texture<T>(std::move(a), std::move(b), p.axis({"direction", "dir"}, {0, 1, 0}));
+    const Vec3 axis = p.axis({"direction", "dir"}, {0, 1, 0});
+    return function_texture<T>([a, b, axis](const SurfacePoint& point) -> T {
+        const double t = std::min(1.0, std::abs(static_cast<double>(point.ng.dot(axis))));
+        if (t == 0) return b->value(point);
+        if (t == 1) return a->value(point);
+        return a->value(point) * t + b->value(point) * (1 - t);
+    });
 }
 
 /// The finaliser of MurmurHash3.
@@ -164,49 +97,38 @@ FloatTexture constant_texture(double value) { return std::make_shared<ConstantTe
 
 template <class T>
 std::shared_ptr<const Texture<T>> scale_texture(std::shared_ptr<const Texture<T>> value, FloatTexture factor) {
-    const bool constant = value->is_constant() && factor->is_constant();
-    const ScaleTexture<T> scaled(std::move(value), std::move(factor));
-    if (constant) return constant_texture(scaled.value({}));
-    return std::make_shared<ScaleTexture<T>>(scaled);
+    return function_texture<T>(
+        [value, factor](const SurfacePoint& point) { return value->value(point) * factor->value(point); }, value,
+        factor);
 }
 
 template <class T>
 std::shared_ptr<const Texture<T>> mix_texture(std::shared_ptr<const Texture<T>> a, std::shared_ptr<const Texture<T>> b,
                                               FloatTexture amount) {
-    const bool constant = a->is_constant() && b->is_constant() && amount->is_constant();
-    const MixTexture<T> mixed(std::move(a), std::move(b), std::move(amount));
-    if (constant) return constant_texture(mixed.value({}));
-    return std::make_shared<MixTexture<T>>(mixed);
+    const auto mixed = [a, b, amount](const SurfacePoint& point) -> T {
+        const double t = std::clamp(amount->value(point), 0.0, 1.0);
+        if (t == 0) return a->value(point);
+        if (t == 1) return b->value(point);
+        return a->value(point) * (1 - t) + b->value(point) * t;
+    };
+    return function_texture<T>(mixed, a, b, amount);
 }
 
 template <class T>
 std::shared_ptr<const Texture<T>> checkerboard_texture(std::shared_ptr<const Texture<T>> a,
                                                        std::shared_ptr<const Texture<T>> b,
                                                        const TextureMapping& mapping) {
-    return std::make_shared<CheckerboardTexture<T>>(std::move(a), std::move(b), mapping);
+    return function_texture<T>([a, b, mapping](const SurfacePoint& point) {
+        const Imath::V2d place = mapping(point);
+        const double squares = std::floor(place.x) + std::floor(place.y);
+        return (std::fmod(squares, 2) == 0 ? a : b)->value(point);
+    });
 }
 
 template ColorTexture scale_texture<Rgb>(ColorTexture, FloatTexture);
 template FloatTexture scale_texture<double>(FloatTexture, FloatTexture);
 template ColorTexture mix_texture<Rgb>(ColorTexture, ColorTexture, FloatTexture);
 template FloatTexture mix_texture<double>(FloatTexture, FloatTexture, FloatTexture);
-template <class T>
-std::shared_ptr<const Texture<T>> solid_checkerboard_texture(std::shared_ptr<const Texture<T>> a,
-                                                             std::shared_ptr<const Texture<T>> b,
-                                                             const Imath::M44d& from_world) {
-    return std::make_shared<SolidCheckerboardTexture<T>>(std::move(a), std::move(b), from_world);
-}
-
-template <class T>
-std::shared_ptr<const Texture<T>> direction_mix_texture(std::shared_ptr<const Texture<T>> a,
-                                                        std::shared_ptr<const Texture<T>> b, const Vec3& axis) {
-    return std::make_shared<DirectionMixTexture<T>>(std::move(a), std::move(b), axis);
-}
-
-template ColorTexture solid_checkerboard_texture<Rgb>(ColorTexture, ColorTexture, const Imath::M44d&);
-template FloatTexture solid_checkerboard_texture<double>(FloatTexture, FloatTexture, const Imath::M44d&);
-template ColorTexture direction_mix_texture<Rgb>(ColorTexture, ColorTexture, const Vec3&);
-template FloatTexture direction_mix_texture<double>(FloatTexture, FloatTexture, const Vec3&);
 template ColorTexture checkerboard_texture<Rgb>(ColorTexture, ColorTexture, const TextureMapping&);
 template FloatTexture checkerboard_texture<double>(FloatTexture, FloatTexture, const TextureMapping&);
 

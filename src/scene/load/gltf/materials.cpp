@@ -1,6 +1,7 @@
 #include "scene/load/gltf/materials.h"
 
 #include "scene/material.h"
+#include "scene/textures/function_texture.h"
 
 #include <fmt/format.h>
 
@@ -15,29 +16,6 @@ constexpr int kNearest = 9728, kClamp = 33071, kMirrored = 33648;
 constexpr int kGreen = 1, kBlue = 2, kAlpha = 3;
 /// Roughness from which on one sees that a pane isn't clear.
 constexpr double kSmoothPane = 0.05;
-
-/// A texture times a colour.
-class TintedTexture final : public Texture<Rgb> {
-  public:
-    TintedTexture(ColorTexture texture, const Rgb& tint) : texture_(std::move(texture)), tint_(tint) {}
-    Rgb value(const SurfacePoint& point) const override { return texture_->value(point) * tint_; }
-
-  private:
-    ColorTexture texture_;
-    Rgb tint_;
-};
-
-/// 1 where a texture isn't below a number, and 0 elsewhere.
-class MaskTexture final : public Texture<double> {
-  public:
-    MaskTexture(FloatTexture texture, double cutoff) : texture_(std::move(texture)), cutoff_(cutoff) {}
-    double value(const SurfacePoint& point) const override { return texture_->value(point) >= cutoff_ ? 1 : 0; }
-    bool is_constant() const override { return texture_->is_constant(); }
-
-  private:
-    FloatTexture texture_;
-    double cutoff_;
-};
 
 /// KHR_texture_transform, which counts v down from the first row, as a mapping that counts it up.
 UvMapping mapping_of(const Json& transform) {
@@ -108,7 +86,7 @@ class Reader {
         if (!object.contains(texture)) return constant_texture(tint);
         const ColorTexture image = picture<Rgb>(object[texture], Encoding::srgb);
         if (tint == Rgb(1.0)) return image;
-        return std::make_shared<TintedTexture>(image, tint);
+        return function_texture<Rgb>([image, tint](const SurfacePoint& point) { return image->value(point) * tint; });
     }
 
     /// A number, perhaps times a channel of a texture.
@@ -176,7 +154,10 @@ class Reader {
         FloatTexture alpha = constant_texture(factor.size() == 4 ? std::clamp(factor[3], 0.0, 1.0) : 1.0);
         if (metal_.contains("baseColorTexture"))
             alpha = scale_texture<double>(picture<double>(metal_["baseColorTexture"], Encoding::linear, kAlpha), alpha);
-        if (mode == "MASK") alpha = std::make_shared<MaskTexture>(alpha, value_or(material_, "alphaCutoff", 0.5));
+        if (mode == "MASK")
+            alpha = computed_texture(
+                [cutoff = value_or(material_, "alphaCutoff", 0.5)](double a) { return a >= cutoff ? 1.0 : 0.0; },
+                alpha);
         return alpha->is_constant() && alpha->value({}) >= 1 ? nullptr : alpha;
     }
 
