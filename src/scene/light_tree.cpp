@@ -1,5 +1,7 @@
 #include "scene/light_tree.h"
 
+#include <Imath/ImathBox.h>
+
 #include <algorithm>
 
 namespace keyhole {
@@ -113,14 +115,9 @@ std::uint32_t LightTree::build(std::vector<Node>& leaves, std::size_t begin, std
         return index;
     }
     const auto center = [&](const Node& n) { return (n.bounds.lower + n.bounds.upper) / 2; };
-    Vec3 lower = center(leaves[begin]), upper = lower;
-    for (std::size_t i = begin; i < end; ++i)
-        for (int k = 0; k < 3; ++k) {
-            lower[k] = std::min(lower[k], center(leaves[i])[k]);
-            upper[k] = std::max(upper[k], center(leaves[i])[k]);
-        }
-    const Vec3 extent = upper - lower;
-    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+    Imath::Box3f centers;
+    for (std::size_t i = begin; i < end; ++i) centers.extendBy(center(leaves[i]));
+    const auto axis = static_cast<int>(centers.majorAxis());
     const std::size_t middle = (begin + end) / 2;
     const auto at = [&](std::size_t i) { return leaves.begin() + static_cast<std::ptrdiff_t>(i); };
     std::nth_element(at(begin), at(middle), at(end), [&](const Node& a, const Node& b) {

@@ -3,6 +3,8 @@
 #include "film/tonemap.h"
 #include "scene/geometry.h"
 
+#include <Imath/ImathBox.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -98,13 +100,9 @@ Part simplified(const TriangleMesh& mesh, std::size_t most, const Scene& scene) 
     Part part{mesh.positions, {}, {}};
     for (const auto& t : mesh.triangles) part.triangles.push_back({t[0], t[1], t[2]});
     if (part.triangles.size() <= most) return part;
-    Vec3 lower = mesh.positions[0], upper = lower;
-    for (const Vec3& p : mesh.positions)
-        for (int i = 0; i < 3; ++i) {
-            lower[i] = std::min(lower[i], p[i]);
-            upper[i] = std::max(upper[i], p[i]);
-        }
-    const double size = std::max(1e-9f, (upper - lower).length());
+    Imath::Box3f box;
+    for (const Vec3& p : mesh.positions) box.extendBy(p);
+    const double size = std::max(1e-9f, box.size().length());
     for (double parts = 2 * std::sqrt(static_cast<double>(most)); parts >= 1; parts /= 1.4) {
         part = clustered(mesh, size / parts, scene.lower());
         if (part.triangles.size() <= most) break;

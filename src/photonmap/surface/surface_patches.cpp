@@ -43,13 +43,13 @@ double cap_area(const Sphere& sphere, const SurfaceRegion& region, double r) {
     return 2 * kPi * radius * std::min(depth, radius * (1 - SurfaceRegion::kMinCosine));
 }
 
-Bounds bounds_of(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& t) {
-    Bounds b{mesh.positions[t[0]], mesh.positions[t[0]]};
-    for (const std::uint32_t i : {t[1], t[2]}) b.extend({mesh.positions[i], mesh.positions[i]});
-    return b;
+Imath::Box3f bounds_of(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& t) {
+    Imath::Box3f box;
+    for (const std::uint32_t i : t) box.extendBy(mesh.positions[i]);
+    return box;
 }
 
-Bounds bounds_of(const Sphere& sphere) {
+Imath::Box3f bounds_of(const Sphere& sphere) {
     return {sphere.center - Vec3(sphere.radius), sphere.center + Vec3(sphere.radius)};
 }
 
@@ -82,7 +82,7 @@ std::vector<FloatTexture> finite_shares(const std::vector<Shape>& shapes) {
 }
 
 /// Box around the ellipsoid of a region.
-Bounds bounds_of(const SurfaceRegion& region, double r) {
+Imath::Box3f bounds_of(const SurfaceRegion& region, double r) {
     Vec3 half;
     for (int i = 0; i < 3; ++i) {
         const double n = region.normal[i];
@@ -103,7 +103,7 @@ SurfacePatches::SurfacePatches(const std::vector<Shape>& shapes)
 
 SurfacePatches::Index SurfacePatches::index_of(bool (*wanted)(const Shape& shape)) const {
     std::vector<Patch> patches;
-    std::vector<Bounds> boxes;
+    std::vector<Imath::Box3f> boxes;
     for (std::uint32_t s = 0; has_tree_ && s < shapes_.size(); ++s) {
         if (!wanted(shapes_[s])) continue;
         const auto* mesh = std::get_if<TriangleMesh>(&shapes_[s].geometry);
@@ -113,7 +113,7 @@ SurfacePatches::Index SurfacePatches::index_of(bool (*wanted)(const Shape& shape
     return {std::move(patches), BoxTree(boxes)};
 }
 
-Bounds SurfacePatches::bounds(const Patch& patch) const {
+Imath::Box3f SurfacePatches::bounds(const Patch& patch) const {
     const Shape& shape = shapes_[patch.shape];
     if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) return bounds_of(*sphere);
     const auto& mesh = std::get<TriangleMesh>(shape.geometry);
@@ -228,13 +228,13 @@ bool SurfacePatches::obstructed(const SurfaceRegion& region, double r) const {
     // The slab above what counts as the same surface.
     SurfaceRegion above = region;
     above.position += region.normal * static_cast<float>(2 * r / kFlat);
-    const Bounds slab = bounds_of(above, r);
+    const Imath::Box3f slab = bounds_of(above, r);
     int met = 0;
     bool found = false;
     const auto look = [&](const Index& index) {
         return index.tree.overlapping(slab, [&](std::uint32_t i) {
             if (scene_ != nullptr && ++met > kMostTriangles) return false;
-            found |= bounds(index.patches[i]).overlaps(slab);
+            found |= bounds(index.patches[i]).intersects(slab);
             return true;
         });
     };

@@ -59,7 +59,7 @@ class SurfacePatches {
     };
     /// Empty without has_tree_.
     Index index_of(bool (*wanted)(const Shape& shape)) const;
-    Bounds bounds(const Patch& patch) const;
+    Imath::Box3f bounds(const Patch& patch) const;
     /// Whether photons can lie at some of its places and not at others.
     bool is_patchy(std::uint32_t shape) const { return shapes_[shape].alpha != nullptr || shares_[shape] != nullptr; }
     /// What of a triangle lies in a region.

@@ -5,6 +5,8 @@
 #include "scene/load/properties.h"
 #include "scene/warp.h"
 
+#include <Imath/ImathBox.h>
+
 #include <cmath>
 
 namespace keyhole {
@@ -16,18 +18,16 @@ Vec3 normal_of(const TriangleMesh& mesh, std::uint32_t triangle) {
 
 /// Box of a shape, and the cone of its normals around their mean.
 EmitterBounds bounds_of(const TriangleMesh& mesh) {
-    EmitterBounds b;
-    b.lower = b.upper = mesh.positions[mesh.triangles[0][0]];
+    Imath::Box3f box;
     Vec3 sum(0, 0, 0);
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-        for (const auto corner : mesh.triangles[i])
-            for (int k = 0; k < 3; ++k) {
-                b.lower[k] = std::min(b.lower[k], mesh.positions[corner][k]);
-                b.upper[k] = std::max(b.upper[k], mesh.positions[corner][k]);
-            }
+        for (const auto corner : mesh.triangles[i]) box.extendBy(mesh.positions[corner]);
         sum += normal_of(mesh, i) * static_cast<float>(triangle_area(mesh, i));
     }
     sum.normalize();
+    EmitterBounds b;
+    b.lower = box.min;
+    b.upper = box.max;
     if (sum.length2() == 0) return b; // closed, most likely: everywhere
     float least = 1;
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) least = std::min(least, sum.dot(normal_of(mesh, i)));

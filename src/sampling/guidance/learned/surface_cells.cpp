@@ -1,5 +1,7 @@
 #include "sampling/guidance/learned/surface_cells.h"
 
+#include <Imath/ImathBox.h>
+
 #include <algorithm>
 #include <array>
 
@@ -13,13 +15,9 @@ constexpr float kNormals = 0.2f;
 
 SurfaceCells::SurfaceCells(std::vector<Place> points, std::size_t least) {
     if (points.empty()) return;
-    Vec3 lower = points.front().p, upper = lower;
-    for (const Place& place : points)
-        for (int k = 0; k < 3; ++k) {
-            lower[k] = std::min(lower[k], place.p[k]);
-            upper[k] = std::max(upper[k], place.p[k]);
-        }
-    normal_scale_ = kNormals / 2 * (upper - lower).length();
+    Imath::Box3f box;
+    for (const Place& place : points) box.extendBy(place.p);
+    normal_scale_ = kNormals / 2 * box.size().length();
     nodes_.clear();
     cells_ = 0;
     build(points, std::max<std::size_t>(least, 1));
