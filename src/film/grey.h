@@ -16,6 +16,10 @@ struct Grey {
     explicit Grey(const Image& image);
 };
 
+/// What the square of a pixel's error is relative to, where `light` is there and the picture has this mean: what is
+/// much darker than that has no relative error to speak of.
+inline double error_unit(double light, double mean) { return light * light + 0.01 * mean * mean; }
+
 /// Mean of the values; NaN without any.
 double mean(const std::vector<double>& values);
 

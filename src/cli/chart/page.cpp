@@ -1,10 +1,12 @@
 // The page of a chart: its data as JSON, put into the page's parts.
 #include "cli/chart/outputs.h"
-#include "cli/chart/page_pictures.h"
+#include "cli/page/data_uri.h"
 #include "cli/page/page_parts.h"
 #include "cli/pictures/beauty.h"
 #include "cli/words/stats_json.h"
 #include "film/files/atomic_file.h"
+#include "film/grey.h"
+#include "film/tonemap.h"
 
 #include <nlohmann/json.hpp>
 
@@ -47,12 +49,35 @@ Json points_json(const std::vector<const Point*>& points) {
     return list;
 }
 
-Image mean_reference(const Reference& reference) {
-    Image image = reference.first;
-    if (reference.second)
-        for (std::size_t i = 0; i < image.data.size(); ++i)
-            image.data[i] = (image.data[i] + reference.second->data[i]) / 2;
-    return image;
+/// Means over squares of `factor` pixels; rests at the right and at the bottom are left out.
+Image shrunk(const Image& image, int factor) {
+    if (factor == 1) return image;
+    Image small(image.width / factor, image.height / factor, image.channels);
+    const float share = 1 / static_cast<float>(factor * factor);
+    for (int y = 0; y < small.height * factor; ++y)
+        for (int x = 0; x < small.width * factor; ++x)
+            for (int k = 0; k < image.channels; ++k) small.at(x / factor, y / factor)[k] += share * image.at(x, y)[k];
+    return small;
+}
+
+/// The picture tone-mapped as the reference is, as a PNG in a data URI.
+std::string picture_uri(const Image& image, const Image& reference) {
+    return png_uri(image.width, image.height, 3, tonemap(image, reference));
+}
+
+/// The relative error of each pixel's luminance, signed, over |R| + 0.1 mean(R): a grey PNG in a data URI, whose byte
+/// is 128 + 127 s sqrt(min(|e|, 1)), s being the sign.
+std::string error_uri(const Image& image, const Image& reference) {
+    const Grey i(image), r(reference);
+    const double floor = 0.1 * mean(r.y);
+    std::vector<std::uint8_t> bytes(i.y.size(), 128);
+    for (std::size_t p = 0; p < bytes.size(); ++p) {
+        const double e = (i.y[p] - r.y[p]) / (std::abs(r.y[p]) + floor);
+        if (std::isfinite(e))
+            bytes[p] = static_cast<std::uint8_t>(
+                std::lround(128 + 127 * std::copysign(std::sqrt(std::min(std::abs(e), 1.0)), e)));
+    }
+    return png_uri(image.width, image.height, 1, bytes);
 }
 
 Json method_json(const SceneChart& chart, const std::string& method, const Image& reference, int shrink) {
@@ -70,7 +95,8 @@ Json method_json(const SceneChart& chart, const std::string& method, const Image
 }
 
 Json scene_json(const SceneChart& chart, const ChartOptions& options, int shrink) {
-    const Image reference = shrunk(mean_reference(chart.reference), shrink);
+    const Reference& given = chart.reference;
+    const Image reference = shrunk(given.second ? mean_of(given.first, *given.second) : given.first, shrink);
     Json methods = Json::array();
     for (const std::string& method : options.methods) methods.push_back(method_json(chart, method, reference, shrink));
     return {{"name", chart.scene.name},

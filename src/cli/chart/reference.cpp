@@ -27,11 +27,7 @@ struct Pair {
     int parts = 0;
 
     /// Root of the relative squared error of (a + b) / 2, from how a and b differ.
-    double standard_error() const {
-        Image mean = a;
-        for (std::size_t i = 0; i < mean.data.size(); ++i) mean.data[i] = (a.data[i] + b.data[i]) / 2;
-        return std::sqrt(image_error(a, mean).relmse_trim);
-    }
+    double standard_error() const { return std::sqrt(image_error(a, mean_of(a, b)).relmse_trim); }
     double brightness() const { return (mean(Grey(a).y) + mean(Grey(b).y)) / 2; }
     /// How much of the brightness may be chance.
     double brightness_error() const { return std::abs(mean(Grey(a).y) - mean(Grey(b).y)); }

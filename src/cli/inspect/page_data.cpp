@@ -3,6 +3,7 @@
 #include "cli/inspect/page_arrays.h"
 #include "cli/inspect/user_path_entries.h"
 #include "cli/page/data_uri.h"
+#include "cli/pictures/beauty.h"
 #include "cli/words/metadata.h"
 #include "cli/words/stats_json.h"
 #include "film/tonemap.h"
@@ -84,12 +85,6 @@ Json emitters_json(const Scene& scene) {
         list.push_back(entry);
     }
     return list;
-}
-
-Image mean_of(const Image& a, const Image& b) {
-    Image mean = a;
-    for (std::size_t i = 0; i < mean.data.size(); ++i) mean.data[i] = (a.data[i] + b.data[i]) / 2;
-    return mean;
 }
 
 Json film_json(const Inspection& inspection) {

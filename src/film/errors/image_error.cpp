@@ -30,12 +30,12 @@ double block_error(const Grey& picture, const Grey& reference, double mean_refer
     return std::sqrt(mean(squares));
 }
 
-/// (a - r1)(a - r2) / (denominator^2 + 0.01 mean^2), pixel by pixel.
-std::vector<double> relative_products(const Grey& a, const Grey& r1, const Grey& r2,
-                                      const std::vector<double>& denominator, double mean) {
+/// (a - r1)(a - r2) / (light^2 + 0.01 mean^2), pixel by pixel.
+std::vector<double> relative_products(const Grey& a, const Grey& r1, const Grey& r2, const std::vector<double>& light,
+                                      double mean) {
     std::vector<double> e(a.y.size());
     for (std::size_t i = 0; i < e.size(); ++i)
-        e[i] = (a.y[i] - r1.y[i]) * (a.y[i] - r2.y[i]) / (denominator[i] * denominator[i] + 0.01 * mean * mean);
+        e[i] = (a.y[i] - r1.y[i]) * (a.y[i] - r2.y[i]) / error_unit(light[i], mean);
     return e;
 }
 

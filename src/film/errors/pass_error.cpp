@@ -1,5 +1,7 @@
 #include "film/errors/pass_error.h"
 
+#include "film/grey.h"
+
 #include <cmath>
 #include <limits>
 
@@ -24,8 +26,8 @@ double PassError::relative() const {
     double picture = 0, sum = 0;
     for (const Pixel& p : pixels_) picture += p.mean / n;
     for (const Pixel& p : pixels_) {
-        const double variance = p.m2 / (passes - 1) / passes, size = p.mean * p.mean + 0.01 * picture * picture;
-        if (variance > 0) sum += variance / size / n;
+        const double variance = p.m2 / (passes - 1) / passes;
+        if (variance > 0) sum += variance / error_unit(p.mean, picture) / n;
     }
     return std::sqrt(sum);
 }

@@ -27,13 +27,13 @@ RepeatError repeat_error(const std::vector<Image>& repeats, const Image& referen
     Grey r = r1;
     for (std::size_t p = 0; p < r.y.size(); ++p) r.y[p] = (r1.y[p] + r2.y[p]) / 2;
     const std::vector<double> smoothed = smooth(r);
-    const double floor = 0.01 * mean(r.y) * mean(r.y);
+    const double mean_r = mean(r.y);
 
     std::vector<Grey> pictures;
     pictures.reserve(repeats.size());
     for (const Image& image : repeats) pictures.push_back(finite_grey(image, reference));
     const auto error_of = [&](const Grey& picture, std::size_t p) {
-        return (picture.y[p] - r1.y[p]) * (picture.y[p] - r2.y[p]) / (smoothed[p] * smoothed[p] + floor);
+        return (picture.y[p] - r1.y[p]) * (picture.y[p] - r2.y[p]) / error_unit(smoothed[p], mean_r);
     };
     std::vector<double> errors(r.y.size(), 0.0);
     for (std::size_t p = 0; p < errors.size(); ++p)
@@ -49,7 +49,7 @@ RepeatError repeat_error(const std::vector<Image>& repeats, const Image& referen
             values.add(pictures[k].y[p]);
         }
         result.error += share * errors[p];
-        result.variance += share * values.variance() / (smoothed[p] * smoothed[p] + floor);
+        result.variance += share * values.variance() / error_unit(smoothed[p], mean_r);
     }
     if (pictures.size() < 2) result.variance = std::numeric_limits<double>::quiet_NaN();
     result.bias = result.error - result.variance;

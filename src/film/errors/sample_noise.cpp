@@ -26,8 +26,7 @@ std::optional<double> sample_noise(const Picture& picture) {
     std::vector<double> squares;
     for (std::size_t i = 0; i < light.y.size(); ++i)
         if (difference.y[i] != 0 || light.y[i] == 0) // known
-            squares.push_back(difference.y[i] * difference.y[i] /
-                              (smoothed[i] * smoothed[i] + 0.01 * mean_light * mean_light));
+            squares.push_back(difference.y[i] * difference.y[i] / error_unit(smoothed[i], mean_light));
     const double noise_of_all = std::sqrt(trimmed_mean(squares));
     return std::isfinite(noise_of_all) ? std::optional(noise_of_all) : std::nullopt;
 }
