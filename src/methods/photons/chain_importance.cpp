@@ -7,17 +7,6 @@
 namespace keyhole {
 namespace {
 
-Importons trace_importons_of_chains(const SamplerContext& c, std::uint64_t seed, std::int64_t importons,
-                                    const RunContext& run) {
-    return trace_importance(c.scene,
-                            {.samples = importons,
-                             .at_d1 = c.caustics,
-                             .max_scatterings = static_cast<int>(c.settings.max_depth),
-                             .seed = seed,
-                             .weight = c.weight},
-                            run);
-}
-
 ImportanceOptions lookups(const SamplerContext& c) {
     return {.k = 50, .max_radius = Radii(c.scene).importance, .patches = &c.patches};
 }
@@ -26,7 +15,7 @@ ImportanceOptions lookups(const SamplerContext& c) {
 
 ChainImportance::ChainImportance(const SamplerContext& c, std::uint64_t seed, std::int64_t importons,
                                  const RunContext& run)
-    : ChainImportance(c, trace_importons_of_chains(c, seed, importons, run)) {}
+    : ChainImportance(c, trace_importance(c.scene, c.importance_tracing(importons, seed), run)) {}
 
 ChainImportance::ChainImportance(const SamplerContext& c, Importons&& importons)
     : at_d1(std::move(importons.first), lookups(c)), at_d2(std::move(importons.second), lookups(c)) {}

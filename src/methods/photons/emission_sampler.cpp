@@ -1,15 +1,16 @@
 // --method pm, ipm: photons by light tracing, everywhere alike (standard photon mapping), or where they will be asked
 // for.
 #include "methods/method.h"
-#include "methods/photons/guides.h"
 #include "methods/photons/learn_light_paths.h"
 #include "methods/photons/memory_plan.h"
 #include "methods/photons/photon_sampler.h"
+#include "methods/photons/radii.h"
 #include "methods/photons/trials/emission_trial.h"
 #include "photonmap/emission.h"
 #include "session/stage_clock.h"
 
 #include <algorithm>
+#include <memory>
 #include <numeric>
 
 namespace keyhole {
@@ -24,6 +25,40 @@ constexpr double kHidden = 0.01, kMostlyHidden = 0.33;
 /// Second moment of what begins as it was learned, over that by power, from which on it doesn't pay. The trial finds
 /// 0.08 to 0.13 in the dining-room, and 5 to 8 where the sun shines through glass.
 constexpr double kDoesNotPay = 2;
+
+/// A guide needs fewer importons than power that is divided by what they say.
+constexpr std::int64_t kMostImportons = 100'000;
+
+/// Importance guides of both maps.
+struct Guides {
+    std::unique_ptr<ImportanceGuide> global, caustic; ///< null: there is none
+
+    EmissionGuide both() const { return {global.get(), caustic.get()}; }
+};
+
+/// Traces `importons` eye paths, or as many as guides need, and makes guides of them, that of the caustic map where
+/// there is to be one. Puts their figures into `stats`.
+Guides make_guides(const SamplerContext& c, std::uint64_t seed, std::int64_t importons, RenderStats& stats,
+                   const RunContext& context) {
+    const StageClock clock(stats, stages::importance);
+    Importons traced =
+        trace_importance(c.scene, c.importance_tracing(std::min(importons, kMostImportons), seed), context);
+    const float radius = Radii(c.scene).importance;
+    stats.importons = 0;
+    const auto make = [&](std::vector<Photon>&& from) {
+        const PhotonMap map(std::move(from));
+        auto guide = std::make_unique<ImportanceGuide>(map, radius, c.patches, &c.scene, context);
+        stats.importons += map.photons().size();
+        const std::size_t waiting = traced.first.capacity() * sizeof(Photon);
+        stats.photon_bytes = std::max<std::uint64_t>(stats.photon_bytes, map.bytes() + guide->bytes() + waiting);
+        return guide;
+    };
+    Guides guides;
+    guides.global = make(std::move(traced.second));
+    if (c.caustics) guides.caustic = make(std::move(traced.first));
+    stats.importon_bytes = guides.global->bytes() + (guides.caustic ? guides.caustic->bytes() : 0);
+    return guides;
+}
 
 class EmissionSampler final : public PhotonSampler {
   public:

@@ -5,6 +5,7 @@
 #include "core/render_stats.h"
 #include "core/settings.h"
 #include "methods/photons/work_shares.h"
+#include "photonmap/importance/importance_tracing.h"
 #include "photonmap/photon_weighing.h"
 #include "photonmap/photons.h"
 #include "photonmap/surface/surface_patches.h"
@@ -45,6 +46,14 @@ struct SamplerContext {
     PathSet path_set() const { return {settings.paths == SampledPaths::all, coverage, weight}; }
     /// What goes to which map.
     StorageRule storage() const { return {static_cast<int>(settings.max_depth), caustics, coverage}; }
+    /// Of so many importons for what goes there.
+    ImportanceTracing importance_tracing(std::int64_t importons, std::uint64_t seed) const {
+        return {.samples = importons,
+                .at_d1 = caustics,
+                .max_scatterings = static_cast<int>(settings.max_depth),
+                .seed = seed,
+                .weight = weight};
+    }
 };
 
 /// The photons of settings.load_map. sample() throws InputError if the file isn't for this scene.

@@ -49,10 +49,7 @@ struct VisiblePower {
 bool light_comes_near(const SamplerContext& c, const Extent& extent, const RunContext& run) {
     const auto depth = static_cast<int>(c.settings.max_depth);
     const std::uint64_t seed = seed_of_trial(c.settings);
-    Importons importons = trace_importance(
-        c.scene,
-        {.samples = extent.importons, .at_d1 = c.caustics, .max_scatterings = depth, .seed = seed, .weight = c.weight},
-        run);
+    Importons importons = trace_importance(c.scene, c.importance_tracing(extent.importons, seed), run);
     const float radius = Radii(c.scene).importance;
     const ImportanceGuide global(PhotonMap(std::move(importons.second)), radius, c.patches, nullptr, run);
     const ImportanceGuide caustic(PhotonMap(std::move(importons.first)), radius, c.patches, nullptr, run);
