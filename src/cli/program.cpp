@@ -2,7 +2,6 @@
 
 #include "cli/command.h"
 #include "cli/process_group.h"
-#include "cli/standard_streams.h"
 #include "cli/words/tell.h"
 #include "core/error.h"
 #include "scene/load/input.h"
@@ -11,13 +10,16 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <exception>
+#include <fcntl.h>
 #include <new>
 #include <set>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <unistd.h>
 
 namespace keyhole {
 namespace {
@@ -51,6 +53,19 @@ void check_command(const CLI::App& app, std::string_view word) {
     if (word.starts_with('-') || names.contains(std::string(word))) return;
     throw InputError(fmt::format("found the command '{}', {} (see --help)", word,
                                  expected_one_of(word, {names.begin(), names.end()})));
+}
+
+/// Makes the standard streams safe to write to: those that are closed become empty ones, for else a picture could get
+/// their number and messages would go into it. And where nobody reads a stream any more, or a file may not grow,
+/// writing is to fail, and not to end the program.
+void secure_standard_streams() {
+    // The lowest number that is free is taken: all up to that of stderr, once they are open.
+    int opened = 0;
+    do opened = open("/dev/null", O_RDWR);
+    while (opened >= 0 && opened <= STDERR_FILENO);
+    if (opened > STDERR_FILENO) close(opened);
+    std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
 }
 
 int run(int argc, char** argv, ProcessGroup* group) {

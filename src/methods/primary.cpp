@@ -4,7 +4,6 @@
 #include "film/splats.h"
 #include "methods/chain_report.h"
 #include "methods/method.h"
-#include "methods/primary_report.h"
 #include "methods/sample_report.h"
 #include "sampling/primary/p_large.h"
 #include "sampling/primary/primary_chains.h"
@@ -15,6 +14,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 namespace keyhole {
 namespace {
@@ -54,8 +54,35 @@ PrimaryStart start_rjmlt(const StageOneTask& t) {
     return PrimaryStart::by_length(t.builders, &t.inverses, t.options, t.context);
 }
 
+ProposalStats line(std::string name, const StepCounts& c) {
+    return {std::move(name),         c.proposed, 0, 0, c.proposed - c.failed - c.accepted, c.accepted,
+            {{"no_path", c.failed}}, 0};
+}
+
+/// What the rule for large steps said, and the probability `p` that is used.
+void report_large_steps(const LargeStepRule& rule, double p, RenderStats& stats) {
+    stats.values["p_large"] = p;
+    stats.values["p_large by the rule"] = rule.p_large;
+    stats.values["p_large by its first branch"] = rule.by_formula ? 1 : 0;
+    stats.values["eta_s"] = rule.eta_s;
+    stats.values["eta_l"] = rule.eta_l;
+    stats.values["eta_0"] = rule.eta_0;
+}
+
+/// The ledger and the figures of the chains of a pass.
 void report(const PrimaryChains& chains, RenderStats& stats) {
-    report_steps(chains.counts(), chains.size(), stats);
+    const PrimaryCounts counts = chains.counts();
+    stats.proposals = {line("small step", counts.small), line("large step", counts.large),
+                       line("delayed rejection", counts.delayed)};
+    const auto share = [&](std::uint64_t n) {
+        return static_cast<double>(n) / static_cast<double>(counts.proposals());
+    };
+    stats.values["chains"] = static_cast<double>(chains.size());
+    stats.values["mutations"] = static_cast<double>(counts.proposals());
+    stats.values["steps"] = static_cast<double>(counts.steps());
+    stats.values["failure rate"] = share(counts.small.failed + counts.large.failed);
+    stats.values["acceptance rate"] = share(counts.small.accepted + counts.large.accepted + counts.delayed.accepted);
+    stats.values["remedied paths"] = share(counts.remedied());
     if (const ChangeCounts& c = chains.changes(); c.proposed > 0) {
         const auto of_changes = [&](std::uint64_t n) {
             return static_cast<double>(n) / static_cast<double>(c.proposed);
@@ -90,7 +117,8 @@ class PassReports {
         }
         stats.brightness = brightness_ / passes_;
         stats.brightness_error = std::sqrt(variance_) / passes_;
-        warn_of_broken(stats, broken_);
+        if (broken_ > 0)
+            stats.warnings.push_back(fmt::format("{} candidates had a value that is not a number", broken_));
         if (stats.brightness_error > 0.05 * stats.brightness)
             stats.warnings.push_back(
                 fmt::format("the brightness of the picture is known to {:.0f} % only (standard error): "
@@ -116,14 +144,13 @@ bool draw(PrimaryChains& chains, const Scene& scene, const Settings& settings, W
     const std::int64_t per_chain =
         std::max<std::int64_t>(1, settings.mutations / chain_groups(settings) / chains.size());
     const LearningBatch batch(per_chain);
-    context.begin("chains", static_cast<std::uint64_t>(per_chain * chains.size()), "steps");
+    const ProgressStage progress(context, "chains", per_chain * chains.size(), "steps");
     const auto [rule, kernel] = learn_large_steps(chains, settings.failures, settings.p_large.value,
                                                   rounds_of(batch.steps, chains.size(), 1), context);
     report_large_steps(rule, kernel.p_large, stats);
     const std::int64_t drawn = rounds_of(batch.rest, chains.size(), kRounds).run(context, [&](std::int64_t n) {
         chains.advance(kernel, n, context, deposit);
     });
-    context.end();
     if (drawn < batch.rest && !work.is_first()) return false;
     work.unit().drawn->add(film, window.pixels() / static_cast<double>(drawn * chains.size()), work.half());
     return drawn == batch.rest;

@@ -1,10 +1,21 @@
 #include "cli/inspect/page_arrays.h"
 
+#include "cli/page/data_uri.h"
+
+#include <zlib.h>
+
 #include <algorithm>
 #include <cmath>
+#include <new>
 
 namespace keyhole {
 namespace {
+
+/// A non-negative number in 16 bits, by its logarithm: 0, or 2^(code / 1024 - 32) to 0.04 %.
+std::uint16_t logarithmic(double value) {
+    if (!(value > 0)) return 0;
+    return static_cast<std::uint16_t>(std::clamp(std::lround(1024 * (std::log2(value) + 32)), 1L, 65535L));
+}
 
 std::vector<std::uint8_t> bytes_of_colours(const SurfaceMesh& mesh) {
     std::vector<std::uint8_t> bytes;
@@ -189,6 +200,16 @@ void add_layers(const Inspection& inspection, BinaryData& data) {
 }
 
 } // namespace
+
+nlohmann::ordered_json BinaryData::json() const {
+    uLongf size = compressBound(bytes_.size());
+    std::string small(size, '\0');
+    if (compress2(reinterpret_cast<Bytef*>(small.data()), &size, reinterpret_cast<const Bytef*>(bytes_.data()),
+                  bytes_.size(), 9) != Z_OK)
+        throw std::bad_alloc();
+    small.resize(size);
+    return {{"arrays", directory_}, {"deflated", base64(small)}};
+}
 
 void PlaceCode::encode(const Vec3& p, std::vector<std::uint16_t>& to) const {
     for (int i = 0; i < 3; ++i) {

@@ -1,8 +1,8 @@
 #include "film/denoise/denoise.h"
 
 #include "core/parallel.h"
+#include "film/denoise/filter_part.h"
 #include "film/denoise/nonlocal_means.h"
-#include "film/denoise/outliers.h"
 
 #include <algorithm>
 #include <array>

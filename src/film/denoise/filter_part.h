@@ -5,10 +5,12 @@
 #include "film/picture.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <initializer_list>
 #include <string>
+#include <vector>
 
 namespace keyhole {
 
@@ -51,5 +53,17 @@ struct FilterPart {
         std::ranges::transform(layer.data, sum.data, sum.data.begin(), std::plus());
     }
 };
+
+/// A pixel that a filter would make larger instead of less noisy.
+struct Outlier {
+    int x, y;
+    std::array<float, 3> mean; ///< that it had
+    bool confirmed;            ///< both halves of the samples have it
+};
+
+/// Finds pixels so bright that each, spread over those within `reach`, would make a disc of half their brightness more:
+/// a lamp smaller than a pixel, or a sample out of thousands. Puts the mean of the others into their place, without
+/// noise.
+std::vector<Outlier> take_out_outliers(FilterPart& part, int reach);
 
 } // namespace keyhole

@@ -3,11 +3,17 @@
 #pragma once
 
 #include "photonmap/photon_weighing.h"
-#include "photonmap/power/light_path_power.h"
+#include "sampling/guidance/guided_light.h"
 
-#include <limits>
+#include <optional>
 
 namespace keyhole {
+
+/// F(X) / p(X) [W] of light sub-path X, vertices 0 to `last` of `path`: flux over the density of light tracing, every
+/// way to make X summed: choice of emitter, place and direction, scattering, walks along user paths, survival of
+/// roulette. That is the power with which light tracing arrives there. None where light tracing never makes X. Reads
+/// points, BSDFs and events of the vertices only.
+std::optional<Rgb> light_path_power(const Scene& scene, const LightPathSampling& sampling, const Path& path, int last);
 
 /// N_c steps of chains visit light sub-path X with density C(X) / B, where C = Y(F E) is its visible power, N_i light
 /// paths make it with density p(X). Over both, the share of chains is N_c C / B / (N_c C / B + N_i p), which depends on
@@ -28,12 +34,7 @@ class TechniqueWeights {
     /// That of light tracing.
     double of_light_path(const PhotonWeighing::Weight& visible) const { return 1 - of_chains(visible); }
     /// V of the photon of `kind` at vertex `at` of `path`; infinite where light tracing never makes it.
-    PhotonWeighing::Weight visible(const Scene& scene, PhotonKind kind, const Path& path, int at) const {
-        const auto power = light_path_power(scene, sampling_, path, at);
-        if (!power) return {std::numeric_limits<double>::infinity(), true};
-        const auto i = static_cast<std::size_t>(at);
-        return weighing_(kind, path.x[i], direction(path.x[i].point, path.x[i - 1].point), *power);
-    }
+    PhotonWeighing::Weight visible(const Scene& scene, PhotonKind kind, const Path& path, int at) const;
 
   private:
     PhotonWeighing weighing_;

@@ -1,8 +1,6 @@
-#include "film/denoise/outliers.h"
+#include "film/denoise/filter_part.h"
 
 #include "film/denoise/plane.h"
-
-#include <cmath>
 
 namespace keyhole {
 namespace {
