@@ -11,8 +11,7 @@
 namespace keyhole {
 
 struct OpeningSearch {
-    std::int64_t paths = 2048;                                ///< traced from either end
-    std::int64_t pairs = std::int64_t{1} << 20;               ///< of their vertices that are tried at most
+    std::int64_t pairs = std::int64_t{1} << 20;               ///< of ends that are tried at most
     double seconds = std::numeric_limits<double>::infinity(); ///< for these, about
     int max_scatterings = 24;                                 ///< of light, on its way through an opening
     std::size_t most = 4;                                     ///< openings

@@ -18,12 +18,11 @@ constexpr double kWorthwhile = 0.8;
 /// A path counts as so many times the mean at most: what was hard to find must not draw all light to where it was.
 constexpr double kMostOfMean = 20;
 
-DirectionHistogram histogram_of(std::span<const SeenScattering* const> seen, double most_weight,
-                                const std::optional<DirectionHistogram::Plane>& plane) {
+std::vector<DirectionHistogram::Ray> rays_of(std::span<const SeenScattering* const> seen, double most_weight) {
     std::vector<DirectionHistogram::Ray> rays;
     rays.reserve(seen.size());
     for (const SeenScattering* s : seen) rays.push_back({s->at.p, s->towards, std::min(s->weight, most_weight)});
-    return {rays, plane};
+    return rays;
 }
 
 } // namespace
@@ -50,8 +49,7 @@ LearnedScattering::Cell LearnedScattering::make_cell(std::span<const SeenScatter
     for (const SeenScattering* s : found) sum += s->weight;
     const double most_weight = kMostOfMean * sum / static_cast<double>(found.size());
 
-    std::vector<DirectionHistogram::Ray> rays;
-    for (const SeenScattering* s : found) rays.push_back({s->at.p, s->towards, std::min(s->weight, most_weight)});
+    const std::vector<DirectionHistogram::Ray> rays = rays_of(found, most_weight);
     const auto plane = DirectionHistogram::meeting_plane(rays);
     std::vector<const SeenScattering*> some, others;
     for (std::size_t i = 0; i < found.size(); ++i) (i % 2 == 0 ? some : others).push_back(found[i]);
@@ -59,7 +57,7 @@ LearnedScattering::Cell LearnedScattering::make_cell(std::span<const SeenScatter
     // does so on average, since `seen` is distributed as what is wanted.
     std::array<double, kBsdfShares.size()> moments{};
     for (const auto& [learned, held_out] : {std::pair{&some, &others}, std::pair{&others, &some}}) {
-        const DirectionHistogram directions = histogram_of(*learned, most_weight, plane);
+        const DirectionHistogram directions(rays_of(*learned, most_weight), plane);
         if (directions.empty()) return {};
         for (const SeenScattering* s : *held_out) {
             const double by_histogram = directions.pdf(s->at.p, s->towards);
