@@ -73,6 +73,11 @@ namespace methods {
 /// Names of the methods that `is` holds for, separated by commas.
 std::string names_of(bool Method::*is);
 
+/// Whether the method knows what to do with the scene's media.
+bool can_show(const Scene& scene, const Method& method);
+/// @throws InputError if it can't show the scene; `auto` stands for others, which may
+void require_can_show(const Scene& scene, const Method& method);
+
 /// Whether the method can do what the settings ask for: save photons, or weigh them by pixels; whether they leave it
 /// anything to do; and whether it can show the scene.
 bool can_do(const Scene& scene, const Settings& settings, const Method& method);

@@ -43,6 +43,7 @@ void set_window_margin(Scene& scene, const Settings& settings) {
 
 RenderResult render(Scene& scene, const Settings& settings, const RunContext& context, const UserPathFile& user_paths,
                     const WorkPartition& share) {
+    if (settings.method != &methods::automatic) require_can_show(scene, *settings.method);
     set_window_margin(scene, settings);
     Findings findings;
     RenderResult result;

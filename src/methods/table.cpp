@@ -13,10 +13,6 @@ constexpr const Method* kMethods[] = {
 };
 #undef KEYHOLE_METHOD
 
-bool can_show(const Scene& scene, const Method& method) {
-    return method.scatters_in_media || !scene.has_scattering_media();
-}
-
 } // namespace
 
 std::span<const Method* const> all_methods() { return kMethods; }
@@ -35,6 +31,16 @@ std::string names_of(bool Method::*is) {
     return fmt::format("{}", fmt::join(names, ", "));
 }
 
+bool can_show(const Scene& scene, const Method& method) {
+    return method.scatters_in_media || !scene.has_scattering_media();
+}
+
+void require_can_show(const Scene& scene, const Method& method) {
+    if (can_show(scene, method)) return;
+    throw InputError(fmt::format("found a medium that scatters, which method {} doesn't show; expected one of {}",
+                                 method.name, names_of(&Method::scatters_in_media)));
+}
+
 bool can_do(const Scene& scene, const Settings& s, const Method& method) {
     if (!can_show(scene, method)) return false;
     if (method.keeps_photons) return true;
@@ -44,9 +50,7 @@ bool can_do(const Scene& scene, const Settings& s, const Method& method) {
 
 RenderResult render_by_method(const RenderTask& task) {
     const Method& method = *task.settings.method;
-    if (!can_show(task.scene, method))
-        throw InputError(fmt::format("found a medium that scatters, which method {} doesn't show; expected one of {}",
-                                     method.name, names_of(&Method::scatters_in_media)));
+    require_can_show(task.scene, method);
     RenderResult result = method.render(task);
     if (result.stats.method.empty()) result.stats.method = method.name;
     result.settings = task.settings;

@@ -1,7 +1,9 @@
 // Rooms full of fog and clouds: every method that shows them makes the same picture, and the others say that they
 // don't.
 #include "core/error.h"
+#include "methods/choice/expected_cost.h"
 #include "methods/method.h"
+#include "methods/photons/plan.h"
 #include "support/agreement.h"
 #include "support/test_scenes.h"
 
@@ -51,6 +53,14 @@ TEST(ScatteringMedia_Methods, AutoTakesOneThatShowsThem) {
     s.spp = 2;
     const RenderResult result = render(*scene, s, {}, {});
     EXPECT_TRUE(method_named(result.stats.method).scatters_in_media) << result.stats.method;
+}
+
+TEST(ScatteringMedia_Methods, ThePlanHasNoPhotons) {
+    const auto scene = small_foggy_box();
+    Findings findings;
+    plan_photons(*scene, settings("auto"), {}, {}, findings);
+    EXPECT_FALSE(findings.plan->photons);
+    EXPECT_TRUE(method_named(expect_cost(*scene, settings("auto"), {}, findings).method).scatters_in_media);
 }
 
 TEST(ScatteringMedia_Methods, OthersSayThatTheyDont) {

@@ -44,7 +44,7 @@ ExpectedCost expect_cost(Scene& scene, const Settings& settings, const UserPathF
     ExpectedCost expected;
     if (settings.method == &methods::automatic) {
         s.method = &methods::ipm;
-        const auto ipm = cost_of(c, *s.method);
+        const auto ipm = can_show(scene, *s.method) ? cost_of(c, *s.method) : std::nullopt;
         const double seconds = ipm ? ipm->cost.predict(s, pixels) : kEver;
         const auto tried = with_time(c, seconds, [](const TrialContext& t) { return try_methods(t, kAll); });
         if (!tried.empty()) {

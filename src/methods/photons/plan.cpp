@@ -13,6 +13,7 @@ PlanItem plan_photons(const SamplerContext& c, const SceneSurvey& survey, const 
     const char* name = "photon maps";
     if (!c.settings.load_map.empty()) return {name, true, "they come from a file"};
     if (c.scene.emitter_distribution().empty()) return {name, false, "nothing emits light"};
+    if (c.scene.has_scattering_media()) return {name, false, "a medium scatters, and photons lie on surfaces"};
     if (survey.stored() > 0)
         return {name, true, percent(survey.stored() / survey.total()) + " of the light that is seen would be in them"};
     // What paths from the eye meet by chance only may be easy to find from both ends, or from the light.
