@@ -18,4 +18,8 @@ bool is_gltf(const std::string& path);
 /// @throws InputError "path: what was found, what was expected" for files that are missing or broken.
 LoadedScene load_gltf(const std::string& path, std::vector<std::string>* warnings);
 
+/// The bytes of a glTF file as Assimp reads them rightly: gltf/importable.h.
+/// @throws InputError as load_gltf().
+std::string importable_gltf(const std::string& path);
+
 } // namespace keyhole

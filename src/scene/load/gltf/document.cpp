@@ -75,7 +75,10 @@ std::string unescaped(const std::string& uri) {
 bool is_data(const std::string& uri) { return uri.starts_with("data:"); }
 
 /// The ending that tells readers what a picture is.
-std::string ending_of(const std::string& bytes) { return bytes.starts_with("\x89PNG") ? ".png" : ".jpg"; }
+std::string ending_of(const std::string& bytes) {
+    if (bytes.starts_with("RIFF") && bytes.find("WEBP") == 8) return ".webp";
+    return bytes.starts_with("\x89PNG") ? ".png" : ".jpg";
+}
 
 } // namespace
 
@@ -106,11 +109,7 @@ Document::~Document() {
     if (!scratch_.empty()) std::filesystem::remove_all(scratch_, ignored);
 }
 
-std::string Document::with_numbered_materials() const {
-    Json root = root_;
-    if (const auto materials = root.find("materials"); materials != root.end() && materials->is_array())
-        for (std::size_t i = 0; i < materials->size(); ++i)
-            if ((*materials)[i].is_object()) (*materials)[i]["name"] = std::to_string(i);
+std::string Document::with_root(const Json& root) const {
     const std::string json = root.dump(-1, ' ', false, Json::error_handler_t::replace);
     if (!packed_) return json;
     std::string chunks = chunk(kJsonChunk, json, ' ');
@@ -148,13 +147,16 @@ std::string Document::buffer_bytes(std::size_t index) const {
     return buffer.contains("uri") ? uri_bytes(buffer["uri"].get<std::string>()) : binary_;
 }
 
-std::string Document::view_bytes(std::size_t index) {
+std::string Document::bytes_of_view(std::size_t index) const {
+    return std::string(view_within(buffer_bytes(buffer_of_view(index)), index));
+}
+
+std::string_view Document::view_within(std::string_view buffer, std::size_t index) const {
     const Json& view = entry("bufferViews", index);
-    const std::string bytes = buffer_bytes(view.at("buffer").get<std::size_t>());
     const auto offset = value_or<std::size_t>(view, "byteOffset", 0), length = view.at("byteLength").get<std::size_t>();
-    if (offset > bytes.size() || length > bytes.size() - offset)
-        fail(fmt::format("found buffer view {} beyond its buffer of {} bytes", index, bytes.size()));
-    return bytes.substr(offset, length);
+    if (offset > buffer.size() || length > buffer.size() - offset)
+        fail(fmt::format("found buffer view {} beyond its buffer of {} bytes", index, buffer.size()));
+    return buffer.substr(offset, length);
 }
 
 std::string Document::image_file(std::size_t index) {
@@ -162,7 +164,7 @@ std::string Document::image_file(std::size_t index) {
     const Json& image = entry("images", index);
     const auto uri = value_or<std::string>(image, "uri", "");
     if (!uri.empty() && !is_data(uri)) return uri_path(uri);
-    const std::string bytes = uri.empty() ? view_bytes(image.at("bufferView").get<std::size_t>()) : uri_bytes(uri);
+    const std::string bytes = uri.empty() ? bytes_of_view(image.at("bufferView")) : uri_bytes(uri);
     if (scratch_.empty()) {
         std::string name = (std::filesystem::temp_directory_path() / "keyhole-gltf-XXXXXX").string();
         if (mkdtemp(name.data()) == nullptr) fail("found no room for the images in the file");

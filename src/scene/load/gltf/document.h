@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 
 namespace keyhole::gltf {
 
@@ -26,9 +27,15 @@ class Document {
     /// Entry `index` of one of the lists at the top. @throws InputError where there is none.
     const Json& entry(const char* list, std::size_t index) const;
 
-    /// The bytes of the file, in which each material has its number for a name: readers number them in an order of
-    /// their own.
-    std::string with_numbered_materials() const;
+    /// Whether it is a .glb.
+    bool packed() const { return packed_; }
+    /// The bytes of the file if its JSON were this.
+    std::string with_root(const Json& root) const;
+
+    std::size_t buffer_of_view(std::size_t view) const { return entry("bufferViews", view).at("buffer"); }
+    std::string buffer_bytes(std::size_t index) const;
+    /// The bytes of a view of a buffer. @throws InputError where that ends too early.
+    std::string_view view_within(std::string_view buffer, std::size_t view) const;
 
     /// The path of a file with an image: its own, or one that lasts as long as this object.
     std::string image_file(std::size_t index);
@@ -41,16 +48,15 @@ class Document {
     void warn(const std::string& message) const { warnings_.add({path_, 0, 0}, message, message); }
 
   private:
-    std::string view_bytes(std::size_t index);
-    std::string buffer_bytes(std::size_t index) const;
+    std::string bytes_of_view(std::size_t index) const;
     std::string uri_bytes(const std::string& uri) const;
     std::string uri_path(const std::string& uri) const;
 
     std::string path_;
     Warnings& warnings_;
     Json root_;
-    bool packed_ = false; ///< a .glb
-    std::string binary_;  ///< its second part
+    bool packed_ = false;
+    std::string binary_; ///< its second part
     std::filesystem::path scratch_;
     std::map<std::size_t, std::string> written_; ///< images
 };

@@ -1,6 +1,7 @@
 #include "scene/load/load_gltf.h"
 
 #include "scene/emitters/emitters.h"
+#include "scene/load/gltf/importable.h"
 #include "scene/load/gltf/materials.h"
 #include "scene/load/gltf/nodes.h"
 #include "scene/load/load_mesh.h"
@@ -61,7 +62,7 @@ class SceneBuilder {
   private:
     std::vector<Shape> shapes() {
         std::vector<Shape> shapes;
-        const std::string content = document_.with_numbered_materials();
+        const std::string content = gltf::importable(document_);
         for (MeshPart& part : import_parts(path_, &content)) {
             const std::size_t material = number_of(part.material);
             const MaterialData& data = material_of(material);
@@ -114,6 +115,15 @@ class SceneBuilder {
     std::map<std::size_t, MaterialData> materials_;
 };
 
+/// What `read` makes of a file.
+template <class Read> auto with_errors_of(const std::string& path, Read&& read) {
+    try {
+        return read();
+    } catch (const Json::exception& e) {
+        throw InputError({path, 0, 0}, std::string("found what glTF doesn't have at that place: ") + e.what());
+    }
+}
+
 } // namespace
 
 bool is_gltf(const std::string& path) {
@@ -122,11 +132,14 @@ bool is_gltf(const std::string& path) {
 }
 
 LoadedScene load_gltf(const std::string& path, std::vector<std::string>* warnings) {
-    try {
-        return SceneBuilder(path, warnings).build();
-    } catch (const Json::exception& e) {
-        throw InputError({path, 0, 0}, std::string("found what glTF doesn't have at that place: ") + e.what());
-    }
+    return with_errors_of(path, [&] { return SceneBuilder(path, warnings).build(); });
+}
+
+std::string importable_gltf(const std::string& path) {
+    return with_errors_of(path, [&] {
+        Warnings unheard(nullptr);
+        return gltf::importable(Document(path, unheard));
+    });
 }
 
 } // namespace keyhole

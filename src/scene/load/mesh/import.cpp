@@ -1,6 +1,7 @@
 #include "scene/load/load_mesh.h"
 
 #include "core/error.h"
+#include "scene/load/load_gltf.h"
 
 #include <assimp/BaseImporter.h>
 #include <assimp/DefaultIOSystem.h>
@@ -208,8 +209,10 @@ std::vector<MeshPart> import_parts(const std::string& path, const std::string* c
 TriangleMesh import_mesh(const std::string& path) {
     const std::string extension = check_file(path);
     if (extension == ".ply" || extension == ".ply.gz") return read_ply(path);
+    const bool gltf = extension == ".gltf" || extension == ".glb";
+    const std::string content = gltf ? importable_gltf(path) : "";
     TriangleMesh all;
-    for (MeshPart& part : read_parts(path, extension, nullptr)) append(all, std::move(part.mesh));
+    for (MeshPart& part : read_parts(path, extension, gltf ? &content : nullptr)) append(all, std::move(part.mesh));
     return all;
 }
 

@@ -1,0 +1,163 @@
+#include "scene/load/gltf/importable.h"
+
+#include "scene/load/gltf/accessors.h"
+#include "scene/load/gltf/extensions.h"
+
+#include "scene/load/load_mesh.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace keyhole::gltf {
+namespace {
+
+constexpr int kFloat = 5126;
+
+std::string to_base64(std::string_view bytes) {
+    constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        std::uint32_t bits = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            bits = bits << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+        for (std::size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? kDigits[bits >> (18 - 6 * k) & 63] : '=';
+    }
+    return text;
+}
+
+class Rewriter {
+  public:
+    explicit Rewriter(const Document& document) : document_(document), root_(document.root()), reader_(document) {}
+
+    std::string rewrite() {
+        check_extensions(document_);
+        number_materials();
+        for (Json& mesh : list_of(root_, "meshes"))
+            for (Json& primitive : list_of(mesh, "primitives")) widen(primitive);
+        const std::size_t nodes = list_of(root_, "nodes").size(); // more are added behind them
+        for (std::size_t i = 0; i < nodes; ++i) place_instances(i);
+        if (!numbers_.empty()) add_buffer();
+        return document_.with_root(root_);
+    }
+
+  private:
+    /// The list at a key; an empty one where there is none.
+    Json& list_of(Json& object, const char* key) {
+        const auto found = object.is_object() ? object.find(key) : object.end();
+        return found != object.end() && found->is_array() ? *found : none_;
+    }
+
+    void number_materials() {
+        Json& materials = list_of(root_, "materials");
+        for (std::size_t i = 0; i < materials.size(); ++i)
+            if (materials[i].is_object()) materials[i]["name"] = std::to_string(i);
+    }
+
+    void widen(Json& primitive) {
+        if (!primitive.is_object() || !member(primitive, "attributes").is_object()) return;
+        for (auto& [name, accessor] : primitive["attributes"].items()) {
+            constexpr std::array kVectors{"POSITION", "NORMAL", "TANGENT", "TEXCOORD_", "COLOR_"};
+            const bool read = std::ranges::any_of(kVectors, [&](const char* v) { return name.starts_with(v); });
+            if (read) accessor = in_floats(accessor.get<std::size_t>());
+        }
+    }
+
+    /// The accessor itself, or one that has its numbers as floats.
+    std::size_t in_floats(std::size_t accessor) {
+        const auto [known, fresh] = widened_.try_emplace(accessor, accessor);
+        if (!fresh || document_.entry("accessors", accessor).at("componentType") == kFloat) return known->second;
+        const NumberTable table = reader_.read(accessor);
+        const std::size_t bytes = table.values.size() * sizeof(float);
+        Json& views = root_["bufferViews"];
+        views.push_back(
+            {{"buffer", member(root_, "buffers").size()}, {"byteOffset", numbers_.size()}, {"byteLength", bytes}});
+        numbers_.append(reinterpret_cast<const char*>(table.values.data()), bytes);
+        Json& accessors = root_["accessors"];
+        accessors.push_back({{"bufferView", views.size() - 1},
+                             {"componentType", kFloat},
+                             {"count", table.count},
+                             {"type", member(document_.entry("accessors", accessor), "type")}});
+        return known->second = accessors.size() - 1;
+    }
+
+    /// EXT_mesh_gpu_instancing: one child for each instance of a node's mesh.
+    void place_instances(std::size_t index) {
+        Json& nodes = root_["nodes"];
+        const Json* instancing =
+            nodes[index].is_object() ? extension(nodes[index], "EXT_mesh_gpu_instancing") : nullptr;
+        if (instancing == nullptr || !nodes[index].contains("mesh")) return;
+        std::vector<Json> instances;
+        constexpr std::array<std::pair<const char*, const char*>, 3> kKeys{
+            {{"TRANSLATION", "translation"}, {"ROTATION", "rotation"}, {"SCALE", "scale"}}};
+        for (const auto& [attribute, key] : kKeys) {
+            const auto found = member(*instancing, "attributes").find(attribute);
+            if (found == member(*instancing, "attributes").end()) continue;
+            set_each(instances, key, instance_rows(*found, attribute, instances.size()));
+        }
+        if (instances.empty()) return;
+        const std::size_t first = nodes.size();
+        Json children = list_of(nodes[index], "children");
+        for (std::size_t i = 0; i < instances.size(); ++i) {
+            instances[i]["mesh"] = nodes[index]["mesh"];
+            if (nodes[index].contains("name")) instances[i]["name"] = nodes[index]["name"];
+            children.push_back(first + i);
+        }
+        nodes[index].erase("mesh");
+        nodes[index]["children"] = std::move(children);
+        for (Json& instance : instances) nodes.push_back(std::move(instance));
+    }
+
+    /// @param expected 0: any
+    NumberTable instance_rows(const Json& accessor, const std::string& attribute, std::size_t expected) {
+        NumberTable table = reader_.read(accessor.get<std::size_t>());
+        const std::size_t width = attribute == "ROTATION" ? 4 : 3;
+        if (table.width != width)
+            document_.fail(
+                fmt::format("found {} numbers a row of {} of instances, expected {}", table.width, attribute, width));
+        if (table.count > kMaxShapes || (expected > 0 && table.count != expected))
+            document_.fail(fmt::format("found {} of {} of instances, expected {}", table.count, attribute,
+                                       expected > 0 ? expected : kMaxShapes));
+        return table;
+    }
+
+    static void set_each(std::vector<Json>& instances, const char* key, const NumberTable& table) {
+        instances.resize(table.count, Json::object());
+        for (std::size_t i = 0; i < table.count; ++i) {
+            const auto row = table.values.begin() + static_cast<std::ptrdiff_t>(i * table.width);
+            std::vector<float> numbers(row, row + static_cast<std::ptrdiff_t>(table.width));
+            const double length = std::sqrt(std::inner_product(numbers.begin(), numbers.end(), numbers.begin(), 0.0));
+            if (numbers.size() == 4 && length > 0) // a rotation, which integers round
+                for (float& number : numbers) number = static_cast<float>(number / length);
+            instances[i][key] = std::move(numbers);
+        }
+    }
+
+    void add_buffer() {
+        root_["buffers"].push_back(
+            {{"byteLength", numbers_.size()}, {"uri", "data:application/octet-stream;base64," + to_base64(numbers_)}});
+    }
+
+    const Document& document_;
+    Json root_;
+    AccessorReader reader_;
+    std::map<std::size_t, std::size_t> widened_; ///< accessors, and those that stand for them
+    std::string numbers_;                        ///< of a buffer that is added
+    Json none_ = Json::array();
+};
+
+} // namespace
+
+std::string importable(const Document& document) { return Rewriter(document).rewrite(); }
+
+} // namespace keyhole::gltf
