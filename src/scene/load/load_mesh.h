@@ -63,6 +63,12 @@ void mend_mesh(TriangleMesh& mesh, const std::string& source);
 /// 1998).
 void smooth_normals(TriangleMesh& mesh);
 
+// What meshes enclose: mesh/closed.cpp.
+
+/// Whether a mesh encloses a volume: between any two places as many edges of triangles run one way as the other. Gaps
+/// as narrow as rounding makes them at seams don't count.
+bool is_closed(const TriangleMesh& mesh);
+
 // Simple shapes: mesh/primitives.cpp.
 
 /// The parallelogram corner + [0,1] u + [0,1] v. Its outside is that of u x v; texture coordinates run along u and v.

@@ -8,6 +8,7 @@
 #include "scene/material.h"
 
 #include <Imath/ImathBox.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
@@ -73,9 +74,20 @@ class SceneBuilder {
             shape.name = std::move(part.name);
             shape.material_name = name_of(material);
             if (!is_black(data.emission.radiance)) shape.emission = std::make_unique<SurfaceEmission>(data.emission);
+            fill(shape, data.inside);
             shapes.push_back(std::move(shape));
         }
         return shapes;
+    }
+
+    /// A medium ends where its mesh ends: one with holes would let it out everywhere.
+    void fill(Shape& shape, const std::shared_ptr<const Medium>& inside) const {
+        if (inside == nullptr) return;
+        if (is_closed(std::get<TriangleMesh>(shape.geometry)))
+            shape.inside = inside;
+        else
+            document_.warn(fmt::format("the mesh '{}' isn't closed: nothing in its glass of the material '{}' absorbs",
+                                       shape.name, shape.material_name));
     }
 
     /// One beyond the last for meshes that name none, for which the importer has a material of its own.

@@ -9,8 +9,9 @@ namespace keyhole::gltf {
 /// What shapes get from an entry of `materials`.
 struct MaterialData {
     MaterialPtr material;
-    SurfaceEmission emission; ///< black: none
-    FloatTexture alpha;       ///< null: opaque
+    SurfaceEmission emission;             ///< black: none
+    FloatTexture alpha;                   ///< null: opaque
+    std::shared_ptr<const Medium> inside; ///< of closed meshes; null: vacuum
 };
 
 /// The material of an entry of `materials`, or the one of meshes that name none.

@@ -1,0 +1,24 @@
+// Textures of glTF materials, and the factors on them.
+#pragma once
+
+#include "scene/load/gltf/document.h"
+#include "scene/texture.h"
+
+#include <memory>
+
+namespace keyhole::gltf {
+
+/// The picture that a reference to a texture names. T: Rgb, or double with the `channel` of ImageOptions.
+/// @throws InputError for pictures in formats that aren't read.
+template <class T>
+std::shared_ptr<const Texture<T>> picture(Document& document, const Json& reference, Encoding encoding,
+                                          int channel = -1);
+
+/// The colour under the key `factor`, white if none is given, perhaps times the picture under `texture`.
+ColorTexture color(Document& document, const Json& object, const char* factor, const char* texture);
+
+/// A number, perhaps times a channel of a texture.
+FloatTexture number(Document& document, const Json& object, const char* factor, double otherwise, const char* texture,
+                    int channel);
+
+} // namespace keyhole::gltf
