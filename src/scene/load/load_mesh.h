@@ -4,6 +4,7 @@
 #include "scene/shape.h"
 
 #include <Imath/ImathMatrix.h>
+#include <Imath/ImathVec.h>
 
 #include <string>
 #include <vector>
@@ -35,8 +36,9 @@ TriangleMesh import_mesh(const std::string& path);
 /// A part of a file where that places it.
 struct MeshPart {
     TriangleMesh mesh;
-    std::string material; ///< its name; may be empty
-    std::string name;     ///< of the node that places it; may be empty
+    std::vector<Imath::V4f> colors; ///< red, green, blue and opacity, linear; one per position, or empty
+    std::string material;           ///< its name; may be empty
+    std::string name;               ///< of the node that places it; may be empty
 };
 
 /// Reads the parts of an OBJ, glTF or GLB file one by one, as import_mesh() does.

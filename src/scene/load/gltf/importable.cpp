@@ -36,6 +36,16 @@ std::string to_base64(std::string_view bytes) {
     return text;
 }
 
+/// Another column.
+void add_ones(NumberTable& table) {
+    NumberTable wider{table.count, table.width + 1, {}};
+    for (std::size_t i = 0; i < table.values.size(); ++i) {
+        wider.values.push_back(table.values[i]);
+        if ((i + 1) % table.width == 0) wider.values.push_back(1);
+    }
+    table = std::move(wider);
+}
+
 class Rewriter {
   public:
     explicit Rewriter(const Document& document) : document_(document), root_(document.root()), reader_(document) {}
@@ -69,15 +79,19 @@ class Rewriter {
         for (auto& [name, accessor] : primitive["attributes"].items()) {
             constexpr std::array kVectors{"POSITION", "NORMAL", "TANGENT", "TEXCOORD_", "COLOR_"};
             const bool read = std::ranges::any_of(kVectors, [&](const char* v) { return name.starts_with(v); });
-            if (read) accessor = in_floats(accessor.get<std::size_t>());
+            if (read) accessor = in_floats(accessor.get<std::size_t>(), name.starts_with("COLOR_"));
         }
     }
 
-    /// The accessor itself, or one that has its numbers as floats.
-    std::size_t in_floats(std::size_t accessor) {
-        const auto [known, fresh] = widened_.try_emplace(accessor, accessor);
-        if (!fresh || document_.entry("accessors", accessor).at("componentType") == kFloat) return known->second;
-        const NumberTable table = reader_.read(accessor);
+    /// The accessor itself, or one that has its numbers as floats. Colours have an opacity, which Assimp takes for 0
+    /// if none is given.
+    std::size_t in_floats(std::size_t accessor, bool color) {
+        const auto [known, fresh] = widened_.try_emplace({accessor, color}, accessor);
+        const Json& old = document_.entry("accessors", accessor);
+        const bool opaque = color && old.at("type") == "VEC3";
+        if (!fresh || (old.at("componentType") == kFloat && !opaque)) return known->second;
+        NumberTable table = reader_.read(accessor);
+        if (opaque) add_ones(table);
         const std::size_t bytes = table.values.size() * sizeof(float);
         Json& views = root_["bufferViews"];
         views.push_back(
@@ -87,7 +101,7 @@ class Rewriter {
         accessors.push_back({{"bufferView", views.size() - 1},
                              {"componentType", kFloat},
                              {"count", table.count},
-                             {"type", member(document_.entry("accessors", accessor), "type")}});
+                             {"type", opaque ? "VEC4" : old.at("type")}});
         return known->second = accessors.size() - 1;
     }
 
@@ -151,8 +165,9 @@ class Rewriter {
     const Document& document_;
     Json root_;
     AccessorReader reader_;
-    std::map<std::size_t, std::size_t> widened_; ///< accessors, and those that stand for them
-    std::string numbers_;                        ///< of a buffer that is added
+    /// Accessors, each as colours or not, and those that stand for them.
+    std::map<std::pair<std::size_t, bool>, std::size_t> widened_;
+    std::string numbers_; ///< of a buffer that is added
     Json none_ = Json::array();
 };
 

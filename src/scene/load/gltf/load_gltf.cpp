@@ -66,7 +66,9 @@ class SceneBuilder {
         const std::string content = gltf::importable(document_);
         for (MeshPart& part : import_parts(path_, &content)) {
             const std::size_t material = number_of(part.material);
-            const MaterialData& data = material_of(material);
+            const gltf::VertexColors colors = gltf::vertex_colors(part);
+            const bool own = colors.color != nullptr || colors.opacity != nullptr;
+            const MaterialData data = own ? read(material, colors) : material_of(material);
             Shape shape;
             shape.geometry = std::move(part.mesh);
             shape.material = data.material;
@@ -101,9 +103,12 @@ class SceneBuilder {
     const MaterialData& material_of(std::size_t material) {
         const auto [known, fresh] = materials_.try_emplace(material);
         if (!fresh) return known->second;
+        return known->second = read(material, {});
+    }
+
+    MaterialData read(std::size_t material, const gltf::VertexColors& colors) {
         const Json& all = gltf::member(document_.root(), "materials");
-        known->second = gltf::read_material(document_, material < all.size() ? all[material] : Json::object());
-        return known->second;
+        return gltf::read_material(document_, material < all.size() ? all[material] : Json::object(), colors);
     }
 
     std::string name_of(std::size_t material) const {

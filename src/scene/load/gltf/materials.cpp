@@ -23,9 +23,9 @@ constexpr double kLeastAttenuation = 1e-6;
 /// Reads what one material says.
 class Reader {
   public:
-    Reader(Document& document, const Json& material)
+    Reader(Document& document, const Json& material, const VertexColors& colors)
         : document_(document), material_(material), metal_(member(material, "pbrMetallicRoughness")),
-          glossy_(extension(material, "KHR_materials_pbrSpecularGlossiness")) {}
+          glossy_(extension(material, "KHR_materials_pbrSpecularGlossiness")), colors_(colors) {}
 
     MaterialData read() {
         report_extensions();
@@ -76,6 +76,11 @@ class Reader {
         return value_or(specular, "specularFactor", 1.0) * luminance(tint);
     }
 
+    ColorTexture times_vertices(const ColorTexture& base) const {
+        if (colors_.color == nullptr) return base;
+        return computed_texture([](const Rgb& a, const Rgb& b) { return a * b; }, base, colors_.color);
+    }
+
     MetallicRoughness base_surface() const {
         if (glossy_ != nullptr) {
             document_.warn("KHR_materials_pbrSpecularGlossiness is approximated by metal and plastic");
@@ -93,7 +98,7 @@ class Reader {
         const double eta = ior != nullptr ? value_or(*ior, "ior", 1.5) : 1.5;
         const MetallicRoughness base = base_surface();
         PrincipledTextures t = principled_textures(eta, base.roughness);
-        t.base_color = base.color;
+        t.base_color = times_vertices(base.color);
         t.metallic = base.metallic;
         if (const Json* specular = extension(material_, "KHR_materials_specular"))
             t.specular = scale_texture<double>(t.specular, constant_texture(specular_factor(*specular)));
@@ -138,6 +143,7 @@ class Reader {
         FloatTexture alpha = constant_texture(factor.size() == 4 ? std::clamp(factor[3], 0.0, 1.0) : 1.0);
         if (owner.contains(texture))
             alpha = scale_texture<double>(picture<double>(document_, owner[texture], Encoding::linear, kAlpha), alpha);
+        if (colors_.opacity != nullptr) alpha = scale_texture<double>(alpha, colors_.opacity);
         if (mode == "MASK")
             alpha = computed_texture(
                 [cutoff = value_or(material_, "alphaCutoff", 0.5)](double a) { return a >= cutoff ? 1.0 : 0.0; },
@@ -162,10 +168,13 @@ class Reader {
     const Json& material_;
     const Json& metal_;
     const Json* glossy_; ///< KHR_materials_pbrSpecularGlossiness, which stands for `metal_`; null: none
+    const VertexColors& colors_;
 };
 
 } // namespace
 
-MaterialData read_material(Document& document, const Json& material) { return Reader(document, material).read(); }
+MaterialData read_material(Document& document, const Json& material, const VertexColors& colors) {
+    return Reader(document, material, colors).read();
+}
 
 } // namespace keyhole::gltf

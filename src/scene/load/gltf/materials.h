@@ -2,6 +2,7 @@
 #pragma once
 
 #include "scene/load/gltf/document.h"
+#include "scene/load/gltf/vertex_colors.h"
 #include "scene/shape.h"
 
 namespace keyhole::gltf {
@@ -14,7 +15,7 @@ struct MaterialData {
     std::shared_ptr<const Medium> inside; ///< of closed meshes; null: vacuum
 };
 
-/// The material of an entry of `materials`, or the one of meshes that name none.
-MaterialData read_material(Document& document, const Json& material);
+/// The material of an entry of `materials`, or the one of meshes that name none, on a mesh with such colours.
+MaterialData read_material(Document& document, const Json& material, const VertexColors& colors);
 
 } // namespace keyhole::gltf

@@ -81,6 +81,15 @@ TriangleMesh convert(const aiMesh& source) {
     return mesh;
 }
 
+std::vector<Imath::V4f> colors_of(const aiMesh& source) {
+    std::vector<Imath::V4f> colors;
+    for (unsigned i = 0; source.HasVertexColors(0) && i < source.mNumVertices; ++i) {
+        const aiColor4D& c = source.mColors[0][i];
+        colors.emplace_back(c.r, c.g, c.b, c.a);
+    }
+    return colors;
+}
+
 void append(TriangleMesh& all, TriangleMesh part) {
     if (!all.positions.empty() && all.normals.empty() != part.normals.empty())
         smooth_normals(all.normals.empty() ? all : part);
@@ -126,7 +135,7 @@ class Collector {
         mend_mesh(part, path_);
         if (part.triangles.empty()) return;
         const aiString material = scene_.mMaterials[source.mMaterialIndex]->GetName();
-        parts_.push_back({std::move(part), material.C_Str(), name});
+        parts_.push_back({std::move(part), colors_of(source), material.C_Str(), name});
     }
 
     const aiScene& scene_;
