@@ -144,6 +144,17 @@ TEST(GltfSpecularGlossiness, IsMetalWhereNothingIsDiffuse) {
                            .material);
 }
 
+TEST(GltfSpecularGlossiness, IsADielectricOfHighIndexWhereItReflectsGrey) {
+    const double eta = (1 + std::sqrt(0.2)) / (1 - std::sqrt(0.2)); // reflects 20 % along the normal
+    json enamel = json::parse(R"({"pbrMetallicRoughness": {"baseColorFactor": [0.1, 0.6, 0.1, 1],
+      "metallicFactor": 0, "roughnessFactor": 0.2}})");
+    enamel["extensions"]["KHR_materials_ior"]["ior"] = eta;
+    expect_alike(material_of(specular_glossiness(R"({"diffuseFactor": [0.1, 0.6, 0.1, 1],
+      "specularFactor": [0.2, 0.2, 0.2], "glossinessFactor": 0.8})"))
+                     .material,
+                 material_of(enamel).material);
+}
+
 TEST(GltfSpecularGlossiness, HasItsOwnOpacity) {
     GltfFile file;
     material(with_tetrahedron(file)) = specular_glossiness(R"({"diffuseFactor": [1, 1, 1, 0.25]})");

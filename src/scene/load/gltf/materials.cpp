@@ -100,6 +100,7 @@ class Reader {
         PrincipledTextures t = principled_textures(eta, base.roughness);
         t.base_color = times_vertices(base.color);
         t.metallic = base.metallic;
+        if (base.specular != nullptr) t.specular = base.specular;
         if (const Json* specular = extension(material_, "KHR_materials_specular"))
             t.specular = scale_texture<double>(t.specular, constant_texture(specular_factor(*specular)));
         if (const Json* coat = extension(material_, "KHR_materials_clearcoat")) {
