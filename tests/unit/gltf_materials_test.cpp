@@ -164,6 +164,27 @@ TEST(GltfSpecularGlossiness, HasItsOwnOpacity) {
     EXPECT_EQ(scene.description.shapes.at(0).alpha->value({}), 0.25);
 }
 
+/// Radiance of a material that emits 683 cd/m^2, by the program that wrote the file; beside a lamp or alone.
+double emitted(const char* generator, bool lamp) {
+    GltfFile file;
+    material(with_tetrahedron(file)) = json::parse(R"({"emissiveFactor": [1, 1, 1],
+      "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 683}}})");
+    if (generator != nullptr) file.root["asset"]["generator"] = generator;
+    if (lamp) {
+        file.root["extensions"] = json::parse(R"({"KHR_lights_punctual": {"lights": [{"type": "point"}]}})");
+        file.root["nodes"].push_back(json::parse(R"({"extensions": {"KHR_lights_punctual": {"light": 0}}})"));
+        file.root["scenes"][0]["nodes"] = {0, 1};
+    }
+    return file.read().description.shapes.at(0).emission->radiance.x;
+}
+
+TEST(GltfEmission, IsPhotometricBesideLamps) {
+    EXPECT_NEAR(emitted("anything", true), 1, 1e-6);
+    EXPECT_NEAR(emitted(nullptr, true), 1, 1e-6);
+    EXPECT_EQ(emitted("Khronos glTF Blender I/O v3.4.50", true), 683) << "it writes watts, of lamps lumens";
+    EXPECT_EQ(emitted("anything", false), 683) << "no other light to compare with";
+}
+
 /// Two pixels, white and black.
 constexpr const char* kWebp = "data:image/webp;base64,UklGRhgAAABXRUJQVlA4TAsAAAAvAQAAAMX8R/Q/AgA=";
 /// Two pixels, red and green, as PNG.

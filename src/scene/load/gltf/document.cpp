@@ -124,6 +124,13 @@ const Json& Document::entry(const char* list, std::size_t index) const {
     return (*found)[index];
 }
 
+double Document::emission_unit() const {
+    const Json* lamps = extension(root_, "KHR_lights_punctual");
+    const bool any = lamps != nullptr && !member(*lamps, "lights").empty();
+    const bool blender = member(root_, "asset").value("generator", "").find("Blender") != std::string::npos;
+    return any && !blender ? 1 / kLumensPerWatt : 1;
+}
+
 Rgb Document::checked_light(const Rgb& light) const {
     for (const double x : {light.x, light.y, light.z})
         if (!(x >= 0 && x <= 1e30))

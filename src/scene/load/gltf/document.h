@@ -15,6 +15,9 @@ namespace keyhole::gltf {
 
 using Json = nlohmann::json;
 
+/// Lights are in photometric units; 1 W at the best wavelength is 683 lm, and exporters take that for white.
+constexpr double kLumensPerWatt = 683;
+
 class Document {
   public:
     /// Reads a .gltf file, or both parts of a .glb one. @throws InputError
@@ -40,6 +43,9 @@ class Document {
     /// The path of a file with an image: its own, or one that lasts as long as this object.
     std::string image_file(std::size_t index);
 
+    /// What one unit of emission is in W/(m^2 sr). By the specification it is 1 cd/m^2, as lamps are in candelas; but
+    /// Blender writes watts, though lamps in lumens. Without lamps nothing depends on it, and it is 1.
+    double emission_unit() const;
     /// An amount of light. @throws InputError where it can't be one.
     Rgb checked_light(const Rgb& light) const;
 

@@ -128,6 +128,7 @@ class Reader {
         const double factor = strength != nullptr ? value_or(*strength, "emissiveStrength", 1.0) : 1.0;
         SurfaceEmission emission;
         emission.radiance = document_.checked_light(color_or(material_, "emissiveFactor", Rgb(0.0)) * factor);
+        emission.radiance *= document_.emission_unit();
         emission.two_sided = value_or(material_, "doubleSided", false);
         if (!is_black(emission.radiance) && material_.contains("emissiveTexture"))
             emission.picture = picture<Rgb>(document_, material_["emissiveTexture"], Encoding::srgb);

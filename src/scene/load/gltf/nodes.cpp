@@ -14,8 +14,6 @@ namespace keyhole::gltf {
 namespace {
 
 constexpr int kMostDepth = 256;
-/// Lights are in photometric units; 1 W at the best wavelength is 683 lm, and exporters take that for white.
-constexpr double kLumensPerWatt = 683;
 constexpr int kPlainWidth = 640, kPlainHeight = 480;
 
 /// From the node to its parent.
