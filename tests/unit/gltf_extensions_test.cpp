@@ -1,4 +1,5 @@
 // Extensions of glTF beside those of materials: instances, and those that files require.
+#include "scene/geometry.h"
 #include "scene/load/load_mesh.h"
 #include "support/gltf_file.h"
 
@@ -113,6 +114,56 @@ TEST(GltfExtensions, CompressedViewsAreErrorsWithoutAFallback) {
         R"([{"byteLength": 36}, {"byteLength": 36, "extensions": {"EXT_meshopt_compression": {"fallback": true}}}])");
     file.root["bufferViews"][0]["buffer"] = 1;
     EXPECT_THAT(file.error(), HasSubstr("found EXT_meshopt_compression, expected plain buffers: export it without"));
+}
+
+/// A triangle with the legs (1, 0, 0) and (0, 1, 0), and texture coordinates, packed by Draco's own encoder.
+const std::vector<std::uint8_t> kDraco{
+    68,  82,  65, 67, 79,  2,   2,   1,  1,  0, 0, 0, 3, 1,   1,  1,  0,  0, 1,  7,   255, 1,  17, 1, 1, 0, 2,
+    255, 0,   0,  0,  0,   0,   1,   0,  9,  3, 0, 0, 2, 1,   3,  9,  2,  0, 1,  2,   1,   1,  1,  0, 3, 3, 85,
+    21,  173, 42, 3,  4,   112, 129, 49, 16, 0, 0, 0, 0, 255, 63, 0,  0,  0, 0,  0,   0,   0,  0,  0, 0, 0, 0,
+    0,   0,   0,  0,  128, 63,  14,  5,  1,  1, 0, 3, 3, 173, 42, 85, 21, 3, 81, 101, 129, 25, 1,  0, 0, 0, 255,
+    1,   17,  0,  0,  0,   0,   255, 3,  0,  0, 0, 0, 0, 0,   0,  0,  0,  0, 0,  0,   128, 63, 10};
+
+/// A file whose only triangle is packed.
+void pack_triangle(GltfFile& file) {
+    file.root["extensionsUsed"] = {"KHR_draco_mesh_compression"};
+    file.root["accessors"] = json::parse(R"([{"componentType": 5126, "count": 3, "type": "VEC3"},
+      {"componentType": 5126, "count": 3, "type": "VEC2"}, {"componentType": 5123, "count": 3, "type": "SCALAR"}])");
+    file.attribute("POSITION", 0);
+    file.attribute("TEXCOORD_0", 1);
+    file.primitive()["indices"] = 2;
+    file.primitive()["extensions"]["KHR_draco_mesh_compression"] = {
+        {"bufferView", file.view(kDraco)}, {"attributes", {{"POSITION", 0}, {"TEXCOORD_0", 1}}}};
+}
+
+TEST(GltfExtensions, DracoIsUnpackedByAssimp) {
+    GltfFile file;
+    pack_triangle(file);
+    file.root["extensionsRequired"] = {"KHR_draco_mesh_compression"};
+    if (const std::string error = file.error(); error != "no error") {
+        EXPECT_THAT(error, HasSubstr("KHR_draco_mesh_compression")) << "an Assimp without it says so";
+        GTEST_SKIP() << error;
+    }
+    const LoadedScene scene = file.read();
+    EXPECT_NEAR(triangle_area(mesh_of(scene), 0), 0.5, 1e-3);
+}
+
+TEST(GltfExtensions, PlainNumbersBesideDracoAreRead) {
+    GltfFile file;
+    pack_triangle(file);
+    file.root["bufferViews"][0]["byteLength"] = 20; // broken
+    const auto positions = file.accessor<std::int16_t>({0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0, 0}, 3, false, 8);
+    file.attribute("POSITION", positions);
+    file.attribute("TEXCOORD_0", file.accessor<float>({0, 0, 1, 0, 0, 1}, 2));
+    file.primitive()["indices"] = file.accessor<std::uint16_t>({0, 1, 2}, 1);
+    EXPECT_NEAR(triangle_area(mesh_of(file.read()), 0), 6, 1e-6);
+}
+
+TEST(GltfExtensions, IntegersInDracoAreErrors) {
+    GltfFile file;
+    pack_triangle(file);
+    file.root["accessors"][0]["componentType"] = 5122;
+    EXPECT_THAT(file.error(), HasSubstr("found integers packed by KHR_draco_mesh_compression, expected floats"));
 }
 
 } // namespace

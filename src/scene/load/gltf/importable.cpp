@@ -22,6 +22,7 @@ namespace keyhole::gltf {
 namespace {
 
 constexpr int kFloat = 5126;
+constexpr const char* kDraco = "KHR_draco_mesh_compression";
 
 std::string to_base64(std::string_view bytes) {
     constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -34,6 +35,12 @@ std::string to_base64(std::string_view bytes) {
         for (std::size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? kDigits[bits >> (18 - 6 * k) & 63] : '=';
     }
     return text;
+}
+
+/// Whether an attribute is read as vectors of floats.
+bool is_vector(const std::string& name) {
+    constexpr std::array kNames{"POSITION", "NORMAL", "TANGENT", "TEXCOORD_"};
+    return std::ranges::any_of(kNames, [&](const char* known) { return name.starts_with(known); });
 }
 
 /// Another column.
@@ -75,12 +82,31 @@ class Rewriter {
     }
 
     void widen(Json& primitive) {
-        if (!primitive.is_object() || !member(primitive, "attributes").is_object()) return;
-        for (auto& [name, accessor] : primitive["attributes"].items()) {
-            constexpr std::array kVectors{"POSITION", "NORMAL", "TANGENT", "TEXCOORD_", "COLOR_"};
-            const bool read = std::ranges::any_of(kVectors, [&](const char* v) { return name.starts_with(v); });
-            if (read) accessor = in_floats(accessor.get<std::size_t>(), name.starts_with("COLOR_"));
+        if (!primitive.is_object() || !member(primitive, "attributes").is_object() || stays_packed(primitive)) return;
+        for (auto& [name, accessor] : primitive["attributes"].items())
+            if (name.starts_with("COLOR_"))
+                accessor = in_floats(accessor.get<std::size_t>(), true);
+            else if (is_vector(name))
+                accessor = in_floats(accessor.get<std::size_t>(), false);
+    }
+
+    /// Whether Assimp has to unpack KHR_draco_mesh_compression, if it can: into the components that accessors name, so
+    /// they must be floats. If all numbers are there unpacked, too, those are taken.
+    bool stays_packed(Json& primitive) const {
+        if (extension(primitive, kDraco) == nullptr) return false;
+        const auto is_plain = [&](const Json& accessor) {
+            return document_.entry("accessors", accessor.get<std::size_t>()).contains("bufferView");
+        };
+        const Json& attributes = primitive["attributes"];
+        if (std::all_of(attributes.begin(), attributes.end(), is_plain) &&
+            (!primitive.contains("indices") || is_plain(primitive["indices"]))) {
+            primitive["extensions"].erase(kDraco);
+            return false;
         }
+        for (const auto& [name, accessor] : attributes.items())
+            if (is_vector(name) && document_.entry("accessors", accessor).at("componentType") != kFloat)
+                document_.fail(fmt::format("found integers packed by {}, expected floats: export it without", kDraco));
+        return true;
     }
 
     /// The accessor itself, or one that has its numbers as floats. Colours have an opacity, which Assimp takes for 0
