@@ -116,6 +116,41 @@ TEST(GltfExtensions, CompressedViewsAreErrorsWithoutAFallback) {
     EXPECT_THAT(file.error(), HasSubstr("found EXT_meshopt_compression, expected plain buffers: export it without"));
 }
 
+TEST(GltfExtensions, ValuesNestedTooDeepAreErrors) {
+    constexpr std::size_t kDeep = 200'000;
+    GltfFile file;
+    const std::string text =
+        R"({"asset": {"version": "2.0"}, "extras": )" + std::string(kDeep, '[') + std::string(kDeep, ']') + "}";
+    const std::string path = file.folder().write("deep.gltf", text);
+    for (const bool scene : {true, false}) {
+        std::string error = "no error";
+        try {
+            if (scene)
+                load(path, {}, nullptr);
+            else
+                import_mesh(path);
+        } catch (const InputError& e) {
+            error = e.what();
+        }
+        EXPECT_THAT(error, HasSubstr("deep.gltf: found values nested more than 512 deep"));
+    }
+}
+
+TEST(GltfExtensions, MorphTargetsAreLeftOutAndSaySo) {
+    GltfFile file;
+    file.plain_triangle();
+    file.primitive()["targets"] = json::array({{{"POSITION", file.accessor<float>(std::vector<float>(9, 1), 3)}}});
+    EXPECT_EQ(mesh_of(file.read()).positions.at(0), Vec3(0, 0, 0));
+    EXPECT_THAT(file.warnings, Not(Contains(HasSubstr("targets")))) << "as they are, targets change nothing";
+    file.root["meshes"][0]["weights"] = {0.5};
+    EXPECT_EQ(mesh_of(file.read()).positions.at(0), Vec3(0, 0, 0));
+    EXPECT_THAT(file.warnings, Contains(HasSubstr("morph targets are left out")));
+    file.root["meshes"][0].erase("weights");
+    file.root["nodes"][0]["weights"] = {0.5};
+    file.read();
+    EXPECT_THAT(file.warnings, Contains(HasSubstr("morph targets are left out")));
+}
+
 /// A triangle with the legs (1, 0, 0) and (0, 1, 0), and texture coordinates, packed by Draco's own encoder.
 const std::vector<std::uint8_t> kDraco{
     68,  82,  65, 67, 79,  2,   2,   1,  1,  0, 0, 0, 3, 1,   1,  1,  0,  0, 1,  7,   255, 1,  17, 1, 1, 0, 2,

@@ -13,6 +13,9 @@ namespace {
 
 constexpr std::uint32_t kMagic = 0x46546C67, kVersion = 2, kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
 
+/// Whoever copies or writes JSON goes down it.
+constexpr int kMostNested = 512;
+
 std::uint32_t word_at(const std::string& bytes, std::size_t at) {
     std::uint32_t word = 0;
     std::memcpy(&word, bytes.data() + at, sizeof word);
@@ -96,7 +99,10 @@ Document::Document(const std::string& path, Warnings& warnings) : path_(path), w
         text = text.substr(20, json);
     }
     try {
-        root_ = Json::parse(text);
+        root_ = Json::parse(text, [this](int depth, Json::parse_event_t, const Json&) {
+            if (depth > kMostNested) fail(fmt::format("found values nested more than {} deep", kMostNested));
+            return true;
+        });
     } catch (const Json::exception& e) {
         fail(fmt::format("found broken JSON ({}), expected a glTF file", e.what()));
     }

@@ -61,7 +61,12 @@ class Rewriter {
         check_extensions(document_);
         number_materials();
         for (Json& mesh : list_of(root_, "meshes"))
-            for (Json& primitive : list_of(mesh, "primitives")) widen(primitive);
+            for (Json& primitive : list_of(mesh, "primitives")) {
+                widen(primitive);
+                if (primitive.is_object()) primitive.erase("targets");
+            }
+        for (const char* owner : {"meshes", "nodes"})
+            for (const Json& entry : list_of(root_, owner)) tell_of_targets(entry);
         const std::size_t nodes = list_of(root_, "nodes").size(); // more are added behind them
         for (std::size_t i = 0; i < nodes; ++i) place_instances(i);
         if (!numbers_.empty()) add_buffer();
@@ -79,6 +84,13 @@ class Rewriter {
         Json& materials = list_of(root_, "materials");
         for (std::size_t i = 0; i < materials.size(); ++i)
             if (materials[i].is_object()) materials[i]["name"] = std::to_string(i);
+    }
+
+    /// Targets without weights change nothing.
+    void tell_of_targets(const Json& entry) const {
+        const Json& weights = entry.is_object() ? member(entry, "weights") : entry;
+        if (std::any_of(weights.begin(), weights.end(), [](const Json& w) { return w.is_number() && w != 0; }))
+            document_.warn("morph targets are left out: meshes stand as if their weights were 0");
     }
 
     void widen(Json& primitive) {
