@@ -22,7 +22,7 @@ class AccessorReader {
     explicit AccessorReader(const Document& document) : document_(document) {}
 
     /// @throws InputError for an accessor that reaches beyond its buffer, and for matrices.
-    NumberTable read(std::size_t accessor);
+    NumberTable read(std::size_t index);
 
   private:
     /// Where rows of numbers lie.

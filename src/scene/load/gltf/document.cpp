@@ -116,7 +116,7 @@ Document::~Document() {
 }
 
 std::string Document::with_root(const Json& root) const {
-    const std::string json = root.dump(-1, ' ', false, Json::error_handler_t::replace);
+    std::string json = root.dump(-1, ' ', false, Json::error_handler_t::replace);
     if (!packed_) return json;
     std::string chunks = chunk(kJsonChunk, json, ' ');
     if (!binary_.empty()) chunks += chunk(kBinaryChunk, binary_, '\0');

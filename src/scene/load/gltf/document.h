@@ -38,7 +38,7 @@ class Document {
     std::size_t buffer_of_view(std::size_t view) const { return entry("bufferViews", view).at("buffer"); }
     std::string buffer_bytes(std::size_t index) const;
     /// The bytes of a view of a buffer. @throws InputError where that ends too early.
-    std::string_view view_within(std::string_view buffer, std::size_t view) const;
+    std::string_view view_within(std::string_view buffer, std::size_t index) const;
 
     /// The path of a file with an image: its own, or one that lasts as long as this object.
     std::string image_file(std::size_t index);

@@ -42,7 +42,7 @@ class Reader {
     /// The scale of a normal map is a factor on x and y, which are stored as (x + 1) / 2.
     ColorTexture normals() const {
         const Json& reference = material_["normalTexture"];
-        const ColorTexture map = picture<Rgb>(document_, reference, Encoding::linear);
+        ColorTexture map = picture<Rgb>(document_, reference, Encoding::linear);
         const auto scale = value_or(reference, "scale", 1.0);
         if (scale == 1) return map;
         return computed_texture(

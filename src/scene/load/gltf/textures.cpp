@@ -73,14 +73,14 @@ template std::shared_ptr<const Texture<double>> picture<double>(Document&, const
 ColorTexture color(Document& document, const Json& object, const char* factor, const char* texture) {
     const Rgb tint = color_or(object, factor, Rgb(1.0));
     if (!object.contains(texture)) return constant_texture(tint);
-    const ColorTexture image = picture<Rgb>(document, object[texture], Encoding::srgb);
+    ColorTexture image = picture<Rgb>(document, object[texture], Encoding::srgb);
     if (tint == Rgb(1.0)) return image;
     return function_texture<Rgb>([image, tint](const SurfacePoint& point) { return image->value(point) * tint; });
 }
 
 FloatTexture number(Document& document, const Json& object, const char* factor, double otherwise, const char* texture,
                     int channel) {
-    const FloatTexture value = constant_texture(value_or(object, factor, otherwise));
+    FloatTexture value = constant_texture(value_or(object, factor, otherwise));
     if (!object.contains(texture)) return value;
     return scale_texture<double>(picture<double>(document, object[texture], Encoding::linear, channel), value);
 }
