@@ -2,7 +2,6 @@
 
 #include "scene/load/gltf/accessors.h"
 #include "scene/load/gltf/extensions.h"
-
 #include "scene/load/load_mesh.h"
 
 #include <fmt/format.h>
