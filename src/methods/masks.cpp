@@ -55,21 +55,26 @@ Names material_names(const Scene& scene) {
     return all;
 }
 
-/// The shape that each of `samples` rays through a pixel meets first; negative: none.
-void trace_pixel(const Scene& scene, const PixelFilter& filter, std::uint64_t seed, int x, int y,
-                 std::vector<std::int64_t>& shapes) {
+/// The shape that each of `samples` rays through a pixel meets first; negative: none. @returns what they are covered by
+/// on average, media included where they meet nothing.
+double trace_pixel(const Scene& scene, const PixelFilter& filter, std::uint64_t seed, int x, int y,
+                   std::vector<std::int64_t>& shapes) {
     const Camera& camera = scene.camera();
     const auto pixel = static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(camera.window().width) +
                        static_cast<std::uint64_t>(x);
+    double covered = 0;
     for (std::size_t i = 0; i < shapes.size(); ++i) {
         LatticeSource source(Rng(seed, StreamPurpose::masks, pixel), i, Rng(seed, StreamPurpose::masks, ~pixel));
         const auto [u0, u1, u2, u3] = source.take<4>();
         const Vec2 centre(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
         const SurfacePoint eye = camera.eye(u2, u3);
         const Vec2 image = camera.window().to_window(centre + filter.sample_offset(u0, u1));
-        const auto seen = scene.trace(eye, camera.ray_direction(eye, image));
+        const Vec3 w = camera.ray_direction(eye, image);
+        const auto seen = scene.trace(eye, w);
         shapes[i] = seen && seen->shape != SurfacePoint::kNone ? std::int64_t{seen->shape} : -1;
+        covered += shapes[i] >= 0 ? 1 : 1 - luminance(scene.transmittance(eye, infinite_point(w)));
     }
+    return covered / static_cast<double>(shapes.size());
 }
 
 } // namespace
@@ -91,9 +96,8 @@ void add_masks(Picture& picture, const Scene& scene, const Settings& settings, c
                 whole = false;
                 return;
             }
-            trace_pixel(scene, filter, static_cast<std::uint64_t>(settings.seed), x, y, shapes);
-            const auto seen = std::ranges::count_if(shapes, [](std::int64_t shape) { return shape >= 0; });
-            *alpha.at(x, y) = static_cast<float>(seen) / static_cast<float>(shapes.size());
+            *alpha.at(x, y) =
+                static_cast<float>(trace_pixel(scene, filter, static_cast<std::uint64_t>(settings.seed), x, y, shapes));
             const auto named = [&](const Names& all, CryptomatteLayers& layers) {
                 std::ranges::transform(shapes, names.begin(), [&](std::int64_t shape) {
                     return shape < 0 ? -1 : all.of_shape[static_cast<std::size_t>(shape)];

@@ -75,15 +75,15 @@ std::string names_of(bool Method::*is);
 
 /// Whether the method knows what to do with the scene's media.
 bool can_show(const Scene& scene, const Method& method);
-/// @throws InputError if it can't show the scene; `auto` stands for others, which may
-void require_can_show(const Scene& scene, const Method& method);
+/// @throws InputError if the method of the settings doesn't, or `auto` has none that does and can do what they ask for
+void require_can_show(const Scene& scene, const Settings& settings);
 
 /// Whether the method can do what the settings ask for: save photons, or weigh them by pixels; whether they leave it
 /// anything to do; and whether it can show the scene.
 bool can_do(const Scene& scene, const Settings& settings, const Method& method);
 
 /// The method that the settings name, without render()'s care for renders that are stopped before they have a picture.
-/// @throws Interrupted, and InputError as render() and if the method can't show the scene
+/// @throws Interrupted, and InputError as render()
 RenderResult render_by_method(const RenderTask& task);
 
 /// Everything that renders from photon maps; the method is the sampler that fills them.

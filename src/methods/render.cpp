@@ -22,7 +22,7 @@ Settings choose(const TrialContext& c, std::string& choice) {
     const std::vector<TriedMethod> tried = try_methods_by_work(c);
     if (tried.empty()) { // none is done with the window without leaving holes in it
         Settings s = c.settings;
-        s.method = &methods::ipm;
+        s.method = can_show(c.scene, methods::ipm) ? &methods::ipm : &methods::path;
         return s;
     }
     c.findings.forget_coverage();
@@ -43,7 +43,7 @@ void set_window_margin(Scene& scene, const Settings& settings) {
 
 RenderResult render(Scene& scene, const Settings& settings, const RunContext& context, const UserPathFile& user_paths,
                     const WorkPartition& share) {
-    if (settings.method != &methods::automatic) require_can_show(scene, *settings.method);
+    require_can_show(scene, settings);
     set_window_margin(scene, settings);
     Findings findings;
     RenderResult result;

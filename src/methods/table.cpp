@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 namespace keyhole {
 namespace {
 
@@ -35,12 +37,6 @@ bool can_show(const Scene& scene, const Method& method) {
     return method.scatters_in_media || !scene.has_scattering_media();
 }
 
-void require_can_show(const Scene& scene, const Method& method) {
-    if (can_show(scene, method)) return;
-    throw InputError(fmt::format("found a medium that scatters, which method {} doesn't show; expected one of {}",
-                                 method.name, names_of(&Method::scatters_in_media)));
-}
-
 bool can_do(const Scene& scene, const Settings& s, const Method& method) {
     if (!can_show(scene, method)) return false;
     if (method.keeps_photons) return true;
@@ -48,9 +44,19 @@ bool can_do(const Scene& scene, const Settings& s, const Method& method) {
     return (method.samples_pixels || s.max_depth > 1) && s.save_map.empty() && !s.equalise && s.plan != Plan::all;
 }
 
+void require_can_show(const Scene& scene, const Settings& s) {
+    if (!scene.has_scattering_media()) return;
+    const auto can = [&](const Method* m) { return m->trial.share > 0 && can_do(scene, s, *m); };
+    if (s.method == &methods::automatic && (!s.load_map.empty() || std::ranges::none_of(kMethods, can)))
+        throw InputError("found a medium that scatters, and settings that photons are needed for, expected either: "
+                         "photons lie on surfaces");
+    if (s.method != &methods::automatic && !can_show(scene, *s.method))
+        throw InputError(fmt::format("found a medium that scatters, which method {} doesn't show; expected one of {}",
+                                     s.method->name, names_of(&Method::scatters_in_media)));
+}
+
 RenderResult render_by_method(const RenderTask& task) {
     const Method& method = *task.settings.method;
-    require_can_show(task.scene, method);
     RenderResult result = method.render(task);
     if (result.stats.method.empty()) result.stats.method = method.name;
     result.settings = task.settings;

@@ -102,9 +102,12 @@ void Scene::attach_shapes() {
     }
     accelerator_.commit();
     if (clear_glass_) clear_glass_->commit();
-    lower_ = accelerator_.lower();
-    upper_ = accelerator_.upper();
-    if (lower_.x <= upper_.x) return;
+    // Beams of light are as wide as what they may meet.
+    Imath::Box3f box = media_.bounds_of_scattering();
+    box.extendBy(Imath::Box3f(accelerator_.lower(), accelerator_.upper()));
+    lower_ = box.min;
+    upper_ = box.max;
+    if (!box.isEmpty()) return;
     if (std::ranges::none_of(emitters_, [](const auto& e) { return is_environment(*e); }))
         throw InputError("the scene is empty: nothing that a ray could meet, and no environment");
     std::tie(lower_, upper_) = box_around(camera_.parameters().origin);

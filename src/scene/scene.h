@@ -49,7 +49,7 @@ class Scene {
     /// Whether nothing lies between two places in space [m], which are on no surface.
     bool visible(const Vec3& a, const Vec3& b) const;
 
-    /// Share of light that absorption leaves along the edge between two points, as far as media go: 1 without them.
+    /// Share of light that media leave along the edge between two points: 1 without them.
     Rgb transmittance(const SurfacePoint& a, const SurfacePoint& b) const {
         return media_.empty() ? Rgb(1.0) : media_.transmittance(a, b);
     }
@@ -58,9 +58,9 @@ class Scene {
     bool has_scattering_media() const { return media_.scatter(); }
     Attenuation attenuation(const SurfacePoint& a, const SurfacePoint& b) const { return media_.attenuation(a, b); }
     /// Media::fly().
-    std::optional<Collision> fly(const SurfacePoint& from, const Vec3& w, const SurfacePoint* to,
-                                 SampleSource& source) const {
-        return media_.fly(from, w, to, source);
+    std::optional<Collision> fly(const SurfacePoint& from, const Vec3& w, const SurfacePoint* to, int primary,
+                                 double u) const {
+        return media_.fly(from, w, to, primary, u);
     }
 
     const Camera& camera() const { return camera_; }
@@ -90,10 +90,12 @@ class Scene {
     /// whatever else stands in its way. Much faster than to trace it.
     bool meets_clear_glass(const SurfacePoint& from, const Vec3& w) const;
 
-    /// Bounding box of the geometry, world space; where there is none, a box around the camera.
+    /// Bounding box of the geometry, and of media that scatter, world space; where there is none, a box around the
+    /// camera.
     const Vec3& lower() const { return lower_; }
     const Vec3& upper() const { return upper_; }
-    /// Holds all geometry. A little too large, so that a beam as wide as the sphere misses nothing by rounding.
+    /// Holds all geometry, and all that scatters. A little too large, so that a beam as wide as the sphere misses
+    /// nothing by rounding.
     BoundingSphere bounding_sphere() const { return {(lower_ + upper_) / 2, 1.001f * (upper_ - lower_).length() / 2}; }
 
     std::size_t triangle_count() const;

@@ -33,11 +33,10 @@ Settings settings(const std::string& method) {
     return s;
 }
 
-TEST(ScatteringMedia_Methods, Agree) {
-    const auto scene = small_foggy_box();
-    const test::Blocks bdpt = test::render_blocks(*scene, settings("bdpt"), 8);
+void expect_agreement(Scene& scene) {
+    const test::Blocks bdpt = test::render_blocks(scene, settings("bdpt"), 8);
     for (const char* method : {"path", "pssmlt", "mmlt"}) {
-        const test::Blocks other = test::render_blocks(*scene, settings(method), 8);
+        const test::Blocks other = test::render_blocks(scene, settings(method), 8);
         const test::Disagreement d = test::compare(other, bdpt, 0.01);
         fmt::print("{}: ratio {:.4f} +- {:.4f}, largest error of a block {:.3f}\n", method, d.ratio, d.ratio_error,
                    d.largest_error);
@@ -46,6 +45,11 @@ TEST(ScatteringMedia_Methods, Agree) {
         EXPECT_LT(d.largest_error, 0.08) << method << " is too noisy to tell";
     }
 }
+
+TEST(ScatteringMedia_Methods, Agree) { expect_agreement(*small_foggy_box()); }
+
+/// Beams of light are as wide as the cloud.
+TEST(ScatteringMedia_Methods, AgreeOnACloudInTheSky) { expect_agreement(*test::cloud_in_the_sky()); }
 
 TEST(ScatteringMedia_Methods, AutoTakesOneThatShowsThem) {
     const auto scene = small_foggy_box();
@@ -61,6 +65,13 @@ TEST(ScatteringMedia_Methods, ThePlanHasNoPhotons) {
     plan_photons(*scene, settings("auto"), {}, {}, findings);
     EXPECT_FALSE(findings.plan->photons);
     EXPECT_TRUE(method_named(expect_cost(*scene, settings("auto"), {}, findings).method).scatters_in_media);
+}
+
+TEST(ScatteringMedia_Methods, PhotonsThatAreAskedForAreMissed) {
+    const auto scene = small_foggy_box();
+    Settings s = settings("auto");
+    s.equalise = true;
+    EXPECT_THROW(render(*scene, s, {}, {}), InputError);
 }
 
 TEST(ScatteringMedia_Methods, OthersSayThatTheyDont) {

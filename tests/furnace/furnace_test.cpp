@@ -74,14 +74,22 @@ TEST_P(Furnace_HasItsClosedForm, InEveryBlock) {
     EXPECT_LT(bound, 0.08) << "power off by a tenth would go unnoticed";
 }
 
-INSTANTIATE_TEST_SUITE_P(Media, Furnace_HasItsClosedForm,
-                         testing::Combine(testing::Values(MethodCase{"path"}, MethodCase{"bdpt", 24},
+std::string name_of(const testing::TestParamInfo<std::tuple<MethodCase, FurnaceCase>>& info) {
+    return fmt::format("{}_{}", std::get<0>(info.param).method, std::get<1>(info.param).name);
+}
+
+const FurnaceCase kFoggy{"Foggy", [] { return test::foggy_furnace(kRho); }, true};
+const FurnaceCase kForward{"Forward", test::forward_furnace, true};
+
+INSTANTIATE_TEST_SUITE_P(Fog, Furnace_HasItsClosedForm,
+                         testing::Combine(testing::Values(MethodCase{"path", 16}, MethodCase{"bdpt", 24},
                                                           MethodCase{"pssmlt"}, MethodCase{"mmlt", 32}),
-                                          testing::Values(FurnaceCase{"Foggy", [] { return test::foggy_furnace(kRho); },
-                                                                      true})),
-                         [](const auto& info) {
-                             return fmt::format("{}_{}", std::get<0>(info.param).method, std::get<1>(info.param).name);
-                         });
+                                          testing::Values(kFoggy)),
+                         name_of);
+INSTANTIATE_TEST_SUITE_P(Cloud, Furnace_HasItsClosedForm,
+                         testing::Combine(testing::Values(MethodCase{"path", 16}, MethodCase{"bdpt", 24}),
+                                          testing::Values(kForward)),
+                         name_of);
 
 INSTANTIATE_TEST_SUITE_P(Methods, Furnace_HasItsClosedForm,
                          testing::Combine(testing::Values(MethodCase{"path"}, MethodCase{"bdpt"}, MethodCase{"mlt", 16},
@@ -90,9 +98,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, Furnace_HasItsClosedForm,
                                                           MethodCase{"ipm", 8, true}, MethodCase{"pm", 8, true},
                                                           MethodCase{"auto", 6}),
                                           testing::ValuesIn(kFurnaces)),
-                         [](const auto& info) {
-                             return fmt::format("{}_{}", std::get<0>(info.param).method, std::get<1>(info.param).name);
-                         });
+                         name_of);
 
 } // namespace
 } // namespace keyhole

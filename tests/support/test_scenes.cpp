@@ -164,14 +164,16 @@ std::unique_ptr<Scene> hazy_box() {
     return m.build();
 }
 
-std::unique_ptr<Scene> foggy_box() {
-    const auto fog = std::make_shared<Medium>(Medium{Rgb(0.05, 0.1, 0.02), Rgb(0.3, 0.2, 0.25), 0.5f});
-    const auto milk = std::make_shared<Medium>(Medium{Rgb(0.1, 0.3, 1.0), Rgb(3, 4, 2)});
+std::unique_ptr<Scene> foggy_box(bool grey) {
+    const auto color = [grey](double r, double g, double b) { return grey ? Rgb((r + g + b) / 3) : Rgb(r, g, b); };
+    const auto medium = [](const Medium& m) { return std::make_shared<const Medium>(m); };
+    const auto fog = medium({color(0.05, 0.1, 0.02), color(0.3, 0.2, 0.25), 0.5f});
+    const auto milk = medium({color(0.1, 0.3, 1.0), color(3, 4, 2)});
     DensityGrid::Values values{{2, 3, 2}, {1, 0, 3, 0.5f, 0, 2, 1, 1, 2, 0, 0.2f, 4}};
     const Imath::Box3d box(Imath::V3d(-0.9, 0.3, -0.8), Imath::V3d(-0.4, 1.6, 1.5));
     const auto grid = std::make_shared<const DensityGrid>(std::move(values), box, Imath::M44d());
-    const auto smoke = std::make_shared<Medium>(Medium{Rgb(1.0, 0.5, 0.5), Rgb(1.0), -0.3f, grid});
-    const auto dye = std::make_shared<Medium>(Medium{Rgb(2.0, 0.4, 1.5)}); // which scatters nothing
+    const auto smoke = medium({color(1.0, 0.5, 0.5), Rgb(1.0), -0.3f, grid});
+    const auto dye = medium({Rgb(2.0, 0.4, 1.5)}); // which scatters nothing
     SceneMaker m = box_shell(make_mirror(Rgb(0.9)));
     add_light(m);
     m.sphere({0.1f, 0.4f, 0.5f}, 0.4f, make_glass(1.3)).media(milk, fog);
@@ -254,6 +256,27 @@ std::unique_ptr<Scene> foggy_furnace(double rho) {
         .camera({0, 0, 0.9f}, {0, 0, -1}, 60)
         .window(32, 32);
     return m.medium(fog).build();
+}
+
+std::unique_ptr<Scene> cloud_in_the_sky() {
+    const auto cloud = std::make_shared<const Medium>(Medium{Rgb(0.02, 0.01, 0.0), Rgb(0.5, 0.6, 0.7), 0.6f});
+    SceneMaker m;
+    m.sphere({0, 0, 0}, 0.5f, make_diffuse(Rgb(0.4)))
+        .cloud({-2, -1.5, -2}, {2, 1.5, 2}, cloud)
+        .emitter(make_constant_environment(Rgb(0.3, 0.4, 0.6)))
+        .emitter(make_distant_emitter(Vec3(0.6f, -0.6f, -0.5f).normalized(), Rgb(2.0)))
+        .camera({0, 0, 6}, {0, 0, 0}, 40)
+        .window(32, 32);
+    return m.build();
+}
+
+std::unique_ptr<Scene> forward_furnace() {
+    SceneMaker m;
+    m.cloud({-1, -1, -1}, {1, 1, 1}, std::make_shared<const Medium>(Medium{Rgb(0.0), Rgb(5.0), 0.9f}))
+        .emitter(make_constant_environment(Rgb(2.0)))
+        .camera({0, 0, 4}, {0, 0, 0}, 30)
+        .window(32, 32);
+    return m.build();
 }
 
 namespace {

@@ -74,6 +74,9 @@ std::unique_ptr<Scene> varnished_furnace(double rho);
 /// there, and a screen that is a pane of glass.
 std::unique_ptr<Scene> patchy_furnace(double rho);
 
+/// A thick cloud that scatters forwards and swallows nothing, in surroundings of radiance 2; nothing else.
+std::unique_ptr<Scene> forward_furnace();
+
 /// furnace() full of fog, with balls of milk and of white; nothing is swallowed.
 std::unique_ptr<Scene> foggy_furnace(double rho);
 
@@ -84,8 +87,12 @@ std::unique_ptr<Scene> two_rooms(float slit, bool thin = false, bool mirror_outs
 /// mirror_glass_box() with a ball of green glass, and a block of haze that has no surface.
 std::unique_ptr<Scene> hazy_box();
 
-/// mirror_glass_box() full of fog, with balls of milk and of dye, and a cloud of uneven smoke.
-std::unique_ptr<Scene> foggy_box();
+/// mirror_glass_box() full of fog, with balls of milk and of dye, and a cloud of uneven smoke. `grey`: it scatters all
+/// primaries alike.
+std::unique_ptr<Scene> foggy_box(bool grey = false);
+
+/// A ball in the middle of a cloud that is much larger, in the sun under a sky.
+std::unique_ptr<Scene> cloud_in_the_sky();
 
 /// Two rough walls of metal under a smooth coat, which now and then swallow what they scatter, in a diffuse room.
 std::unique_ptr<Scene> coated_box();

@@ -71,7 +71,7 @@ using MakeScene = std::function<std::unique_ptr<Scene>()>;
 TEST(Connection, CarriesWhatItsPathMeasures) {
     for (const MakeScene& make : {MakeScene(test::diffuse_box), MakeScene([] { return test::mirror_glass_box(0.05f); }),
                                   MakeScene(test::point_light_box), MakeScene(test::hazy_box), MakeScene(test::sky_box),
-                                  MakeScene(test::spot_scene), MakeScene(test::foggy_box)}) {
+                                  MakeScene(test::spot_scene), MakeScene([] { return test::foggy_box(true); })}) {
         const auto scene = make();
         Tally tally;
         for (std::uint64_t i = 0; i < 600; ++i) {

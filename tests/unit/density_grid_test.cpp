@@ -42,7 +42,7 @@ TEST(DensityGrid, IsTrilinearBetweenTheMiddlesOfCells) {
     EXPECT_NEAR(grid.density({0.5f, 0.5f, 0.5f}), 1, 1e-6);
     EXPECT_NEAR(grid.density({1, 0.5f, 0.5f}), 2, 1e-6);
     EXPECT_NEAR(grid.density({1.5f, 0.5f, 0.5f}), 3, 1e-6);
-    EXPECT_NEAR(grid.density({1.75f, 0.5f, 0.5f}), 2.25, 1e-6) << "falls to nothing over a cell";
+    EXPECT_NEAR(grid.density({1.75f, 0.5f, 0.5f}), 2.25, 1e-6) << "beyond the faces there is nothing";
     EXPECT_NEAR(grid.density({1.5f, 0.75f, 0.5f}), 2.25, 1e-6);
     EXPECT_EQ(grid.density({2.01f, 0.5f, 0.5f}), 0);
     EXPECT_EQ(grid.density({-0.01f, 0.5f, 0.5f}), 0);

@@ -68,6 +68,20 @@ class MasksOfAFile : public Program {
     }
 };
 
+TEST_F(MasksOfAFile, AreCoveredByWhatMediaTake) {
+    scratch.write("cloud.yaml", "film: {resolution: [16, 16], transparent: true}\n"
+                                "camera: {from: [0, 0, 9], to: [0, 0, 0], fov: 60}\n"
+                                "media: {smoke: {absorption: 0.2, scattering: 0.3}}\n"
+                                "shapes: [{type: box, min: [-2, -2, -2], max: [2, 2, 2], material: {type: interface}, "
+                                "inside: smoke}]\n"
+                                "emitters: [{type: environment, radiance: 1}]\n"
+                                "render: {method: path, spp: 1}\n");
+    ASSERT_EQ(run("render cloud.yaml -q"), 0) << read("err");
+    const Image alpha = read_exr(scratch.path("cloud.exr")).layers.at("alpha");
+    EXPECT_NEAR(alpha.at(8, 8)[0], 1 - std::exp(-0.5 * 4), 0.01);
+    EXPECT_EQ(alpha.at(0, 0)[0], 0);
+}
+
 TEST_F(MasksOfAFile, TellObjectsMaterialsAndAlpha) {
     ASSERT_EQ(run("render scene.yaml -q"), 0) << read("err");
     const Picture p = read_exr(scratch.path("scene.exr"));

@@ -33,6 +33,57 @@ TEST(PhaseBsdf, DrawsByItsDensityWhichIsAllOfIt) {
     }
 }
 
+TEST(PhaseBsdf, OfSharpPeaksIsANumber) {
+    for (const float g : {-0.9999f, -0.999f, 0.9995f, 0.9999f}) {
+        const PhaseBsdf p = phase(g);
+        const Vec3 from = Vec3(0.3f, -0.5f, 0.7f).normalized();
+        RunningStats reciprocal; // of the density: its mean is the solid angle that samples cover
+        for (std::uint64_t i = 0; i < 20'000; ++i) {
+            Rng rng(1, StreamPurpose::test, i);
+            const auto [u0, u1] = rng.take<2>();
+            const auto s = p.sample(from, u0, u1, 0);
+            ASSERT_TRUE(s && std::isfinite(s->pdf));
+            const double a = std::abs(static_cast<double>(g)), v = g < 0 ? u0 : 1 - u0, q = 1 - a + 2 * a * v,
+                         cosine = (1 + a * a - std::pow((1 - a * a) / q, 2)) / (2 * a);
+            const double expected = (1 - a * a) / (4 * kPi * std::pow(1 + a * a - 2 * a * cosine, 1.5));
+            reciprocal.add(s->pdf / expected);
+        }
+        EXPECT_NEAR(reciprocal.mean(), 1, 0.02) << "g " << g;
+    }
+}
+
+/// Remembers how long the directions of a walk are.
+struct Lengths : WalkHooks {
+    std::vector<Vertex> vertices{};
+    float shortest = 1, longest = 1;
+    Vertex& place() { return vertices.emplace_back(); }
+    bool arrive(const Vertex& v, const WalkRay& ray) {
+        shortest = std::min(shortest, ray.w.length());
+        longest = std::max(longest, ray.w.length());
+        return v.point.site == Site::medium;
+    }
+};
+
+TEST(Media_Flights, KeepTheirDirectionsUnit) {
+    test::SceneMaker m;
+    m.cloud({-10, -10, -10}, {10, 10, 10}, std::make_shared<const Medium>(Medium{Rgb(0.0), Rgb(20.0), 0.85f}))
+        .rectangle({-99, -99, -99}, {1, 0, 0}, {0, 1, 0}, make_diffuse(Rgb(0.5)));
+    const auto scene = m.build();
+    std::size_t most = 0;
+    for (std::uint64_t i = 0; i < 50; ++i) {
+        Rng rng(2, StreamPurpose::test, i);
+        SurfacePoint start;
+        start.site = Site::point;
+        Lengths walk;
+        walk.vertices.reserve(128);
+        random_walk(*scene, From::eye, {&start, &start, Vec3(0, 0.6f, 0.8f)}, 100, rng, walk);
+        EXPECT_NEAR(walk.shortest, 1, 1e-6);
+        EXPECT_NEAR(walk.longest, 1, 1e-6);
+        most = std::max(most, walk.vertices.size());
+    }
+    EXPECT_EQ(most, 100u) << "none is lost";
+}
+
 std::shared_ptr<const Medium> puff() {
     DensityGrid::Values values{{2, 2, 2}, {1, 0.2f, 0.4f, 2, 0.1f, 3, 0.5f, 1}};
     auto grid = std::make_shared<const DensityGrid>(std::move(values), Imath::Box3d(Imath::V3d(-1.0), Imath::V3d(1.0)),
@@ -62,7 +113,8 @@ TEST(Media_Flights, EndByTheirDensity) {
         test::Histogram histogram{std::vector<double>(kCells + 1), std::vector<double>(kCells + 1)};
         for (int i = 0; i < kFlights; ++i) {
             Rng rng(1, StreamPurpose::test, static_cast<std::uint64_t>(i));
-            const auto hit = scene->fly(from, w, &wall, rng);
+            Flight flight(rng.next());
+            const auto hit = scene->fly(from, w, &wall, flight.primary, rng.next());
             const double t = hit ? (hit->p - from.p).length() / length : 1;
             ++histogram.observed[static_cast<std::size_t>(t * kCells)];
         }

@@ -320,7 +320,7 @@ class RenderInTime {
 
 RenderResult render_in_time(Scene& scene, const Settings& settings, const std::set<std::string>& given,
                             const RunContext& context, const UserPathFile& user_paths, const WorkPartition& share) {
-    if (settings.method != &methods::automatic) require_can_show(scene, *settings.method);
+    require_can_show(scene, settings);
     set_window_margin(scene, settings);
     Settings s = settings;
     if (!given.contains("brightness_error")) s.brightness_error = 0; // stage one gets its part of the time, no more

@@ -38,8 +38,9 @@ PlanItem plan_coverage(const Settings& settings, bool photons, const CoverageFou
             (found.coverage ? ": it is stored where it is seen" : ": enough of them to gather it without much noise")};
 }
 
-PlanItem plan_gather(bool photons, const SceneSurvey& survey) {
+PlanItem plan_gather(const Scene& scene, bool photons, const SceneSurvey& survey) {
     const char* name = "gather rays";
+    if (scene.has_scattering_media()) return {name, false, "a medium scatters: paths are traced"};
     if (photons) return {name, true, "they ask the photon maps"};
     return survey.of(LightClass::second).mean() > 0
                ? PlanItem{name, true, "light that was scattered once before the last surface is sampled along them"}
@@ -73,7 +74,7 @@ RenderPlan plan_render(const SamplerContext& c, const RunContext& run, std::int6
     if (plan.photons) found = find_coverage(c.scene, s, run);
     add(plan_coverage(s, plan.photons, found));
     plan.coverage = std::move(found.coverage);
-    plan.gather = add(plan_gather(plan.photons, plan.survey));
+    plan.gather = add(plan_gather(c.scene, plan.photons, plan.survey));
     plan.cache = add(plan_cache(c.scene, s, plan.gather)) && s.irradiance_cache;
     return plan;
 }

@@ -70,17 +70,24 @@ namespace {
 void make_vertex(const Collision& collision, const Vec3& w, Vertex& v) {
     v.point = {};
     v.point.p = collision.p;
-    v.point.ng = v.point.ns = -w;
+    const Vec3 back = (-w).normalized();
+    v.point.ng = v.point.ns = back;
     v.point.site = Site::medium;
-    v.bsdf = Bsdf(Frame(-w), PhaseBsdf{collision.scattering, collision.extinction, collision.anisotropy});
+    v.bsdf = Bsdf(Frame(back), PhaseBsdf{collision.scattering, collision.extinction, collision.anisotropy});
 }
 
 } // namespace
 
-double flight_density(const Rgb& uncollided, const Vertex& to) {
+Rgb flight_densities(const Rgb& uncollided, const Vertex& to) {
     const auto* phase = to.point.site == Site::medium ? std::get_if<PhaseBsdf>(&to.bsdf.model()) : nullptr;
-    const Rgb density = phase != nullptr ? uncollided * Rgb(phase->extinction) : uncollided;
-    return (density.x + density.y + density.z) / 3;
+    return phase != nullptr ? uncollided * Rgb(phase->extinction) : uncollided;
+}
+
+double Flight::arrive(const Rgb& densities) {
+    relative *= densities;
+    const double mean = mean_of_primaries(relative);
+    if (mean > 0) relative = relative / Rgb(mean);
+    return mean;
 }
 
 bool follow(const Scene& scene, WalkRay& ray, Vertex& v, SampleSource& source) {
@@ -90,11 +97,12 @@ bool follow(const Scene& scene, WalkRay& ray, Vertex& v, SampleSource& source) {
         if (met) ray.clear = scene.transmittance(*ray.last, v.point);
         return met;
     }
-    const auto collision = scene.fly(*ray.origin, ray.w, met ? &v.point : nullptr, source);
+    if (!ray.flight) ray.flight.emplace(source.next());
+    const auto collision = scene.fly(*ray.origin, ray.w, met ? &v.point : nullptr, ray.flight->primary, source.next());
     if (collision) make_vertex(*collision, ray.w, v);
     if (!collision && !met) return false;
     const Attenuation attenuation = scene.attenuation(*ray.last, v.point);
-    const double density = flight_density(attenuation.uncollided, v);
+    const double density = ray.flight->arrive(flight_densities(attenuation.uncollided, v));
     if (!(density > 0)) return false;
     ray.clear = attenuation.transmittance / Rgb(density);
     ray.uncollided = attenuation.uncollided;

@@ -53,20 +53,39 @@ std::optional<Continuation> continue_walk(const Vertex& v, const Vec3& back, Fro
 /// Probability that continue_walk() takes a finite event, and with that a vertex counts as D.
 double finite_probability(const Vertex& v, const Vec3& back);
 
+/// The free flights of a walk. Primaries fly differently: one of the three is drawn for the whole walk, and the density
+/// of the walk is the mean over all (after Wilkie et al. 2014, "Hero Wavelength Spectral Sampling"). Drawn anew for
+/// each flight, they would let weights grow without bounds.
+struct Flight {
+    int primary;
+    Rgb relative{1.0}; ///< densities of the primaries so far, over their mean
+
+    explicit Flight(double u) : primary(std::min(2, static_cast<int>(3 * u))) {}
+    /// By what an edge, flown with these densities, multiplies the density of the walk.
+    double arrive(const Rgb& densities);
+};
+
 /// The ray of a walk on its way.
 struct WalkRay {
     const SurfacePoint* origin; ///< where it is traced from: the walk's last vertex, or on its beam if that is infinite
     const SurfacePoint* last;   ///< the walk's last vertex
     Vec3 w;                     ///< unit
     Rgb throughput{1.0};        ///< contribution over density of the vertices so far, roulette included
-    Rgb clear{1.0};             ///< what media leave of light along it, over flight_density()
+    Rgb clear{1.0};             ///< what media leave of light along it, over the density of its flight
     Rgb uncollided{1.0};        ///< Attenuation::uncollided along it
+    std::optional<Flight> flight{}; ///< where media scatter, from the first edge on
 };
 
-/// What media make of the density of a vertex that is drawn by a ray, at the end of an edge: in one that scatters, the
-/// density of a free flight that ends there per length [1/m]; elsewhere the probability that it gets there. Product
-/// with solid_angle_to_area().
-double flight_density(const Rgb& uncollided, const Vertex& to);
+inline double mean_of_primaries(const Rgb& c) { return (c.x + c.y + c.z) / 3; }
+
+/// What media make of the density of a vertex that is drawn by a ray, at the end of an edge, by primary: in one that
+/// scatters, the density of a free flight that ends there per length [1/m]; elsewhere the probability that it gets
+/// there. Product with solid_angle_to_area().
+Rgb flight_densities(const Rgb& uncollided, const Vertex& to);
+/// The same of an edge by itself: what techniques are weighed by.
+inline double flight_density(const Rgb& uncollided, const Vertex& to) {
+    return mean_of_primaries(flight_densities(uncollided, to));
+}
 
 /// Makes the new vertex `v` the next one along the ray: what it meets, or where a medium scatters it before that. Notes
 /// what media leave of its light. False where there is nothing.

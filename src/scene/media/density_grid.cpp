@@ -31,6 +31,13 @@ DensityGrid::DensityGrid(Values values, const Imath::Box3d& box, const Imath::M4
     shift.setTranslation(Imath::V3d(0.5)); // values lie in the middle of cells
     Imath::M44d corner;
     corner.setTranslation(box.min);
+    for (int corners = 0; corners < 8; ++corners) {
+        Imath::V3d p;
+        to_world.multVecMatrix(Imath::V3d(corners & 1 ? box.max.x : box.min.x, corners & 2 ? box.max.y : box.min.y,
+                                          corners & 4 ? box.max.z : box.min.z),
+                               p);
+        bounds_.extendBy(Vec3(p));
+    }
     to_grid_ = (shift * from_unit * corner * to_world).inverse();
 }
 

@@ -11,9 +11,9 @@
 
 namespace keyhole {
 
-/// Values in the middle of the cells of a box, interpolated between them, falling to 0 over half a cell at the faces of
-/// the box; 0 outside. Along a ray the density is a cubic in every cell between values, so that integrals along rays
-/// are exact and need no random numbers. Immutable and thread-safe.
+/// Values in the middle of the cells of a box, interpolated between them and with 0 beyond the faces of the box, which
+/// cut them off at half their height; 0 outside (as in pbrt). Along a ray the density is a cubic in every cell between
+/// values, so that integrals along rays are exact and need no random numbers. Immutable and thread-safe.
 class DensityGrid {
   public:
     struct Values {
@@ -24,6 +24,8 @@ class DensityGrid {
     /// @throws InputError if a matrix has no inverse, or the values are too few or too many.
     DensityGrid(Values values, const Imath::Box3d& box, const Imath::M44d& to_world);
 
+    /// Of the box, in world space.
+    const Imath::Box3f& bounds() const { return bounds_; }
     /// At a place in world space.
     double density(const Vec3& p) const;
     /// Integral of the density along `origin` + t `w` (unit) for t from `t0` to `t1`, which may be infinite [m].
@@ -47,6 +49,7 @@ class DensityGrid {
 
     Values values_;
     Imath::M44d to_grid_;
+    Imath::Box3f bounds_;
 };
 
 } // namespace keyhole

@@ -71,6 +71,24 @@ template <class F> void Media::for_each_part(const Edge& edge, F&& f) const {
     }
 }
 
+Imath::Box3f Media::bounds_of_scattering() const {
+    Imath::Box3f box;
+    if (!scatter_) return box;
+    const auto add = [&box](const Medium* medium) {
+        if (medium != nullptr && medium->density) box.extendBy(medium->density->bounds());
+    };
+    add(outermost_.get());
+    for (const Shape& shape : shapes_) {
+        add(shape.inside.get());
+        add(shape.outside.get());
+    }
+    if (accelerator_) {
+        box.extendBy(accelerator_->lower());
+        box.extendBy(accelerator_->upper());
+    }
+    return box;
+}
+
 Attenuation Media::attenuation(const SurfacePoint& a, const SurfacePoint& b) const {
     Attenuation attenuation;
     if (empty()) return attenuation;
@@ -85,12 +103,10 @@ Attenuation Media::attenuation(const SurfacePoint& a, const SurfacePoint& b) con
     return attenuation;
 }
 
-std::optional<Collision> Media::fly(const SurfacePoint& from, const Vec3& w, const SurfacePoint* to,
-                                    SampleSource& source) const {
-    const auto [u0, u1] = source.take<2>();
-    const int primary = std::min(2, static_cast<int>(3 * u0));
+std::optional<Collision> Media::fly(const SurfacePoint& from, const Vec3& w, const SurfacePoint* to, int primary,
+                                    double u) const {
     const Edge along = edge(from, w, to);
-    double left = -std::log1p(-u1); // of the optical depth at which it collides
+    double left = -std::log1p(-u); // of the optical depth at which it collides
     std::optional<Collision> collision;
     for_each_part(along, [&](const Medium& medium, float t0, float t1) {
         const double extinction = medium.extinction()[primary];

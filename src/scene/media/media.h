@@ -1,9 +1,10 @@
 // What media do to light along the edges of paths.
 #pragma once
 
-#include "core/rng.h"
 #include "scene/accelerator.h"
 #include "scene/media/medium.h"
+
+#include <Imath/ImathBox.h>
 
 #include <memory>
 #include <optional>
@@ -47,12 +48,13 @@ class Media {
     Rgb transmittance(const SurfacePoint& a, const SurfacePoint& b) const { return attenuation(a, b).transmittance; }
     Attenuation attenuation(const SurfacePoint& a, const SurfacePoint& b) const;
 
-    /// A free flight from `from` along unit direction `w` as far as `to`; null: without end. Where it ends in a medium
-    /// that scatters; none: it gets there. Primaries fly differently: one of the three is chosen, so that the density
-    /// of a collision per length is the mean of extinction times Attenuation::uncollided, and the probability of none
-    /// the mean of the latter: flight_density().
-    std::optional<Collision> fly(const SurfacePoint& from, const Vec3& w, const SurfacePoint* to,
-                                 SampleSource& source) const;
+    /// A free flight of a primary, 0 to 2, from `from` along unit direction `w` as far as `to`; null: without end.
+    /// Where it ends in a medium that scatters, by u in [0, 1); none: it gets there. The density of a collision per
+    /// length is extinction times Attenuation::uncollided, and the probability of none the latter.
+    std::optional<Collision> fly(const SurfacePoint& from, const Vec3& w, const SurfacePoint* to, int primary,
+                                 double u) const;
+    /// The box that holds all boundaries, and all grids of densities; empty where nothing scatters.
+    Imath::Box3f bounds_of_scattering() const;
 
   private:
     struct Edge {

@@ -65,7 +65,8 @@ void define_medium(Parameters& p, Library& library, const Transform& to_world) {
     const bool grid = type == "uniformgrid" || type == "heterogeneous";
     if (grid || type == "homogeneous") {
         if (grid) medium.density = read_density(p, to_world);
-        read_coefficients(p, grid ? Rgb(1.0) : rgb(kAbsorption), grid ? Rgb(1.0) : rgb(kScattering), medium);
+        const bool ones = type == "uniformgrid";
+        read_coefficients(p, ones ? Rgb(1.0) : rgb(kAbsorption), ones ? Rgb(1.0) : rgb(kScattering), medium);
         if (!is_black(p.spectrum("Le", Rgb(0.0), ColorUse::light)) || p.has("temperature"))
             entry.refusal = "found a medium that emits, expected one that doesn't";
         p.ignore({"Lescale", "Legrid", "temperaturescale", "temperatureoffset"});
