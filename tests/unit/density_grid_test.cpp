@@ -101,6 +101,12 @@ TEST(DensityGrid, HasAVolume) {
     Imath::M44d flat;
     flat[1][1] = 0;
     EXPECT_THROW(DensityGrid(random_values({1, 1, 1}), kBox, flat), InputError);
+    Imath::M44d far;
+    far[3][0] = 1e14;
+    EXPECT_THROW(DensityGrid(random_values({1, 1, 1}), kBox, far), InputError);
+    for (const double huge : {1e200, 1e300})
+        EXPECT_THROW(DensityGrid(random_values({1, 1, 1}), Imath::Box3d(Imath::V3d(0.0), Imath::V3d(huge)), {}),
+                     InputError);
 }
 
 } // namespace

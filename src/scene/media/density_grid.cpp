@@ -13,6 +13,8 @@ namespace {
 
 /// Steps of bisection between Newton's are never needed more often.
 constexpr int kMostSteps = 64;
+/// As far away as other geometry may be [m].
+constexpr double kFarthest = 1e13;
 
 } // namespace
 
@@ -24,21 +26,24 @@ DensityGrid::DensityGrid(Values values, const Imath::Box3d& box, const Imath::M4
         throw InputError(
             fmt::format("found {} densities for a grid of {} x {} x {}", values_.density.size(), nx, ny, nz));
     const Imath::V3d extent = box.size();
-    if (!(extent.x > 0 && extent.y > 0 && extent.z > 0) || !(std::abs(to_world.determinant()) > 0))
-        throw InputError("found a grid of densities without a volume");
     Imath::M44d from_unit, shift;
     from_unit.setScale(Imath::V3d(extent.x / nx, extent.y / ny, extent.z / nz));
     shift.setTranslation(Imath::V3d(0.5)); // values lie in the middle of cells
     Imath::M44d corner;
     corner.setTranslation(box.min);
+    const Imath::M44d to_world_from_grid = shift * from_unit * corner * to_world;
+    to_grid_ = to_world_from_grid.inverse();
+    const bool has_volume = extent.x > 0 && extent.y > 0 && extent.z > 0 && std::isnormal(to_grid_.determinant()) &&
+                            std::isnormal(to_world_from_grid.determinant());
+    if (!has_volume) throw InputError("found a grid of densities without a volume, or of too large a one");
     for (int corners = 0; corners < 8; ++corners) {
-        Imath::V3d p;
+        Place p;
         to_world.multVecMatrix(Imath::V3d(corners & 1 ? box.max.x : box.min.x, corners & 2 ? box.max.y : box.min.y,
                                           corners & 4 ? box.max.z : box.min.z),
                                p);
+        if (!(p.length() <= kFarthest)) throw InputError("found a grid of densities that is too far away");
         bounds_.extendBy(Vec3(p));
     }
-    to_grid_ = (shift * from_unit * corner * to_world).inverse();
 }
 
 double DensityGrid::value(int x, int y, int z) const {
@@ -50,7 +55,10 @@ double DensityGrid::value(int x, int y, int z) const {
 }
 
 double DensityGrid::interpolated(const Place& p) const {
-    const Place low(std::floor(p.x), std::floor(p.y), std::floor(p.z)), d = p - low;
+    Place low; // one off at most, by rounding
+    for (int i = 0; i < 3; ++i)
+        low[i] = std::floor(std::clamp(p[i], -1.0, static_cast<double>(values_.size[static_cast<std::size_t>(i)])));
+    const Place d = p - low;
     const int x = static_cast<int>(low.x), y = static_cast<int>(low.y), z = static_cast<int>(low.z);
     const auto row = [&](int j, int k) { return std::lerp(value(x, j, k), value(x + 1, j, k), d.x); };
     const auto layer = [&](int k) { return std::lerp(row(y, k), row(y + 1, k), d.y); };

@@ -52,7 +52,11 @@ std::shared_ptr<const DensityGrid> read_density(Parameters& p, const Transform& 
     const Imath::Box3d box(p.point("p0", Imath::V3d(0.0)), p.point("p1", Imath::V3d(1.0)));
     const Imath::V3d extent = box.size();
     if (!(extent.x > 0 && extent.y > 0 && extent.z > 0)) p.fail("expected 'p1' to be beyond 'p0' along each axis");
-    return std::make_shared<const DensityGrid>(std::move(values), box, to_world);
+    try {
+        return std::make_shared<const DensityGrid>(std::move(values), box, to_world);
+    } catch (const InputError& e) {
+        p.fail(e.what());
+    }
 }
 
 } // namespace
