@@ -83,6 +83,7 @@ Rgb Connection::join() {
         const Rgb from_light = leave_light(to_eye_);
         if (is_black(from_light)) return from_light;
         const Rgb carried = from_light * leave_eye(-to_eye_) * geometry;
+        if (!scene_->has_scattering_media()) return carried * scene_->transmittance(y, z);
         const Attenuation attenuation = scene_->attenuation(y, z);
         from_light_[0] *= flight_density(attenuation.uncollided, vertex(s_));
         from_eye_[0] *= flight_density(attenuation.uncollided, vertex(s_ - 1));

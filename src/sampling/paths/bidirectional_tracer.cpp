@@ -36,8 +36,9 @@ struct SubPathTracing : WalkHooks {
     void lost() const { walk.vertices.pop_back(); }
     bool arrive(Vertex& v, const WalkRay& ray) const {
         const Vertex& before = walk.vertices[walk.vertices.size() - 2];
-        walk.notes.push_back({ray.throughput, -ray.w, {}, flight_density(ray.uncollided, before)});
-        density(v, from) = solid_angle_to_area(pdf, *ray.last, v.point, ray.w) * flight_density(ray.uncollided, v);
+        const auto flown = [&ray](const Vertex& to) { return ray.flight ? flight_density(ray.uncollided, to) : 1.0; };
+        walk.notes.push_back({ray.throughput, -ray.w, {}, flown(before)});
+        density(v, from) = solid_angle_to_area(pdf, *ray.last, v.point, ray.w) * flown(v);
         return v.point.site != Site::infinite;
     }
     bool leave(const Vertex& v, const Continuation& next, const WalkRay& ray) {
