@@ -126,14 +126,8 @@ struct RunContext {
         c.in_overtime = whole_round;
         return c;
     }
-    void begin(std::string_view stage, std::uint64_t total, std::string_view unit) const {
-        if (progress != nullptr) progress->begin(stage, total, unit);
-    }
     void advance(std::integral auto units) const {
         if (progress != nullptr) progress->advance(static_cast<std::uint64_t>(units));
-    }
-    void end() const {
-        if (progress != nullptr) progress->end();
     }
 };
 
@@ -141,15 +135,17 @@ struct RunContext {
 class ProgressStage {
   public:
     ProgressStage(const RunContext& context, std::string_view name, std::integral auto total, std::string_view unit)
-        : context_(context) {
-        context.begin(name, static_cast<std::uint64_t>(total), unit);
+        : progress_(context.progress) {
+        if (progress_ != nullptr) progress_->begin(name, static_cast<std::uint64_t>(total), unit);
     }
-    ~ProgressStage() { context_.end(); }
+    ~ProgressStage() {
+        if (progress_ != nullptr) progress_->end();
+    }
     ProgressStage(const ProgressStage&) = delete;
     ProgressStage& operator=(const ProgressStage&) = delete;
 
   private:
-    const RunContext& context_;
+    Progress* progress_;
 };
 
 } // namespace keyhole

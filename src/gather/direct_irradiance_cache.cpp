@@ -45,11 +45,10 @@ DirectIrradianceCache::DirectIrradianceCache(const Scene& scene, std::span<const
     const std::size_t number = std::clamp(kSamplesForEmitter * scene.emitters().size(), std::size_t{1}, kMostSamples);
     const LightSamples samples{static_cast<int>(number), most_faces};
     const Range own = own_part(static_cast<std::int64_t>(places.size()), context);
-    context.begin("direct irradiance", static_cast<std::uint64_t>(own.size()), "points");
+    const ProgressStage progress(context, "direct irradiance", own.size(), "points");
     shared_blocks(entries_, context, [&](std::int64_t /*block*/, std::int64_t i) {
         entries_[static_cast<std::size_t>(i)] = at(scene, static_cast<std::uint32_t>(i), samples, seed);
     });
-    context.end();
 }
 
 DirectIrradianceCache::Entry DirectIrradianceCache::at(const Scene& scene, std::uint32_t i, const LightSamples& samples,

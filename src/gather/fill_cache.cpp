@@ -208,7 +208,7 @@ HotSpots find_hot_spots(const GatherRays& rays, const CacheOptions& options, con
 IrradianceCache fill_cache(const GatherRays& rays, const HotSpots& spots, const CacheOptions& options,
                            const RunContext& context, const RaysOfRecords& decide) {
     IrradianceCache cache(static_cast<float>(options.error), static_cast<float>(options.overlap));
-    context.begin("irradiance cache", kSteps.size() + 1, "levels");
+    const ProgressStage progress(context, "irradiance cache", kSteps.size() + 1, "levels");
     const RecordMaker maker(rays, spots, options);
     CacheFill fill(maker, options, cache);
     const double start = context.seconds_left();
@@ -221,7 +221,6 @@ IrradianceCache fill_cache(const GatherRays& rays, const HotSpots& spots, const 
     fill.refine(decide ? decide({cache, fill.first(), seconds}) : options.rays, context);
     share_outlying_light(cache);
     context.advance(1);
-    context.end();
     return cache;
 }
 

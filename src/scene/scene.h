@@ -58,8 +58,7 @@ class Scene {
     bool has_scattering_media() const { return media_.scatter(); }
     Attenuation attenuation(const SurfacePoint& a, const SurfacePoint& b) const { return media_.attenuation(a, b); }
     /// Media::fly().
-    std::optional<Collision> fly(const SurfacePoint& from, const Vec3& w, const SurfacePoint* to, int primary,
-                                 double u) const {
+    FreeFlight fly(const SurfacePoint& from, const Vec3& w, const SurfacePoint* to, int primary, double u) const {
         return media_.fly(from, w, to, primary, u);
     }
 

@@ -114,8 +114,15 @@ TEST(Media_Flights, EndByTheirDensity) {
         for (int i = 0; i < kFlights; ++i) {
             Rng rng(1, StreamPurpose::test, static_cast<std::uint64_t>(i));
             Flight flight(rng.next());
-            const auto hit = scene->fly(from, w, &wall, flight.primary, rng.next());
-            const double t = hit ? (hit->p - from.p).length() / length : 1;
+            const FreeFlight flown = scene->fly(from, w, &wall, flight.primary, rng.next());
+            const double t = flown.collision ? (flown.collision->p - from.p).length() / length : 1;
+            SurfacePoint end = from;
+            end.p = flown.collision ? flown.collision->p : wall.p;
+            const Attenuation expected = scene->attenuation(from, end);
+            for (int k = 0; k < 3 && i < 2000; ++k) {
+                EXPECT_NEAR(flown.attenuation.transmittance[k], expected.transmittance[k], 1e-5);
+                EXPECT_NEAR(flown.attenuation.uncollided[k], expected.uncollided[k], 1e-5);
+            }
             ++histogram.observed[static_cast<std::size_t>(t * kCells)];
         }
         const auto through = [&](double t) {

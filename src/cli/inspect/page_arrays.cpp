@@ -1,6 +1,6 @@
 #include "cli/inspect/page_arrays.h"
 
-#include "cli/page/data_uri.h"
+#include "core/base64.h"
 
 #include <zlib.h>
 
@@ -208,7 +208,7 @@ nlohmann::ordered_json BinaryData::json() const {
                   bytes_.size(), 9) != Z_OK)
         throw std::bad_alloc();
     small.resize(size);
-    return {{"arrays", directory_}, {"deflated", base64(small)}};
+    return {{"arrays", directory_}, {"deflated", to_base64(small)}};
 }
 
 void PlaceCode::encode(const Vec3& p, std::vector<std::uint16_t>& to) const {

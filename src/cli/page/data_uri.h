@@ -7,8 +7,6 @@
 
 namespace keyhole {
 
-std::string base64(const std::string& bytes);
-
 /// A PNG, of pixels with 3 channels (sRGB) or 1 (grey).
 std::string png_uri(int width, int height, int channels, const std::vector<std::uint8_t>& pixels);
 

@@ -28,18 +28,19 @@ std::optional<RadianceSample> find(const GatherRays& rays, std::uint64_t seed, s
 
 HotSpots::HotSpots(const GatherRays& rays, std::int64_t count, std::uint64_t seed, const RunContext& context) {
     constexpr std::int64_t kBlock = 64;
-    std::vector<std::optional<RadianceSample>> found(static_cast<std::size_t>(count));
-    context.begin("hot spots", static_cast<std::uint64_t>(count), "rays");
-    parallel_for((count + kBlock - 1) / kBlock, context, [&](std::int64_t b) {
-        const std::int64_t end = std::min(count, (b + 1) * kBlock);
-        for (std::int64_t i = b * kBlock; i < end; ++i) found[static_cast<std::size_t>(i)] = find(rays, seed, i);
-        context.advance(static_cast<std::uint64_t>(end - b * kBlock));
-    });
-    context.end();
-
     std::vector<RadianceSample> samples;
-    for (const auto& f : found)
-        if (f) samples.push_back(*f);
+    {
+        const ProgressStage progress(context, "hot spots", count, "rays");
+        const auto look = [&](Range range) {
+            std::vector<RadianceSample> found;
+            for (std::int64_t i = range.begin; i < range.end; ++i)
+                if (const auto sample = find(rays, seed, i)) found.push_back(*sample);
+            context.advance(range.size());
+            return found;
+        };
+        for (const auto& found : make_blocks({0, count}, kBlock, context, look))
+            samples.insert(samples.end(), found.begin(), found.end());
+    }
     for (const BrightBall& ball : find_bright_balls(samples).balls) {
         if (spots_.size() == kMost) break;
         double sum2 = 0, inside = 0;

@@ -66,21 +66,21 @@ std::size_t ImageWeight::index(const Vec2& image) {
 ImageWeight measure_image_weight(const Scene& scene, int max_scatterings, std::uint64_t seed,
                                  const RunContext& context) {
     constexpr std::int64_t kSamples = kSamplesOfCell * kCells * kCells, kBlocks = 64, kBlock = kSamples / kBlocks;
-    std::vector<ImageWeight::Cells> parts(kBlocks, ImageWeight::Cells{});
-    context.begin("brightness of pixels", kSamples, "paths");
-    parallel_for(kBlocks, context, [&](std::int64_t b) {
-        for (std::int64_t i = b * kBlock; i < (b + 1) * kBlock; ++i) {
+    const ProgressStage progress(context, "brightness of pixels", kSamples, "paths");
+    const auto measure_block = [&](Range range) {
+        ImageWeight::Cells part{};
+        for (std::int64_t i = range.begin; i < range.end; ++i) {
             Rng rng(seed, StreamPurpose::image_weight, static_cast<std::uint64_t>(i));
             const Vec2 image = lattice_image_point(seed, StreamPurpose::image_weight, i);
             LuminanceSink sink;
             trace_path(scene, image, max_scatterings, rng, sink);
-            parts[static_cast<std::size_t>(b)][ImageWeight::index(image)] += sink.luminance_sum;
+            part[ImageWeight::index(image)] += sink.luminance_sum;
         }
-        context.advance(kBlock);
-    });
-    context.end();
+        context.advance(range.size());
+        return part;
+    };
     ImageWeight::Cells sum{};
-    for (const ImageWeight::Cells& part : parts)
+    for (const ImageWeight::Cells& part : make_blocks({0, kBlocks * kBlock}, kBlock, context, measure_block))
         for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += part[i];
     for (int i = 0; i < kFilters; ++i) sum = filtered(sum);
     return ImageWeight(sum);

@@ -50,10 +50,15 @@ Vertex sample_eye(const Scene& scene, SampleSource& source) {
     return v;
 }
 
+namespace {
+
+/// Whether the ray has a direction: vertices closer than floats can tell apart leave none between them.
+bool has_direction(const Vec3& w) { return w.length2() > 0.5f; }
+
+} // namespace
+
 bool next_vertex(const Scene& scene, const SurfacePoint& from, const Vec3& w, Vertex& v) {
-    // Vertices closer than floats can tell apart leave no direction between them.
-    if (!(w.length2() > 0.5f)) return false;
-    if (!scene.trace(from, w, v.point)) return false;
+    if (!has_direction(w) || !scene.trace(from, w, v.point)) return false;
     look_up_bsdf(v);
     return true;
 }
@@ -91,17 +96,25 @@ double Flight::arrive(const Rgb& densities) {
 }
 
 bool follow(const Scene& scene, WalkRay& ray, Vertex& v, SampleSource& source) {
-    const bool met = next_vertex(scene, *ray.origin, ray.w, v);
     if (!scene.has_scattering_media()) {
+        if (!next_vertex(scene, *ray.origin, ray.w, v)) return false;
         // From where light sets out: its ray may start nearer than an infinite vertex.
-        if (met) ray.clear = scene.transmittance(*ray.last, v.point);
-        return met;
+        ray.clear = scene.transmittance(*ray.last, v.point);
+        return true;
     }
+    if (!has_direction(ray.w)) return false;
+    const bool met = scene.trace(*ray.origin, ray.w, v.point);
     if (!ray.flight) ray.flight.emplace(source.next());
-    const auto collision = scene.fly(*ray.origin, ray.w, met ? &v.point : nullptr, ray.flight->primary, source.next());
-    if (collision) make_vertex(*collision, ray.w, v);
-    if (!collision && !met) return false;
-    const Attenuation attenuation = scene.attenuation(*ray.last, v.point);
+    const FreeFlight flown =
+        scene.fly(*ray.origin, ray.w, met ? &v.point : nullptr, ray.flight->primary, source.next());
+    if (flown.collision)
+        make_vertex(*flown.collision, ray.w, v);
+    else if (met)
+        look_up_bsdf(v);
+    else
+        return false;
+    const bool from_infinity = ray.last->site == Site::infinite;
+    const Attenuation attenuation = from_infinity ? scene.attenuation(*ray.last, v.point) : flown.attenuation;
     const double density = ray.flight->arrive(flight_densities(attenuation.uncollided, v));
     if (!(density > 0)) return false;
     ray.clear = attenuation.transmittance / Rgb(density);

@@ -95,36 +95,34 @@ Attenuation Media::attenuation(const SurfacePoint& a, const SurfacePoint& b) con
     const SurfacePoint &from = a.site == Site::infinite ? b : a, &to = a.site == Site::infinite ? a : b;
     const Edge along = edge(from, direction(from, to), &to);
     for_each_part(along, [&](const Medium& medium, float t0, float t1) {
-        const Rgb left = medium.transmittance(depth(medium, along.origin, along.w, t0, t1));
-        attenuation.transmittance *= left;
-        if (medium.scatters()) attenuation.uncollided *= left;
+        attenuation.pass(medium, depth(medium, along.origin, along.w, t0, t1));
         return true;
     });
     return attenuation;
 }
 
-std::optional<Collision> Media::fly(const SurfacePoint& from, const Vec3& w, const SurfacePoint* to, int primary,
-                                    double u) const {
+FreeFlight Media::fly(const SurfacePoint& from, const Vec3& w, const SurfacePoint* to, int primary, double u) const {
     const Edge along = edge(from, w, to);
     double left = -std::log1p(-u); // of the optical depth at which it collides
-    std::optional<Collision> collision;
+    FreeFlight flight;
     for_each_part(along, [&](const Medium& medium, float t0, float t1) {
-        const double extinction = medium.extinction()[primary];
-        if (!medium.scatters() || !(extinction > 0)) return true;
-        const double here = extinction * depth(medium, along.origin, along.w, t0, t1);
-        if (here <= left) {
-            left -= here;
+        const double whole = depth(medium, along.origin, w, t0, t1);
+        const double extinction = medium.scatters() ? medium.extinction()[primary] : 0;
+        const double amount = extinction > 0 ? std::min(whole, left / extinction) : whole;
+        std::optional<double> t;
+        if (amount < whole)
+            t = medium.density ? medium.density->reach(along.origin, w, t0, t1, amount) : std::optional(t0 + amount);
+        flight.attenuation.pass(medium, t ? amount : whole);
+        if (!t) {
+            if (extinction > 0) left = std::max(0.0, left - extinction * whole);
             return true;
         }
-        const double amount = left / extinction;
-        const auto t = medium.density ? medium.density->reach(along.origin, w, t0, t1, amount) : t0 + amount;
-        if (!t) return false; // by rounding: it gets to the end
         const Vec3 p = along.origin + w * static_cast<float>(*t);
         const double density = medium.density ? medium.density->density(p) : 1;
-        collision = Collision{p, medium.scattering * density, medium.extinction() * density, medium.anisotropy};
+        flight.collision = Collision{p, medium.scattering * density, medium.extinction() * density, medium.anisotropy};
         return false;
     });
-    return collision;
+    return flight;
 }
 
 } // namespace keyhole

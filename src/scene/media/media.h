@@ -22,6 +22,13 @@ struct Attenuation {
     Rgb transmittance{1.0}; ///< share that is neither absorbed nor scattered
     Rgb uncollided{1.0};    ///< the same of media that scatter alone: for each primary, the probability with which a
                             ///< free flight gets from one end to the other
+
+    /// Through so much of a medium; as Medium::transmittance().
+    void pass(const Medium& medium, double depth) {
+        const Rgb left = medium.transmittance(depth);
+        transmittance *= left;
+        if (medium.scatters()) uncollided *= left;
+    }
 };
 
 /// Where a medium scatters what flies through it.
@@ -29,6 +36,12 @@ struct Collision {
     Vec3 p;
     Rgb scattering, extinction; ///< coefficients there [1/m]
     float anisotropy;
+};
+
+/// A flight through media.
+struct FreeFlight {
+    std::optional<Collision> collision; ///< none: it gets to its end
+    Attenuation attenuation;            ///< on the way to there
 };
 
 /// Knows which medium lies where from the shapes whose sides differ in it. An edge asks for itself, with a ray that
@@ -48,11 +61,10 @@ class Media {
     Rgb transmittance(const SurfacePoint& a, const SurfacePoint& b) const { return attenuation(a, b).transmittance; }
     Attenuation attenuation(const SurfacePoint& a, const SurfacePoint& b) const;
 
-    /// A free flight of a primary, 0 to 2, from `from` along unit direction `w` as far as `to`; null: without end.
-    /// Where it ends in a medium that scatters, by u in [0, 1); none: it gets there. The density of a collision per
-    /// length is extinction times Attenuation::uncollided, and the probability of none the latter.
-    std::optional<Collision> fly(const SurfacePoint& from, const Vec3& w, const SurfacePoint* to, int primary,
-                                 double u) const;
+    /// Follows a primary, 0 to 2, from `from` along unit direction `w` as far as `to`; null: without end. It ends
+    /// before where a medium scatters it, by u in [0, 1): the density of that per length is extinction times
+    /// Attenuation::uncollided, and the probability that it gets there the latter.
+    FreeFlight fly(const SurfacePoint& from, const Vec3& w, const SurfacePoint* to, int primary, double u) const;
     /// The box that holds all boundaries, and all grids of densities; empty where nothing scatters.
     Imath::Box3f bounds_of_scattering() const;
 

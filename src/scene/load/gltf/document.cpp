@@ -1,5 +1,7 @@
 #include "scene/load/gltf/document.h"
 
+#include "core/base64.h"
+
 #include <fmt/format.h>
 
 #include <cstdint>
@@ -44,22 +46,6 @@ std::string read_bytes(const std::string& path) {
     text << file.rdbuf();
     if (!file) throw InputError({path, 0, 0}, "found a file that can't be read, expected a readable one");
     return text.str();
-}
-
-/// Characters that are none, line ends for example, are passed over.
-std::string from_base64(std::string_view text) {
-    constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string bytes;
-    std::uint32_t bits = 0;
-    int count = 0;
-    for (const char c : text) {
-        const auto digit = kDigits.find(c);
-        if (digit == std::string_view::npos) continue;
-        bits = bits << 6 | static_cast<std::uint32_t>(digit);
-        if ((count += 6) < 8) continue;
-        bytes += static_cast<char>(bits >> (count -= 8) & 0xFF);
-    }
-    return bytes;
 }
 
 /// An URI's %20 and the like.

@@ -1,5 +1,6 @@
 #include "scene/load/gltf/importable.h"
 
+#include "core/base64.h"
 #include "scene/load/gltf/accessors.h"
 #include "scene/load/gltf/extensions.h"
 #include "scene/load/load_mesh.h"
@@ -22,19 +23,6 @@ namespace {
 
 constexpr int kFloat = 5126;
 constexpr const char* kDraco = "KHR_draco_mesh_compression";
-
-std::string to_base64(std::string_view bytes) {
-    constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    text.reserve((bytes.size() + 2) / 3 * 4);
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        std::uint32_t bits = 0;
-        for (std::size_t k = 0; k < 3; ++k)
-            bits = bits << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-        for (std::size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? kDigits[bits >> (18 - 6 * k) & 63] : '=';
-    }
-    return text;
-}
 
 /// Whether an attribute is read as vectors of floats.
 bool is_vector(const std::string& name) {

@@ -13,11 +13,6 @@ namespace {
 
 constexpr int kMostCells = 1 << 27;
 
-/// pbrt's own, for a homogeneous medium that says nothing else.
-constexpr std::array<double, 3> kAbsorption{0.0011, 0.0024, 0.014}, kScattering{2.55, 3.21, 3.77};
-
-Rgb rgb(const std::array<double, 3>& c) { return {c[0], c[1], c[2]}; }
-
 void read_coefficients(Parameters& p, Rgb absorption, Rgb scattering, Medium& medium) {
     if (const std::string preset = p.string("preset", ""); !preset.empty()) {
         const auto found = measured_media().find(preset);
@@ -69,8 +64,10 @@ void define_medium(Parameters& p, Library& library, const Transform& to_world) {
     const bool grid = type == "uniformgrid" || type == "heterogeneous";
     if (grid || type == "homogeneous") {
         if (grid) medium.density = read_density(p, to_world);
-        const bool ones = type == "uniformgrid";
-        read_coefficients(p, ones ? Rgb(1.0) : rgb(kAbsorption), ones ? Rgb(1.0) : rgb(kScattering), medium);
+        if (type == "uniformgrid")
+            read_coefficients(p, Rgb(1.0), Rgb(1.0), medium);
+        else // pbrt's own
+            read_coefficients(p, {0.0011, 0.0024, 0.014}, {2.55, 3.21, 3.77}, medium);
         if (!is_black(p.spectrum("Le", Rgb(0.0), ColorUse::light)) || p.has("temperature"))
             entry.refusal = "found a medium that emits, expected one that doesn't";
         p.ignore({"Lescale", "Legrid", "temperaturescale", "temperatureoffset"});

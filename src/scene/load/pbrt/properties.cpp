@@ -1,5 +1,7 @@
 #include "scene/load/pbrt/properties.h"
 
+#include "scene/textures/function_texture.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,22 +20,8 @@ double alpha_of(double roughness, RoughnessScale scale) {
     return 1.62142 + x * (0.819955 + x * (0.1734 + x * (0.0171201 + x * 0.000640711)));
 }
 
-/// The alpha of a textured roughness.
-class AlphaTexture final : public Texture<double> {
-  public:
-    AlphaTexture(FloatTexture roughness, RoughnessScale scale) : roughness_(std::move(roughness)), scale_(scale) {}
-    double value(const SurfacePoint& point) const override {
-        return alpha_of(std::max(0.0, roughness_->value(point)), scale_);
-    }
-
-  private:
-    FloatTexture roughness_;
-    RoughnessScale scale_;
-};
-
-FloatTexture alpha_texture(FloatTexture roughness, RoughnessScale scale) {
-    if (!roughness->is_constant()) return std::make_shared<AlphaTexture>(std::move(roughness), scale);
-    return constant_texture(alpha_of(roughness->value({}), scale));
+FloatTexture alpha_texture(const FloatTexture& roughness, RoughnessScale scale) {
+    return computed_texture([scale](double r) { return alpha_of(std::max(0.0, r), scale); }, roughness);
 }
 
 /// The parameters of a directive.
