@@ -34,8 +34,9 @@ constexpr double kLeastGlossy = 0.05;
 /// Of a place's radius, how far from it what stands around it is known well enough.
 constexpr float kKnown = 0.25f;
 
-/// Of a place's radius, how far from it direct light may be that of the place. Places are where photons fell, and so in
-/// the light rather than in the shadow beside it: farther away nothing is known of that.
+/// Of a place's radius, how far from it light may be that of the place: direct light, and all light that seems to
+/// change across the radius. Places are where photons fell, and so in the light rather than in the shadow beside it:
+/// farther away nothing is known of that.
 constexpr float kInTheSameLight = 0.5f;
 
 /// Rays that may be traced on one after the other, in crevices. Four make light there a little better, and rooms full
@@ -46,9 +47,9 @@ constexpr int kMostTracedOn = 2;
 /// they are looked at there.
 constexpr double kLesserCaustic = 0.1, kLeastLook = 0.1;
 
-/// Photons of a caustic that are tested for sight, and photons that a lobe at the end of a gather ray is asked about.
+/// Photons of a caustic that are tested for sight, and photons that are asked about where a gather ray ends.
 /// The error that a few more would save is one of this sample alone, and small beside its others.
-constexpr int kSights = 8, kPhotonsOfLobe = 16;
+constexpr int kSights = 8, kPhotonsAtEnd = 16;
 
 /// Area of the surface in reach of an estimate over that of the disc, below which it is a mean over slats, leaves or
 /// legs: light changes across each of them, and a ray meets the side that it comes from.
@@ -164,14 +165,13 @@ Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSou
     end.place = place;
     if (!v.bsdf.traits().diffuse) return lobe(v, back, place, leg, source);
     const bool on = goes_on(leg, place, here);
-    const double share = place && !on ? maps_.irradiance->share_that_reaches(*place, leg.longer()) : 1;
     const Rgb f = v.bsdf.diffuse_reflectance(back);
     const Rgb direct_here = direct(place, v, here, leg, source);
     Rgb sum = end.direct = f * direct_here;
     if (on)
         sum += traced_on(v, back, place, direct_here + known.irradiance, leg, source);
     else if (place)
-        sum += f * known.irradiance * share;
+        sum += f * irradiance(*place, known.irradiance, here, leg.longer(), source);
     if (!v.bsdf.traits().glossy) return sum;
     // Seldom, and all the more then.
     const double p = std::max(kLeastGlossy, v.bsdf.glossy_probability(back));
@@ -181,6 +181,15 @@ Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSou
     // What is traced on brings the indirect light of all parts.
     if (place && !on) shine += photons({false, leg.longer()}, *place, glossy.v, here.normal, back, source);
     return sum + shine * (glossy.scale / p);
+}
+
+Rgb GatherRays::irradiance(std::uint32_t place, const Rgb& known, const SurfaceRegion& here, int longer,
+                           SampleSource& source) const {
+    if (!maps_.irradiance->is_one_sided(place) || maps_.irradiance->is_near(place, here, kInTheSameLight))
+        return known * maps_.irradiance->share_that_reaches(place, longer);
+    return density_near(
+        place, here, [&](const Photon& p) { return p.reaches(longer); }, [](const Photon&) { return Rgb(1.0); },
+        source);
 }
 
 Rgb GatherRays::direct(const std::optional<std::uint32_t>& place, const Vertex& v, const SurfaceRegion& here,
@@ -376,22 +385,27 @@ double GatherRays::variance_of_photons(const Vertex& v, const Vec3& back) const 
     });
 }
 
+template <class Counts, class Weight>
+Rgb GatherRays::density_near(std::uint32_t place, const SurfaceRegion& region, const Counts& counts,
+                             const Weight& weight, SampleSource& source) const {
+    if (maps_.global == nullptr) return Rgb(0.0);
+    const float r = maps_.irradiance->radius(place);
+    const double area = area_near(place, region);
+    if (!(area > 0)) return Rgb(0.0);
+    const auto few = [&](const auto& of_photon) {
+        const auto power = [&](const Photon& p) { return counts(p) ? luminance(p.power()) : 0.0; };
+        const auto light = [&](const Photon& p) { return of_photon(p) * p.power(); };
+        return sum_over_few(maps_.global->main_photons(), {region, r, kPhotonsAtEnd}, power, light, source) / area;
+    };
+    if (!may_be_partly_occluded(place, region)) return few(weight);
+    return few(weight_in_sight(scene_, region, r, weight));
+}
+
 Rgb GatherRays::photons(Asked asked, std::uint32_t place, const Vertex& v, const Vec3& normal, const Vec3& back,
                         SampleSource& source) const {
-    if (maps_.global == nullptr) return Rgb(0.0);
-    const PhotonQuery query = query_at(v, normal, options_.max_radius, options_);
-    const float r = maps_.irradiance->radius(place);
-    const double area = area_near(place, query.region);
-    if (!(area > 0)) return Rgb(0.0);
-    const PhotonMap& map = maps_.global->main_photons();
-    const auto few = [&](const auto& weight) {
-        const auto power = [&](const Photon& p) { return !asked.caustics || p.caustic() ? luminance(p.power()) : 0.0; };
-        const auto light = [&](const Photon& p) { return weight(p) * p.power(); };
-        return sum_over_few(map, {query.region, r, kPhotonsOfLobe}, power, light, source) / area;
-    };
-    const PhotonReflection reflected(v, back, asked.longer);
-    if (!may_be_partly_occluded(place, query.region)) return few(reflected);
-    return few(weight_in_sight(scene_, query.region, r, reflected));
+    return density_near(
+        place, {v.point.p, normal}, [&](const Photon& p) { return !asked.caustics || p.caustic(); },
+        PhotonReflection(v, back, asked.longer), source);
 }
 
 } // namespace keyhole
