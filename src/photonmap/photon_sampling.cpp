@@ -1,7 +1,7 @@
 #include "photonmap/photon_sampling.h"
 
 #include "core/shared_work.h"
-#include "photonmap/power/power.h"
+#include "photonmap/power.h"
 #include "sampling/markov/chain_rounds.h"
 
 #include <algorithm>

@@ -6,7 +6,7 @@
 #include "core/settings.h"
 #include "core/work_item_set.h"
 #include "film/accumulation_buffer.h"
-#include "film/errors/pass_error.h"
+#include "film/pass_error.h"
 #include "scene/camera.h"
 #include "session/work_partition.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/error.h"
-#include "scene/load/load_pbrt.h"
+#include "scene/load/load.h"
 #include "support/scratch_directory.h"
 
 #include <string>

@@ -3,7 +3,7 @@
 
 #include "cli/chart/reference.h"
 #include "cli/chart/runs.h"
-#include "film/errors/repeat_error.h"
+#include "film/image_error.h"
 
 #include <map>
 #include <optional>

@@ -44,8 +44,7 @@ void Outputs::write(Picture picture, const Filter& filter, const std::function<s
         if (!noise_layers) erase_noise_layers(picture);
         return image;
     };
-    const std::size_t pixels = picture.layers.at("beauty").data.size() / 3;
-    if (denoise != Denoise::exr || pixels > kPixelsOfASecond) write_exr(exr, picture);
+    if (denoise != Denoise::exr || picture.layers.at("beauty").pixels() > kPixelsOfASecond) write_exr(exr, picture);
     if (denoise == Denoise::exr) {
         if (std::optional<Image> image = filtered())
             picture.layers["unfiltered"] = std::exchange(picture.layers.at("beauty"), *std::move(image));

@@ -1,10 +1,10 @@
 // The probability of large steps, learnt.
 #pragma once
 
-#include "sampling/markov/chain_rounds.h"
 #include "sampling/primary/primary_kernel.h"
 
-#include <optional>
+#include <algorithm>
+#include <cstdint>
 
 namespace keyhole {
 
@@ -38,22 +38,5 @@ struct LearningBatch {
     explicit LearningBatch(std::int64_t all)
         : steps(std::max<std::int64_t>(1, all / 32)), rest(std::max<std::int64_t>(1, all - steps)) {}
 };
-
-/// The rule after a first batch, and the kernel to go on with.
-struct LargeSteps {
-    LargeStepRule rule;
-    PrimaryKernel kernel;
-};
-
-/// Learns the probability of large steps, where none is `prescribed`. `Chains` has
-///     void advance(const PrimaryKernel&, std::int64_t steps, const RunContext&); // deposits nothing
-///     PrimaryCounts counts() const;
-template <class Chains>
-LargeSteps learn_large_steps(Chains& chains, Failures failures, std::optional<double> prescribed,
-                             const ChainRounds& rounds, const RunContext& context) {
-    rounds.run(context, [&](std::int64_t n) { chains.advance({failures, 0.5}, n, context); });
-    const LargeStepRule rule = large_step_rule(chains.counts());
-    return {rule, {failures, prescribed.value_or(rule.p_large)}};
-}
 
 } // namespace keyhole
