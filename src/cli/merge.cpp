@@ -1,5 +1,4 @@
 // keyhole merge: several pictures of one scene made into one.
-#include "cli/pictures/denoising.h"
 #include "cli/pictures/outputs.h"
 #include "cli/program.h"
 #include "cli/words/tell.h"

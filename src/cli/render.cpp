@@ -1,6 +1,5 @@
 // keyhole render: from a scene file to pictures.
 #include "cli/checkpoints.h"
-#include "cli/pictures/denoising.h"
 #include "cli/pictures/outputs.h"
 #include "cli/process_group.h"
 #include "cli/program.h"

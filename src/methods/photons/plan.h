@@ -4,7 +4,7 @@
 #include "core/progress.h"
 #include "core/statistics.h"
 #include "methods/photons/photon_sampler.h"
-#include "sampling/paths/path_class.h"
+#include "sampling/paths/path.h"
 #include "scene/scene.h"
 
 #include <array>

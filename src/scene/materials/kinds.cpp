@@ -14,13 +14,13 @@ ColorTexture read_normals(Properties& p) {
 
 } // namespace
 
-MaterialKinds coated_kinds(), conductor_kinds(), dielectric_kinds(), diffuse_kinds(), hair_kinds(), measured_kinds(),
-    mix_kinds(), principled_kinds(), subsurface_kinds();
+MaterialKinds coated_kinds(), conductor_kinds(), dielectric_kinds(), diffuse_kinds(), mix_kinds(), principled_kinds(),
+    substitute_kinds(), subsurface_kinds();
 
 const MaterialKinds& material_kinds() {
     static const MaterialKinds kinds =
-        joined<MaterialPtr>({coated_kinds(), conductor_kinds(), dielectric_kinds(), diffuse_kinds(), hair_kinds(),
-                             measured_kinds(), mix_kinds(), principled_kinds(), subsurface_kinds()});
+        joined<MaterialPtr>({coated_kinds(), conductor_kinds(), dielectric_kinds(), diffuse_kinds(), substitute_kinds(),
+                             mix_kinds(), principled_kinds(), subsurface_kinds()});
     return kinds;
 }
 

@@ -1,7 +1,10 @@
-// pbrt's hair, of which we have no model: what lies nearest is a principled surface of its colour.
+// pbrt's materials of which we have no model. What lies nearest to hair is a principled surface of its colour; to
+// measured reflection, in files that we don't read, a grey of some gloss.
 #include "scene/load/properties.h"
 #include "scene/materials/make_material.h"
 #include "scene/textures/function_texture.h"
+
+#include <fmt/format.h>
 
 #include <cmath>
 
@@ -76,8 +79,24 @@ MaterialPtr read_hair(Properties& p) {
     return make_principled(t);
 }
 
+/// One that pbrt's files name by `kind`, with its file as `file`.
+MaterialPtr read_measured(Properties& p, const char* kind, const char* file) {
+    const std::string path = p.word({"", file});
+    p.warn(fmt::format("{} {}", kind, path),
+           fmt::format("the material '{}' becomes a principled one of reflectance 0.5 and roughness 0.5: the measured "
+                       "reflection in '{}' is not read",
+                       kind, path));
+    PrincipledTextures t = principled_textures(1.5, constant_texture(0.5));
+    t.base_color = constant_texture(Rgb(0.5));
+    return make_principled(t);
+}
+
 } // namespace
 
-MaterialKinds hair_kinds() { return {{{"", "hair"}, "", {}, read_hair}}; }
+MaterialKinds substitute_kinds() {
+    return {{{"", "hair"}, "", {}, read_hair},
+            {{"", "measured"}, "", {}, [](Properties& p) { return read_measured(p, "measured", "filename"); }},
+            {{"", "fourier"}, "", {}, [](Properties& p) { return read_measured(p, "fourier", "bsdffile"); }}};
+}
 
 } // namespace keyhole
