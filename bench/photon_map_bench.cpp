@@ -6,8 +6,6 @@
 
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
-
 namespace keyhole {
 namespace {
 

@@ -10,7 +10,6 @@
 
 #include <atomic>
 #include <map>
-#include <optional>
 
 namespace keyhole {
 namespace {

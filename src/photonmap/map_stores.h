@@ -7,8 +7,6 @@
 #include "photonmap/photons.h"
 #include "sampling/paths/path.h"
 
-#include <cassert>
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <tuple>

@@ -6,7 +6,6 @@
 // where B is the integral of Y(f) and N the number of steps, the sum of power over a region is then the flux in it.
 #pragma once
 
-#include "core/choices.h"
 #include "photonmap/photon.h"
 #include "sampling/paths/path.h"
 

@@ -6,7 +6,6 @@
 #include "support/scratch_directory.h"
 
 #include <string>
-#include <variant>
 #include <vector>
 
 namespace keyhole {

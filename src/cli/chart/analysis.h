@@ -5,7 +5,6 @@
 #include "cli/chart/runs.h"
 #include "film/image_error.h"
 
-#include <map>
 #include <optional>
 
 namespace keyhole {

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "film/denoise/denoise.h"
 #include "film/files/atomic_file.h"
 #include "film/files/exr.h"
 #include "film/files/png.h"

@@ -5,7 +5,6 @@
 #include "core/progress.h"
 #include "core/render_stats.h"
 #include "core/settings.h"
-#include "film/denoise/denoise.h"
 #include "film/picture.h"
 
 #include <cstddef>

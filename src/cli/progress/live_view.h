@@ -5,7 +5,6 @@
 #include "session/work_partition.h"
 
 #include <chrono>
-#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>

@@ -2,7 +2,6 @@
 
 #include "core/parallel.h"
 
-#include <cmath>
 #include <limits>
 
 namespace keyhole {

@@ -10,7 +10,6 @@
 #include "scene/scene.h"
 
 #include <array>
-#include <compare>
 #include <cstdint>
 #include <map>
 #include <mutex>

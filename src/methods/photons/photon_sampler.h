@@ -12,7 +12,6 @@
 #include "sampling/paths/path_set.h"
 #include "scene/scene.h"
 
-#include <memory>
 #include <optional>
 
 namespace keyhole {

@@ -5,7 +5,6 @@
 #include "scene/geometry.h"
 
 #include <cmath>
-#include <cstring>
 
 namespace keyhole {
 namespace {
