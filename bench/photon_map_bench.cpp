@@ -1,12 +1,10 @@
 // Cost of building a photon map and of asking it. The surfaces are the six walls of a room with 5,000 small cards, so
 // that queries meet big and small triangles, edges and corners.
 #include "photonmap/importance/importance_map.h"
-#include "photonmap/photon_store.h"
+#include "photonmap/map_stores.h"
 #include "scene/warp.h"
 
 #include <benchmark/benchmark.h>
-
-#include <algorithm>
 
 namespace keyhole {
 namespace {

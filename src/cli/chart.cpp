@@ -1,9 +1,8 @@
 // keyhole chart: speed against accuracy, and memory against accuracy.
 #include "cli/chart/chart.h"
 #include "cli/chart/runs.h"
-#include "cli/command.h"
+#include "cli/program.h"
 #include "cli/progress/interrupt.h"
-#include "cli/real_range.h"
 #include "core/error.h"
 #include "scene/load/yaml/settings_text.h"
 

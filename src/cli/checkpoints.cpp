@@ -1,6 +1,6 @@
 #include "cli/checkpoints.h"
 
-#include "cli/real_range.h"
+#include "cli/program.h"
 #include "cli/words/tell.h"
 #include "core/error.h"
 #include "core/work_item_set.h"

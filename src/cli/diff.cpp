@@ -1,7 +1,7 @@
 // keyhole diff: error measures as JSON.
-#include "cli/command.h"
 #include "cli/pictures/beauty.h"
-#include "film/errors/image_error.h"
+#include "cli/program.h"
+#include "film/image_error.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -1,5 +1,5 @@
 // keyhole experiment: studies that show what a method does.
-#include "cli/command.h"
+#include "cli/program.h"
 #include "sampling/primary/failure_study.h"
 
 #include <fmt/format.h>

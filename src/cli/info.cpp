@@ -1,6 +1,6 @@
 // keyhole info: what a scene consists of, as text or JSON.
-#include "cli/command.h"
-#include "cli/words/stats_json.h"
+#include "cli/program.h"
+#include "cli/words/report.h"
 #include "cli/words/units.h"
 #include "scene/geometry.h"
 #include "scene/load/load.h"

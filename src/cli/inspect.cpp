@@ -1,11 +1,9 @@
 // keyhole inspect: a page that shows where the light goes.
-#include "cli/command.h"
 #include "cli/inspect/page_data.h"
-#include "cli/inspect/user_path_entries.h"
 #include "cli/page/page_parts.h"
+#include "cli/program.h"
 #include "cli/progress/interrupt.h"
-#include "cli/resolution.h"
-#include "cli/words/stats_json.h"
+#include "cli/words/report.h"
 #include "cli/words/tell.h"
 #include "core/error.h"
 #include "core/parallel.h"
@@ -85,7 +83,9 @@ int run(InspectOptions o) {
     std::optional<std::string> unsaved;
     with_threads(o.threads, [&] {
         Scene scene(std::move(loaded.description));
-        const UserPaths paths = bind_user_paths(scene, working_paths(loaded.user_paths, scene));
+        UserPathFile working = loaded.user_paths;
+        std::erase_if(working.paths, [&](const UserPathSpec& path) { return !binds(scene, path); });
+        const UserPaths paths = bind_user_paths(scene, working);
         const auto start = std::chrono::steady_clock::now();
         Inspection inspection = inspect_scene(scene, settings, paths, o.limits, context);
         for (const std::string& warning : load_warnings) inspection.render.stats.warn(Doubt::scene, warning);

@@ -1,7 +1,6 @@
 // keyhole merge: several pictures of one scene made into one.
-#include "cli/command.h"
-#include "cli/pictures/denoising.h"
 #include "cli/pictures/outputs.h"
+#include "cli/program.h"
 #include "cli/words/tell.h"
 #include "film/files/exr.h"
 #include "film/join.h"

@@ -1,9 +1,8 @@
 // keyhole plan: what a scene holds, what its render leaves out because of that, and what it will cost.
 #include "methods/photons/plan.h"
 
-#include "cli/command.h"
-#include "cli/resolution.h"
-#include "cli/words/stats_json.h"
+#include "cli/program.h"
+#include "cli/words/report.h"
 #include "cli/words/units.h"
 #include "core/percent.h"
 #include "methods/choice/expected_cost.h"

@@ -73,7 +73,7 @@ struct Settings {
     bool gather_coverage = true;
     std::int64_t spp = 16;
     bool adaptive = false;
-    std::int64_t seed = 1;
+    std::uint64_t seed = 1;
     std::int64_t max_depth = 24;
     FilterShape filter = FilterShape::gaussian;
     double filter_radius = 0;

@@ -23,6 +23,7 @@ struct Image {
         : width(w), height(h), channels(c),
           data(static_cast<std::size_t>(w) * static_cast<std::size_t>(h) * static_cast<std::size_t>(c), 0.0f) {}
 
+    std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
     float* at(int x, int y) { return data.data() + index(x, y); }
     const float* at(int x, int y) const { return data.data() + index(x, y); }
 

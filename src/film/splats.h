@@ -7,7 +7,7 @@
 #include "film/filter.h"
 #include "film/picture.h"
 #include "film/pixel_sums.h"
-#include "sampling/paths/path_class.h"
+#include "sampling/paths/path.h"
 
 #include <array>
 #include <vector>

@@ -24,10 +24,9 @@ struct ToneCurve {
 };
 
 ToneCurve expose(const Image& image) {
-    const auto pixels = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
     std::vector<double> lit;
     double log_sum = 0;
-    for (std::size_t i = 0; i < pixels; ++i) {
+    for (std::size_t i = 0; i < image.pixels(); ++i) {
         const double y = luminance(colour(image, i));
         if (!(y > 0)) continue;
         lit.push_back(y);
@@ -40,6 +39,20 @@ ToneCurve expose(const Image& image) {
     return {scale, std::max(1.0, scale * *nth)};
 }
 
+/// sRGB bytes of each pixel's colour times factor(colour).
+std::vector<std::uint8_t> encode(const Image& image, const auto& factor) {
+    std::vector<std::uint8_t> bytes;
+    bytes.reserve(3 * image.pixels());
+    for (std::size_t i = 0; i < image.pixels(); ++i) {
+        const Rgb c = colour(image, i);
+        const double scale = factor(c);
+        for (int k = 0; k < 3; ++k)
+            bytes.push_back(
+                static_cast<std::uint8_t>(std::lround(255 * srgb_encode(static_cast<float>(scale * c[k])))));
+    }
+    return bytes;
+}
+
 } // namespace
 
 float srgb_encode(float linear) {
@@ -49,32 +62,15 @@ float srgb_encode(float linear) {
 }
 
 std::vector<std::uint8_t> tonemap(const Image& image, const Image& exposed_for) {
-    const auto pixels = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
-    const ToneCurve curve = expose(exposed_for);
-    std::vector<std::uint8_t> bytes(3 * pixels);
-    for (std::size_t i = 0; i < pixels; ++i) {
-        const Rgb c = colour(image, i);
+    return encode(image, [curve = expose(exposed_for)](const Rgb& c) {
         const double l = std::max(0.0, curve.scale * luminance(c));
         // Equation 4 over l, so that black needs no exception.
-        const double factor = curve.scale * (1 + l / (curve.white * curve.white)) / (1 + l);
-        for (int k = 0; k < 3; ++k)
-            bytes[3 * i + static_cast<std::size_t>(k)] =
-                static_cast<std::uint8_t>(std::lround(255 * srgb_encode(static_cast<float>(factor * c[k]))));
-    }
-    return bytes;
+        return curve.scale * (1 + l / (curve.white * curve.white)) / (1 + l);
+    });
 }
 
 std::vector<std::uint8_t> expose_by(const Image& image, double stops) {
-    const auto pixels = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
-    const double factor = std::exp2(stops);
-    std::vector<std::uint8_t> bytes;
-    bytes.reserve(3 * pixels);
-    for (std::size_t i = 0; i < pixels; ++i) {
-        const Rgb c = colour(image, i) * factor;
-        for (int k = 0; k < 3; ++k)
-            bytes.push_back(static_cast<std::uint8_t>(std::lround(255 * srgb_encode(static_cast<float>(c[k])))));
-    }
-    return bytes;
+    return encode(image, [factor = std::exp2(stops)](const Rgb& /*colour*/) { return factor; });
 }
 
 } // namespace keyhole

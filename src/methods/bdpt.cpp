@@ -38,13 +38,6 @@ struct BrightnessSink {
     }
 };
 
-SubPathPair& trace_subpaths(const Scene& scene, const Vec2& image, int depth, SampleSource& source) {
-    SubPathPair& pair = SubPathPair::scratch();
-    trace_eye_subpath(scene, image, most_eye_vertices(depth), source, &source, pair.eye);
-    trace_light_subpath(scene, most_light_vertices(depth), source, &source, pair.light);
-    return pair;
-}
-
 /// About that of the picture [W/(m^2 sr)]; 0 where few samples find nothing.
 double pilot_brightness(const Scene& scene, const Settings& settings) {
     const auto depth = static_cast<int>(settings.max_depth);
@@ -52,7 +45,7 @@ double pilot_brightness(const Scene& scene, const Settings& settings) {
     for (int i = 0; i < kPilot; ++i) {
         Rng rng(settings.seed, StreamPurpose::survey, static_cast<std::uint64_t>(i));
         const Vec2 image = lattice_image_point(settings.seed, StreamPurpose::survey, i);
-        SubPathPair& pair = trace_subpaths(scene, image, depth, rng);
+        SubPathPair& pair = trace_both_subpaths(scene, image, depth, rng, rng);
         connect_subpaths(scene, pair, image, {depth, PathSet::all, settings.mis}, sink);
     }
     return sink.sum / kPilot;
@@ -60,7 +53,7 @@ double pilot_brightness(const Scene& scene, const Settings& settings) {
 
 PixelSample sample_pixel(const Scene& scene, const Vec2& image, int depth, MisHeuristic heuristic, SplatFilm& splats,
                          SampleSource& source) {
-    SubPathPair& pair = trace_subpaths(scene, image, depth, source);
+    SubPathPair& pair = trace_both_subpaths(scene, image, depth, source, source);
     const auto& eye = pair.eye;
     PixelSink pixel;
     for (std::size_t i = 1; i < eye.vertices.size() && !pixel.saw_surface; ++i)

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "methods/photons/find_coverage.h"
+#include "methods/photons/photon_sampler.h"
 #include "methods/photons/plan.h"
-#include "methods/photons/work_shares.h"
 #include "photonmap/surface/surface_patches.h"
 
 #include <optional>

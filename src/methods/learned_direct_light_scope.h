@@ -9,6 +9,11 @@
 
 namespace keyhole {
 
+/// By a trial of some thousand paths: true where the noise of choosing one of few emitters costs more than their rays
+/// do; false where a trial would take too much of the time. Work is measured in rays, so that without a time the answer
+/// is the same on every machine and on any number of threads. Leaves the scene as it was. @throws Interrupted
+bool each_emitter_pays(Scene& scene, const Settings& settings, const RunContext& context);
+
 /// While it lives, the scene draws points on emitters as has been learned, if there is a choice to be learned, the
 /// method that the settings name asks for direct light, and learning promises to pay; and paths have a sample of each
 /// emitter at what is seen first where that pays (each_emitter_pays()).

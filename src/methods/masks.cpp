@@ -10,7 +10,6 @@
 
 #include <atomic>
 #include <map>
-#include <optional>
 
 namespace keyhole {
 namespace {
@@ -96,8 +95,7 @@ void add_masks(Picture& picture, const Scene& scene, const Settings& settings, c
                 whole = false;
                 return;
             }
-            *alpha.at(x, y) =
-                static_cast<float>(trace_pixel(scene, filter, static_cast<std::uint64_t>(settings.seed), x, y, shapes));
+            *alpha.at(x, y) = static_cast<float>(trace_pixel(scene, filter, settings.seed, x, y, shapes));
             const auto named = [&](const Names& all, CryptomatteLayers& layers) {
                 std::ranges::transform(shapes, names.begin(), [&](std::int64_t shape) {
                     return shape < 0 ? -1 : all.of_shape[static_cast<std::size_t>(shape)];

@@ -2,8 +2,8 @@
 #include "core/error.h"
 #include "core/shared_work.h"
 #include "methods/method.h"
+#include "methods/photons/memory_plan.h"
 #include "methods/photons/pass_gather.h"
-#include "methods/photons/pass_observer.h"
 #include "methods/photons/photon_file.h"
 #include "methods/photons/photon_report.h"
 #include "methods/photons/photon_sampler.h"
@@ -29,8 +29,32 @@ class NoPhotons final : public PhotonSampler {
     }
 };
 
+/// The photons of settings.load_map. sample() throws InputError if the file isn't for this scene.
+class FileSampler final : public PhotonSampler {
+  public:
+    /// @throws InputError if more than one pass is asked for.
+    explicit FileSampler(const SamplerContext& context) : c_(context) {
+        if (context.settings.passes != 1)
+            throw InputError("a saved photon map is one pass: expected passes=1 with --load-map");
+    }
+
+    Photons sample(std::uint64_t /*seed*/, RenderStats& stats, const RunContext& /*context*/) override {
+        Photons photons = load_photons(c_.settings.load_map, photon_file_key(c_.scene, c_.settings, c_.coverage));
+        if (const std::size_t held = plan_memory(c_.settings, ImportanceUse::none, 2).photons,
+            found = photons.global.size() + photons.caustic.size();
+            found > held && c_.settings.photons == 0)
+            stats.warnings.push_back(fmt::format("{}: {} photons, where photon_memory holds {}: the map takes more "
+                                                 "memory than it may",
+                                                 c_.settings.load_map, found, held));
+        return photons;
+    }
+
+  private:
+    SamplerContext c_;
+};
+
 std::unique_ptr<PhotonSampler> make_sampler(const SamplerContext& c, const RenderPlan& plan) {
-    if (!c.settings.load_map.empty()) return make_file_sampler(c);
+    if (!c.settings.load_map.empty()) return std::make_unique<FileSampler>(c);
     if (!plan.photons) return std::make_unique<NoPhotons>();
     return c.settings.method->make_sampler(c);
 }
@@ -41,7 +65,7 @@ std::optional<ImageWeight> weigh_pixels(const SamplerContext& c, const RenderPla
     const Settings& s = c.settings;
     if (!s.equalise || !plan.photons || s.method->stores_everywhere() || !s.load_map.empty()) return std::nullopt;
     const StageClock clock(stats, kPixelBrightness);
-    return measure_image_weight(c.scene, static_cast<int>(s.max_depth), static_cast<std::uint64_t>(s.seed), context);
+    return measure_image_weight(c.scene, static_cast<int>(s.max_depth), s.seed, context);
 }
 
 /// Renders one pass after the other.

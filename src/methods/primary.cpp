@@ -5,8 +5,9 @@
 #include "methods/chain_report.h"
 #include "methods/method.h"
 #include "methods/sample_report.h"
-#include "sampling/primary/p_large.h"
+#include "sampling/markov/chain_rounds.h"
 #include "sampling/primary/primary_chains.h"
+#include "sampling/primary/primary_kernel.h"
 #include "session/passes.h"
 #include "session/stage_clock.h"
 #include "session/work.h"
@@ -145,8 +146,11 @@ bool draw(PrimaryChains& chains, const Scene& scene, const Settings& settings, W
         std::max<std::int64_t>(1, settings.mutations / chain_groups(settings) / chains.size());
     const LearningBatch batch(per_chain);
     const ProgressStage progress(context, "chains", per_chain * chains.size(), "steps");
-    const auto [rule, kernel] = learn_large_steps(chains, settings.failures, settings.p_large.value,
-                                                  rounds_of(batch.steps, chains.size(), 1), context);
+    rounds_of(batch.steps, chains.size(), 1).run(context, [&](std::int64_t n) {
+        chains.advance({settings.failures, 0.5}, n, context);
+    });
+    const LargeStepRule rule = large_step_rule(chains.counts());
+    const PrimaryKernel kernel{settings.failures, settings.p_large.value.value_or(rule.p_large)};
     report_large_steps(rule, kernel.p_large, stats);
     const std::int64_t drawn = rounds_of(batch.rest, chains.size(), kRounds).run(context, [&](std::int64_t n) {
         chains.advance(kernel, n, context, deposit);

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -37,9 +36,8 @@ bool has_openings(const UserPaths& paths) {
 }
 
 OpeningSearch search_of(const Settings& settings, const RunContext& context) {
-    OpeningSearch search{.pairs = kMostPairs,
-                         .max_scatterings = static_cast<int>(settings.max_depth),
-                         .seed = static_cast<std::uint64_t>(settings.seed)};
+    OpeningSearch search{
+        .pairs = kMostPairs, .max_scatterings = static_cast<int>(settings.max_depth), .seed = settings.seed};
     const double left = context.seconds_left();
     if (std::isfinite(left))
         search.seconds = kTimeOfLooking * left;
@@ -53,11 +51,10 @@ OpeningSearch search_of(const Settings& settings, const RunContext& context) {
 std::optional<LearnedEmission> emission_without_openings(const Scene& scene, const Settings& settings,
                                                          const RunContext& context) {
     if (!LearnedEmission::can_learn(scene)) return std::nullopt;
-    FoundLightPaths found = look_for_light(scene,
-                                           {.paths = kPathsOfLearning,
-                                            .max_scatterings = static_cast<int>(settings.max_depth),
-                                            .seed = static_cast<std::uint64_t>(settings.seed)},
-                                           context);
+    FoundLightPaths found = look_for_light(
+        scene,
+        {.paths = kPathsOfLearning, .max_scatterings = static_cast<int>(settings.max_depth), .seed = settings.seed},
+        context);
     return std::optional<LearnedEmission>(std::in_place, scene, std::move(found.ends));
 }
 

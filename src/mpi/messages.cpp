@@ -20,10 +20,6 @@ constexpr std::size_t kMostBytes = std::size_t{1} << 30; // of a message
 
 void nap() { std::this_thread::sleep_for(std::chrono::milliseconds(1)); }
 
-} // namespace
-
-namespace {
-
 /// Memory that a message which is under way reads or writes. If waiting for it is given up, MPI may still do so: it is
 /// never freed then.
 template <class T> class Lent {

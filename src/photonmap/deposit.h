@@ -5,9 +5,9 @@
 #include "core/statistics.h"
 #include "photonmap/importance/importance_map.h"
 #include "photonmap/map_stores.h"
+#include "photonmap/photon_weighing.h"
 #include "photonmap/photons.h"
-#include "photonmap/power/power.h"
-#include "photonmap/power/technique_weights.h"
+#include "photonmap/power.h"
 #include "sampling/paths/path_set.h"
 #include "scene/scene.h"
 

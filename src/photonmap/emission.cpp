@@ -2,8 +2,7 @@
 
 #include "core/shared_work.h"
 #include "photonmap/map_stores.h"
-#include "photonmap/power/outlying_power.h"
-#include "photonmap/power/power.h"
+#include "photonmap/power.h"
 #include "sampling/guidance/guided_light.h"
 
 #include <algorithm>

@@ -5,7 +5,6 @@
 #include "photonmap/map_stores.h"
 #include "photonmap/photon_weighing.h"
 #include "photonmap/photons.h"
-#include "photonmap/power/technique_weights.h"
 #include "sampling/guidance/guided_subpath.h"
 #include "sampling/guidance/learned/learned_emission.h"
 #include "sampling/guidance/learned/learned_scattering.h"

@@ -1,13 +1,12 @@
 #include "photonmap/photon_sampling.h"
 
 #include "core/shared_work.h"
-#include "photonmap/power/power.h"
+#include "photonmap/power.h"
 #include "sampling/markov/chain_rounds.h"
 
 #include <algorithm>
 #include <memory>
 #include <span>
-#include <utility>
 
 namespace keyhole {
 

@@ -2,8 +2,7 @@
 #pragma once
 
 #include "core/rng.h"
-#include "scene/bsdfs/coated_conductor.h"
-#include "scene/bsdfs/coated_diffuse.h"
+#include "scene/bsdfs/coated.h"
 #include "scene/bsdfs/conductor.h"
 #include "scene/bsdfs/dielectric.h"
 #include "scene/bsdfs/diffuse.h"

@@ -16,7 +16,7 @@ bool is_adaptive(const Settings& settings, const WorkPartition& share) {
 
 PixelSampling::PixelSampling(const Scene& scene, const Settings& settings, const WorkPartition& share,
                              StreamPurpose purpose)
-    : scene_(scene), seed_(static_cast<std::uint64_t>(settings.seed)), purpose_(purpose),
+    : scene_(scene), seed_(settings.seed), purpose_(purpose),
       longest_pilot_(std::clamp(settings.spp / kShareOfPilot, kLeastPilot, kMostPilot)) {
     const ImageWindow& window = scene.camera().window();
     pixels_ = static_cast<std::uint64_t>(window.width) * static_cast<std::uint64_t>(window.height);

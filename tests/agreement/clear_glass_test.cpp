@@ -3,6 +3,7 @@
 #include "methods/method.h"
 #include "scene/emitters/emitters.h"
 #include "support/same_light.h"
+#include "support/settings_from.h"
 #include "support/window_room.h"
 
 #include <gtest/gtest.h>
@@ -32,16 +33,9 @@ std::unique_ptr<Scene> glazed_room(float thick) {
 }
 
 TEST(GlazedRoom_Light, IsTheSameByEveryMethod) {
-    Settings base;
+    Settings base = test::settings_from("spp=4 brightness_samples=20k importons=15k mutations=50k light_paths=40k "
+                                        "photons=20k chains=200 cache_rays=100");
     base.max_depth = 24; // with photons the faces of glass don't count for it
-    base.spp = 4;
-    base.brightness_samples = 20'000;
-    base.importons = 15'000;
-    base.mutations = 50'000;
-    base.light_paths = 40'000;
-    base.photons = 20'000;
-    base.chains = 200;
-    base.cache_rays = 100;
     for (const float thick : {0.0f, 0.02f}) {
         SCOPED_TRACE(thick);
         Settings paths = base;

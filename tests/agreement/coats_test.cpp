@@ -2,8 +2,9 @@
 // what paths make of the whole.
 #include "methods/method.h"
 #include "scene/emitters/emitters.h"
-#include "scene/load/load_yaml.h"
+#include "scene/load/load.h"
 #include "support/agreement.h"
+#include "support/settings_from.h"
 #include "support/test_scenes.h"
 #include "support/window_room.h"
 
@@ -96,17 +97,10 @@ void PrintTo(const CoatCase& c, std::ostream* out) { *out << c.name; }
 constexpr int kRuns = 4;
 
 Settings settings(const char* method, bool cache) {
-    Settings s;
+    Settings s = test::settings_from("spp=4 brightness_samples=30k importons=20k mutations=80k light_paths=40k "
+                                     "photons=20k chains=200 cache_rays=200");
     s.method = &method_named(method);
-    s.spp = 4;
     s.irradiance_cache = cache;
-    s.brightness_samples = 30'000;
-    s.importons = 20'000;
-    s.mutations = 80'000;
-    s.light_paths = 40'000;
-    s.photons = 20'000;
-    s.chains = 200;
-    s.cache_rays = 200;
     return s;
 }
 

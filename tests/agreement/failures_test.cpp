@@ -2,6 +2,7 @@
 #include "core/statistics.h"
 #include "methods/method.h"
 #include "support/chance.h"
+#include "support/settings_from.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -36,15 +37,9 @@ double left_over_right(Scene& scene, const Settings& settings) {
 
 RunningStats ratio(Failures failures) {
     const auto scene = blind();
-    Settings s;
-    s.method = &methods::pssmlt;
-    s.builder = PathBuilderKind::path;
+    Settings s = test::settings_from(
+        "method=pssmlt builder=path max_depth=1 brightness_samples=20k chains=200 mutations=100k p_large=0.1");
     s.failures = failures;
-    s.max_depth = 1;
-    s.brightness_samples = 20'000;
-    s.chains = 200;
-    s.mutations = 100'000;
-    s.p_large.value = 0.1;
     RunningStats ratio;
     for (s.seed = 1; s.seed <= 8; ++s.seed) ratio.add(left_over_right(*scene, s));
     return ratio;
@@ -52,10 +47,7 @@ RunningStats ratio(Failures failures) {
 
 double exact_ratio() {
     const auto scene = blind();
-    Settings s;
-    s.method = &methods::path;
-    s.max_depth = 1;
-    s.spp = 256;
+    Settings s = test::settings_from("method=path max_depth=1 spp=256");
     return left_over_right(*scene, s);
 }
 

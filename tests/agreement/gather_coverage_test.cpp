@@ -3,6 +3,7 @@
 #include "methods/method.h"
 #include "methods/render.h"
 #include "support/agreement.h"
+#include "support/settings_from.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -17,20 +18,12 @@ constexpr int kRuns = 6;
 
 TEST(Reach_AgreesWithBidirectionalTracing, BlockByBlock) {
     const auto scene = test::two_rooms(0.3f);
-    Settings paths;
-    paths.method = &methods::bdpt;
-    paths.spp = 20;
-    paths.seed = 1000;
+    Settings paths = test::settings_from("method=bdpt spp=20 seed=1k");
     const test::Blocks reference = test::render_blocks(*scene, paths, kRuns);
-    Settings photons;
-    photons.plan = Plan::all; // whether light outside gather coverage is worth it or not
-    photons.spp = 2;
-    photons.cache_rays = 200;
-    photons.brightness_samples = 40'000;
+    Settings photons =
+        test::settings_from("spp=2 cache_rays=200 brightness_samples=40k mutations=100k light_paths=50k photons=80k");
+    photons.plan = Plan::all;    // whether light outside gather coverage is worth it or not
     photons.importons = 240'000; // what power by importance is wrong by falls with their number
-    photons.mutations = 100'000;
-    photons.light_paths = 50'000;
-    photons.photons = 80'000;
     for (const char* method : {"mps", "ipm"}) {
         photons.method = &method_named(method);
         const test::Disagreement d = test::compare(test::render_blocks(*scene, photons, kRuns), reference, 0.03);
@@ -43,15 +36,9 @@ TEST(Reach_AgreesWithBidirectionalTracing, BlockByBlock) {
 /// What is seen through a slit is a strip, narrower than the importons around a place lie apart. Whether there is a
 /// mirror somewhere, so that the eye may have other ways there, must not matter.
 TEST(LightSeenThroughASlit_Brightness, IsTheSameWithAMirrorThatNobodySees) {
-    Settings s;
+    Settings s = test::settings_from("plan=all spp=4 brightness_samples=30k importons=5k mutations=30k photons=20k");
     s.method = &method_named("mps");
-    s.plan = Plan::all;
-    s.spp = 4;
     s.cache_rays = 4; // the other layers don't count
-    s.brightness_samples = 30'000;
-    s.importons = 5'000;
-    s.mutations = 30'000;
-    s.photons = 20'000;
     RunningStats without, with;
     for (const bool mirror : {false, true}) {
         const auto scene = test::two_rooms(0.03f, false, mirror);

@@ -2,6 +2,7 @@
 #include "methods/method.h"
 #include "scene/emitters/emitters.h"
 #include "support/same_light.h"
+#include "support/settings_from.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -10,16 +11,8 @@ namespace keyhole {
 namespace {
 
 Settings base() {
-    Settings s;
-    s.max_depth = 8;
-    s.spp = 2;
-    s.brightness_samples = 10'000;
-    s.importons = 15'000;
-    s.mutations = 30'000;
-    s.light_paths = 30'000;
-    s.photons = 15'000;
-    s.chains = 50;
-    return s;
+    return test::settings_from(
+        "max_depth=8 spp=2 brightness_samples=10k importons=15k mutations=30k light_paths=30k photons=15k chains=50");
 }
 
 void expect_same_as_by_path(Scene& scene, const std::vector<const char*>& methods, std::int64_t spp = 16) {

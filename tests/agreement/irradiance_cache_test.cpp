@@ -1,5 +1,6 @@
 // Cached irradiance makes the picture that gather rays from every sample make.
 #include "support/agreement.h"
+#include "support/settings_from.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -8,13 +9,8 @@ namespace keyhole {
 namespace {
 
 void expect_agreement(Scene& scene) {
-    Settings settings;
-    settings.spp = 2;
-    settings.brightness_samples = 20'000;
-    settings.importons = 20'000;
-    settings.mutations = 30'000;
-    settings.light_paths = 30'000;
-    settings.photons = 10'000;
+    Settings settings =
+        test::settings_from("spp=2 brightness_samples=20k importons=20k mutations=30k light_paths=30k photons=10k");
     constexpr int kRuns = 4;
     const test::Blocks cached = test::render_blocks(scene, settings, kRuns, "indirect");
     settings.irradiance_cache = false;

@@ -2,6 +2,7 @@
 #include "methods/method.h"
 #include "scene/emitters/emitters.h"
 #include "support/same_light.h"
+#include "support/settings_from.h"
 #include "support/window_room.h"
 
 #include <gtest/gtest.h>
@@ -50,16 +51,8 @@ std::unique_ptr<Scene> room_divided_by_double_cloth() {
 }
 
 void expect_the_same_by_all(Scene& scene) {
-    Settings base;
-    base.max_depth = 10;
-    base.spp = 8;
-    base.brightness_samples = 20'000;
-    base.importons = 15'000;
-    base.mutations = 300'000;
-    base.light_paths = 80'000;
-    base.photons = 40'000;
-    base.chains = 200;
-    base.cache_rays = 150;
+    Settings base = test::settings_from("max_depth=10 spp=8 brightness_samples=20k importons=15k mutations=300k "
+                                        "light_paths=80k photons=40k chains=200 cache_rays=150");
     Settings paths = base;
     paths.method = &methods::bdpt;
     paths.spp = 128;

@@ -1,8 +1,9 @@
 // Metropolis light transport and path tracing make the same picture.
 #include "methods/method.h"
 #include "sampling/proposals/registry.h"
-#include "scene/load/load_yaml.h"
+#include "scene/load/load.h"
 #include "support/agreement.h"
+#include "support/settings_from.h"
 #include "support/test_scenes.h"
 #include "support/user_paths.h"
 
@@ -34,12 +35,7 @@ TEST_P(Mlt_AgreesWithPathTracing, BlockByBlock) {
     path.method = &methods::path;
     path.spp = GetParam().path_spp;
     path.seed = 1000;
-    Settings mlt;
-    mlt.method = &methods::mlt;
-    mlt.spp = 2;
-    mlt.brightness_samples = 12'000;
-    mlt.chains = 100;
-    mlt.mutations = 30'000;
+    Settings mlt = test::settings_from("method=mlt spp=2 brightness_samples=12k chains=100 mutations=30k");
     UserPathFile user_paths;
     if (GetParam().user_paths != nullptr) {
         user_paths = GetParam().user_paths(*scene);

@@ -1,8 +1,9 @@
 // Metropolis photon sampling and path tracing make the same picture.
 #include "methods/method.h"
-#include "scene/load/load_yaml.h"
+#include "scene/load/load.h"
 #include "support/agreement.h"
 #include "support/chance.h"
+#include "support/settings_from.h"
 
 #include <gtest/gtest.h>
 
@@ -27,14 +28,8 @@ TEST_P(Mps_AgreesWithPathTracing, BlockByBlock) {
     paths.method = &methods::bdpt;
     paths.spp = 16;
     paths.seed = 1000;
-    Settings mps;
-    mps.method = &methods::mps;
-    mps.spp = 4;
-    mps.brightness_samples = 60'000;
-    mps.importons = 60'000;
-    mps.mutations = 120'000;
-    mps.photons = 40'000;
-    mps.cache_rays = 200;
+    Settings mps = test::settings_from(
+        "method=mps spp=4 brightness_samples=60k importons=60k mutations=120k photons=40k cache_rays=200");
     const test::Blocks reference = test::render_blocks(scene, paths, 4);
     const test::Disagreement d = test::compare(test::render_blocks(scene, mps, 4), reference, 0.03);
     std::cout << "quiet ratio " << d.quiet_ratio << ", whole " << d.ratio << ", noisy " << d.noisy << "\n";

@@ -2,6 +2,7 @@
 #include "methods/method.h"
 #include "methods/render.h"
 #include "support/same_light.h"
+#include "support/settings_from.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -10,16 +11,9 @@ namespace keyhole {
 namespace {
 
 Settings base() {
-    Settings s;
-    s.max_depth = 24;
+    Settings s = test::settings_from("max_depth=24 brightness_samples=600k importons=30k mutations=800k "
+                                     "light_paths=120k photons=60k chains=200 cache_rays=200");
     s.spp = 16; // the lamp in the mirrors is bright and small
-    s.brightness_samples = 600'000;
-    s.importons = 30'000;
-    s.mutations = 800'000;
-    s.light_paths = 120'000;
-    s.photons = 60'000;
-    s.chains = 200;
-    s.cache_rays = 200;
     return s;
 }
 

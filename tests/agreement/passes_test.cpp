@@ -1,7 +1,8 @@
 // Passes: their mean converges to what path tracing finds, within the memory of one.
-#include "film/errors/image_error.h"
+#include "film/image_error.h"
 #include "methods/method.h"
 #include "support/agreement.h"
+#include "support/settings_from.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -12,16 +13,10 @@ namespace {
 class Passes : public testing::TestWithParam<const char*> {
   protected:
     static Settings settings() {
-        Settings s;
+        Settings s = test::settings_from("spp=1 gather_rays=1 photon_memory=256KiB light_paths=10k mutations=20k "
+                                         "brightness_samples=10k importons=20k");
         s.method = &method_named(GetParam());
-        s.spp = 1;
-        s.gather_rays.value = 1;
-        s.irradiance_cache = false; // interpolation has an error of its own
-        s.photon_memory = 256 * 1024;
-        s.light_paths = 10'000;
-        s.mutations = 20'000;
-        s.brightness_samples = 10'000;
-        s.importons = 20'000;
+        s.irradiance_cache = false;      // interpolation has an error of its own
         s.power = PowerRule::reciprocal; // of mps: passes can't average the error of an importance map away
         return s;
     }
@@ -29,10 +24,7 @@ class Passes : public testing::TestWithParam<const char*> {
 
 TEST_P(Passes, ConvergeToPathTracing) {
     const auto scene = test::diffuse_box();
-    Settings path;
-    path.method = &methods::path;
-    path.spp = 48;
-    path.seed = 1000;
+    Settings path = test::settings_from("method=path spp=48 seed=1k");
     Settings passes = settings();
     passes.passes = 3;
     // With a quarter of the photons mps is 1 % too dark: they leave the dark corners of the box to chance.

@@ -1,6 +1,7 @@
 // Bidirectional path tracing and the chains in primary sample space make the picture that path tracing makes.
 #include "methods/method.h"
 #include "support/agreement.h"
+#include "support/settings_from.h"
 #include "support/test_scenes.h"
 
 #include <fmt/format.h>
@@ -28,13 +29,7 @@ struct Variant {
 
 constexpr int kRuns = 8;
 
-Settings base() {
-    Settings s;
-    s.max_depth = 8;
-    s.brightness_samples = 8'000;
-    s.chains = 50;
-    return s;
-}
+Settings base() { return test::settings_from("max_depth=8 brightness_samples=8k chains=50"); }
 
 class PrimarySampleSpace_AgreesWithPathTracing : public testing::TestWithParam<std::tuple<Case, int>> {};
 

@@ -5,6 +5,7 @@
 #include "methods/method.h"
 #include "methods/photons/plan.h"
 #include "support/agreement.h"
+#include "support/settings_from.h"
 #include "support/test_scenes.h"
 
 #include <fmt/format.h>
@@ -23,13 +24,10 @@ std::unique_ptr<Scene> small_foggy_box() {
 }
 
 Settings settings(const std::string& method) {
-    Settings s;
+    Settings s = test::settings_from("max_depth=8 chains=100 brightness_samples=20k");
     s.method = &method_named(method);
-    s.max_depth = 8;
     s.spp = method == "path" ? 64 : 24;
     s.mutations = method == "mmlt" ? 100'000 : 40'000;
-    s.chains = 100;
-    s.brightness_samples = 20'000;
     return s;
 }
 

@@ -3,6 +3,7 @@
 #include "core/parallel.h"
 #include "film/join.h"
 #include "methods/render.h"
+#include "support/settings_from.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -16,18 +17,10 @@ namespace {
 class Shares : public testing::TestWithParam<const char*> {
   protected:
     static Settings settings() {
-        Settings s;
+        Settings s = test::settings_from("passes=4 spp=2 brightness_error=0.05 importons=5k chains=40 chain_groups=3 "
+                                         "mutations=8k light_paths=8k photons=5k");
         s.method = &method_named(GetParam());
-        s.passes = 4;
-        s.spp = 2;
         s.brightness_samples = 2'000; // more than one round of them
-        s.brightness_error = 0.05;
-        s.importons = 5'000;
-        s.chains = 40;
-        s.chain_groups = 3;
-        s.mutations = 8'000;
-        s.light_paths = 8'000;
-        s.photons = 5'000;
         return s;
     }
     static RenderResult make(const WorkPartition& share, int threads = 2, const Settings& s = settings()) {

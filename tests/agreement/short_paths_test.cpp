@@ -3,6 +3,7 @@
 #include "methods/method.h"
 #include "support/agreement.h"
 #include "support/same_light.h"
+#include "support/settings_from.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -24,16 +25,9 @@ std::unique_ptr<Scene> room_behind_glass() {
 }
 
 Settings few_scatterings(std::int64_t depth) {
-    Settings s;
+    Settings s = test::settings_from("spp=16 brightness_samples=50k importons=20k mutations=200k light_paths=50k "
+                                     "photons=30k chains=200 cache_rays=200");
     s.max_depth = depth;
-    s.spp = 16;
-    s.brightness_samples = 50'000;
-    s.importons = 20'000;
-    s.mutations = 200'000;
-    s.light_paths = 50'000;
-    s.photons = 30'000;
-    s.chains = 200;
-    s.cache_rays = 200;
     return s;
 }
 

@@ -1,6 +1,7 @@
 // The same scene, settings and seed make the same picture, bit for bit, on any number of threads.
 #include "core/parallel.h"
 #include "methods/render.h"
+#include "support/settings_from.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -11,17 +12,12 @@ namespace {
 class Picture_IsTheSameOnAnyNumberOfThreads : public testing::TestWithParam<const char*> {};
 
 TEST_P(Picture_IsTheSameOnAnyNumberOfThreads, BitForBit) {
-    Settings settings;
+    Settings settings = test::settings_from(
+        "adaptive=true brightness_error=0.05 importons=20k chains=100 mutations=20k light_paths=20k");
     settings.method = &method_named(GetParam());
-    settings.spp = 18; // more than a pilot
-    settings.adaptive = true;
+    settings.spp = 18;                   // more than a pilot
     settings.brightness_samples = 5'000; // more than one round of them
-    settings.brightness_error = 0.05;
-    settings.importons = 20'000;
-    settings.chains = 100;
-    settings.mutations = 20'000;
-    settings.light_paths = 20'000;
-    settings.photons = 4'000; // fewer than the chains would store: the ceiling is part of the test
+    settings.photons = 4'000;            // fewer than the chains would store: the ceiling is part of the test
     std::vector<Picture> pictures;
     for (const int threads : {1, 2, 3}) {
         with_threads(threads, [&] {

@@ -1,5 +1,5 @@
 // Directions through openings against the density they claim.
-#include "sampling/guidance/portal.h"
+#include "sampling/guidance/user_paths.h"
 #include "support/chi_squared.h"
 
 #include <gtest/gtest.h>

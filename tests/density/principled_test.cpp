@@ -1,6 +1,6 @@
 // PrincipledBsdf: what it reflects of a sky that is white all around.
 #include "scene/bsdf.h"
-#include "scene/bsdfs/fresnel_weight.h"
+#include "scene/bsdfs/fresnel.h"
 #include "scene/warp.h"
 #include "support/chi_squared.h"
 

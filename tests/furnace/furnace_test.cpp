@@ -3,6 +3,7 @@
 #include "methods/render.h"
 #include "support/agreement.h"
 #include "support/chance.h"
+#include "support/settings_from.h"
 #include "support/test_scenes.h"
 
 #include <fmt/format.h>
@@ -37,13 +38,10 @@ struct MethodCase {
 void PrintTo(const MethodCase& c, std::ostream* out) { *out << c.method; }
 
 Settings settings(const std::string& method) {
-    Settings s;
+    Settings s = test::settings_from("gather_rays=1 chains=100 light_paths=20k");
     s.method = &method_named(method);
     s.spp = s.method->samples_pixels ? 4 : 1;
-    s.gather_rays.value = 1;
     s.mutations = method == "mlt" ? 12'000 : method == "pssmlt" ? 20'000 : method == "mps" ? 140'000 : 40'000;
-    s.chains = 100;
-    s.light_paths = 20'000;
     // Photons of chains are right in the limit only, of many importons and of small lookups.
     s.photons = method == "mps" ? 25'000 : 10'000;
     s.importons = method == "mps" ? 40'000 : 20'000;

@@ -1,5 +1,5 @@
 // Every kind of proposal alone, on scenes that differ in what paths they have.
-#include "scene/load/load_yaml.h"
+#include "scene/load/load.h"
 #include "support/invariance.h"
 #include "support/test_scenes.h"
 

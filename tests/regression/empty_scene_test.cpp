@@ -4,6 +4,7 @@
 #include "scene/emitters/emitters.h"
 #include "scene/load/load.h"
 #include "support/scratch_directory.h"
+#include "support/settings_from.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -22,13 +23,8 @@ TEST_P(EmptyScene_ShowsItsEnvironment, Everywhere) {
         m.emitter(make_point_emitter({far, 2, 0}, Rgb(1.0))); // which nothing shows
         m.camera({far, 1, 2}, {far, 1, 0}, 40).window(16, 12);
         const auto scene = m.build();
-        Settings s;
+        Settings s = test::settings_from("spp=4 brightness_samples=5k importons=5k mutations=20k photons=5k");
         s.method = &method_named(GetParam());
-        s.spp = 4;
-        s.brightness_samples = 5000;
-        s.importons = 5000;
-        s.mutations = 20'000;
-        s.photons = 5000;
         const Picture picture = render(*scene, s, {}).picture;
         const Image& image = picture.layers.at("beauty");
         double sum = 0;

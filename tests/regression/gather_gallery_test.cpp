@@ -1,6 +1,7 @@
 // The classic artefacts of photon maps and irradiance caches, each a tiny scene with a number that must stay small.
 #include "methods/method.h"
 #include "scene/emitters/emitters.h"
+#include "support/settings_from.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -11,14 +12,9 @@ namespace keyhole {
 namespace {
 
 Settings small_settings() {
-    Settings s;
+    Settings s =
+        test::settings_from("spp=8 brightness_samples=50k importons=50k mutations=200k light_paths=200k photons=40k");
     s.method = &methods::ipm; // `auto` may take a method without a gather
-    s.spp = 8;
-    s.brightness_samples = 50'000;
-    s.importons = 50'000;
-    s.mutations = 200'000;
-    s.light_paths = 200'000;
-    s.photons = 40'000;
     return s;
 }
 

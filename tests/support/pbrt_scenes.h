@@ -2,11 +2,10 @@
 #pragma once
 
 #include "core/error.h"
-#include "scene/load/load_pbrt.h"
+#include "scene/load/load.h"
 #include "support/scratch_directory.h"
 
 #include <string>
-#include <variant>
 #include <vector>
 
 namespace keyhole {

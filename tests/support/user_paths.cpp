@@ -1,7 +1,6 @@
 #include "support/user_paths.h"
 
 #include "sampling/guidance/found/find_openings.h"
-#include "sampling/guidance/light_ray.h"
 #include "sampling/guidance/nearest_emitter.h"
 #include "support/test_scenes.h"
 

@@ -1,6 +1,6 @@
 // Which technique stage one chooses.
 #include "sampling/brightness.h"
-#include "scene/load/load_yaml.h"
+#include "scene/load/load.h"
 #include "support/scratch_directory.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 #include "sampling/markov/acceptance.h"
 #include "sampling/markov/chain_rounds.h"
-#include "sampling/primary/p_large.h"
+#include "sampling/primary/primary_kernel.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

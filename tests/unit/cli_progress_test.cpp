@@ -1,14 +1,12 @@
 // What the command line prints: progress, numbers, statistics.
 #include "cli/progress/interrupt.h"
 #include "cli/progress/terminal_progress.h"
-#include "cli/words/stats_json.h"
+#include "cli/words/report.h"
 #include "cli/words/units.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <thread>

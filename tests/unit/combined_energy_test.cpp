@@ -4,7 +4,7 @@
 
 #include "photonmap/emission.h"
 #include "photonmap/photon_sampling.h"
-#include "photonmap/power/power.h"
+#include "photonmap/power.h"
 #include "sampling/proposals/registry.h"
 #include "support/test_scenes.h"
 #include "support/user_paths.h"

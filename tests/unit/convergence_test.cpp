@@ -4,6 +4,7 @@
 #include "core/parallel.h"
 #include "core/rng.h"
 #include "methods/render.h"
+#include "support/settings_from.h"
 #include "support/test_scenes.h"
 
 #include <gmock/gmock.h>
@@ -94,13 +95,8 @@ class Chains_RaiseTheAlarm : public testing::TestWithParam<const char*> {};
 
 TEST_P(Chains_RaiseTheAlarm, WhenTooShortOnly) {
     const auto scene = test::diffuse_box();
-    Settings settings;
+    Settings settings = test::settings_from("spp=1 brightness_samples=20k importons=5k photons=5k chains=64");
     settings.method = &method_named(GetParam());
-    settings.spp = 1;
-    settings.brightness_samples = 20'000;
-    settings.importons = 5'000;
-    settings.photons = 5'000;
-    settings.chains = 64;
     settings.mutations = 64 * 40;
     EXPECT_THAT(render(*scene, settings, {}).stats.warnings, testing::Contains(testing::HasSubstr("can't be trusted")));
     settings.mutations = 64 * 2;

@@ -3,9 +3,8 @@
 
 #include "core/parallel.h"
 #include "core/rng.h"
-#include "film/errors/image_error.h"
-#include "film/errors/sample_noise.h"
 #include "film/film.h"
+#include "film/image_error.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // tev's protocol, read back byte by byte by a server that stands in for it.
-#include "cli/progress/display_server.h"
+#include "cli/progress/live_view.h"
 #include "core/error.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // A sample of each emitter at what is seen first: the same light as by one that is chosen, and where it pays.
 #include "core/shared_work.h"
 #include "core/statistics.h"
-#include "methods/each_emitter.h"
+#include "methods/learned_direct_light_scope.h"
 #include "methods/method.h"
 #include "methods/pixel_sink.h"
 #include "sampling/guidance/learned/look_for_direct_light.h"

@@ -3,7 +3,7 @@
 
 #include "core/error.h"
 #include "scene/emitters/emitters.h"
-#include "scene/load/load_yaml.h"
+#include "scene/load/load.h"
 #include "support/scratch_directory.h"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
 // What paths from the eye can't learn of light, and what is made of it.
-#include "methods/photons/trials/emission_trial.h"
+#include "methods/photons/trials/trials.h"
 
 #include "core/statistics.h"
 #include "photonmap/importance/importance_tracing.h"

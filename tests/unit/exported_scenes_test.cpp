@@ -3,7 +3,7 @@
 #include "core/error.h"
 #include "film/tonemap.h"
 #include "scene/emitters/emitters.h"
-#include "scene/load/load_yaml.h"
+#include "scene/load/load.h"
 #include "scene/scene.h"
 #include "support/scratch_directory.h"
 

@@ -4,6 +4,7 @@
 #include "methods/render.h"
 #include "scene/emitters/emitters.h"
 #include "scene/warp.h"
+#include "support/settings_from.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -26,11 +27,7 @@ std::unique_ptr<Scene> slanted_room(const Vec3& at) {
 }
 
 double mean_indirect(Scene& scene) {
-    Settings s;
-    s.method = &methods::pm;
-    s.spp = 8;
-    s.light_paths = 100'000;
-    s.cache_rays = 128;
+    Settings s = test::settings_from("method=pm spp=8 light_paths=100k cache_rays=128");
     double sum = 0;
     const RenderResult result = render(scene, s, {});
     for (const float y : result.picture.layers.at("indirect").data) sum += static_cast<double>(y);

@@ -1,8 +1,8 @@
 // Error measures against values computed by hand, and against an independent implementation where there is one.
 #include "core/error.h"
 #include "core/rng.h"
-#include "film/errors/image_error.h"
 #include "film/files/exr.h"
+#include "film/image_error.h"
 #include "support/scratch_directory.h"
 
 #include <gtest/gtest.h>

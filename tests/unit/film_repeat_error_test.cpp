@@ -1,8 +1,7 @@
 // Bias and variance, apart: pictures of known bias and noise, against references with noise of their own.
 #include "core/error.h"
 #include "core/rng.h"
-#include "film/errors/image_error.h"
-#include "film/errors/repeat_error.h"
+#include "film/image_error.h"
 
 #include <gtest/gtest.h>
 

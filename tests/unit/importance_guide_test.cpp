@@ -1,5 +1,5 @@
 // What guides light tracing: when it gives up, and when it isn't worth its time.
-#include "photonmap/importance/importance_guide.h"
+#include "photonmap/importance/importance_map.h"
 
 #include "photon_support.h"
 #include "photonmap/emission.h"

@@ -4,6 +4,7 @@
 #include "methods/method.h"
 #include "methods/photons/photon_file.h"
 #include "support/scratch_directory.h"
+#include "support/settings_from.h"
 #include "support/test_scenes.h"
 
 #include <gmock/gmock.h>
@@ -18,14 +19,9 @@ constexpr InspectionLimits kLimits{
     .photons = 3000, .trails = 500, .importons = 1000, .records = 100, .triangles = 1000, .gather_rays = 2000};
 
 Settings inspected_settings(const Method& method) {
-    Settings s;
+    Settings s =
+        test::settings_from("spp=1 light_paths=8k mutations=20k brightness_samples=5k importons=2k max_depth=8");
     s.method = &method;
-    s.spp = 1;
-    s.light_paths = 8'000;
-    s.mutations = 20'000;
-    s.brightness_samples = 5'000;
-    s.importons = 2'000;
-    s.max_depth = 8;
     return s;
 }
 

@@ -1,6 +1,6 @@
 // Inverse mappings: numbers found for a choice make that choice again.
 #include "sampling/paths/walk.h"
-#include "sampling/primary/inverse.h"
+#include "sampling/primary/reversible_jump.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>

@@ -90,7 +90,7 @@ const Strings kBackwards{"sampling/guidance/found/suggest_paths.cpp",
                          "sampling/guidance/guided_subpath.cpp",
                          "sampling/guidance/guided_subpath.h",
                          "sampling/markov/chain_set.h",
-                         "sampling/paths/bidirectional_connection.h"};
+                         "sampling/paths/bidirectional_tracer.h"};
 
 /// Output and exits; only the command line does either, and the main() of the program with MPI.
 Strings wrong_talk(const Source& source) {

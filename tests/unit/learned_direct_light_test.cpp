@@ -6,7 +6,7 @@
 #include "scene/bsdfs/diffuse.h"
 #include "scene/emitters/emitters.h"
 #include "scene/emitters/sphere_map.h"
-#include "scene/load/load_yaml.h"
+#include "scene/load/load.h"
 #include "scene/warp.h"
 #include "support/chance.h"
 #include "support/chi_squared.h"

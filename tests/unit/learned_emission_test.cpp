@@ -41,8 +41,8 @@ TEST(PlaneHistogram, HasTheDensityOfItsSamples) {
     for (int i = 0; i < kSamples; ++i) {
         const double u = rng.next();
         const auto place = histogram.sample(u, rng.next());
-        const int x = std::min(static_cast<int>(place.x[0] * kCells), kCells - 1);
-        const int y = std::min(static_cast<int>(place.x[1] / 3 * kCells), kCells - 1);
+        const int x = std::min(static_cast<int>(place.x * kCells), kCells - 1);
+        const int y = std::min(static_cast<int>(place.y / 3 * kCells), kCells - 1);
         h.observed[static_cast<std::size_t>(y * kCells + x)] += 1;
         EXPECT_GT(histogram.pdf(place), 0);
     }
@@ -51,7 +51,7 @@ TEST(PlaneHistogram, HasTheDensityOfItsSamples) {
         for (int x = 0; x < kCells * kQuadrature; ++x)
             h.expected[static_cast<std::size_t>(y / kQuadrature * kCells + x / kQuadrature)] +=
                 kSamples * area *
-                histogram.pdf({{(x + 0.5) / (kCells * kQuadrature), 3 * (y + 0.5) / (kCells * kQuadrature)}});
+                histogram.pdf({(x + 0.5) / (kCells * kQuadrature), 3 * (y + 0.5) / (kCells * kQuadrature)});
     double all = 0;
     for (std::size_t i = 0; i < h.expected.size(); ++i) all += h.expected[i];
     EXPECT_NEAR(all / kSamples, 1, 0.02);

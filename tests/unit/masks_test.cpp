@@ -5,6 +5,7 @@
 #include "methods/render.h"
 #include "scene/emitters/emitters.h"
 #include "support/program.h"
+#include "support/settings_from.h"
 #include "support/test_scenes.h"
 
 #include <gmock/gmock.h>
@@ -142,15 +143,9 @@ std::pair<double, float> shown(const char* method, bool sees_surroundings) {
     d.camera.sees_surroundings = sees_surroundings;
     d.window = {24, 16, 0};
     Scene scene(std::move(d));
-    Settings s;
+    Settings s = test::settings_from(
+        "spp=16 brightness_samples=20k importons=10k mutations=100k light_paths=50k photons=20k chains=50");
     s.method = &method_named(method);
-    s.spp = 16;
-    s.brightness_samples = 20'000;
-    s.importons = 10'000;
-    s.mutations = 100'000;
-    s.light_paths = 50'000;
-    s.photons = 20'000;
-    s.chains = 50;
     const Image beauty = render(scene, s, {}).picture.layers.at("beauty");
     return {std::accumulate(beauty.data.begin(), beauty.data.end(), 0.0) / static_cast<double>(beauty.data.size()),
             beauty.data[0]};

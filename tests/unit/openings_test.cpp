@@ -3,7 +3,7 @@
 #include "sampling/guidance/found/find_openings.h"
 #include "sampling/guidance/found/guidance_gain.h"
 #include "sampling/guidance/found/passages.h"
-#include "scene/load/load_yaml.h"
+#include "scene/load/load.h"
 #include "support/test_scenes.h"
 #include "support/user_paths.h"
 

@@ -2,7 +2,7 @@
 #include "photon_energy.h"
 
 #include "photonmap/emission.h"
-#include "photonmap/power/outlying_power.h"
+#include "photonmap/power.h"
 #include "scene/emitters/emitters.h"
 #include "support/test_scenes.h"
 #include "support/window_room.h"

@@ -1,4 +1,4 @@
-#include "sampling/primary/p_large.h"
+#include "sampling/primary/primary_kernel.h"
 
 #include <gtest/gtest.h>
 

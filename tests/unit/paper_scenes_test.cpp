@@ -1,6 +1,6 @@
 // The scenes after those of papers on Metropolis light transport are what their first lines say.
 #include "sampling/paths/walk.h"
-#include "scene/load/load_yaml.h"
+#include "scene/load/load.h"
 
 #include <gtest/gtest.h>
 

@@ -2,6 +2,7 @@
 #include "core/error.h"
 #include "methods/method.h"
 #include "support/scratch_directory.h"
+#include "support/settings_from.h"
 #include "support/test_scenes.h"
 
 #include <gmock/gmock.h>
@@ -15,13 +16,7 @@ namespace {
 
 using testing::HasSubstr;
 
-Settings small_settings() {
-    Settings s;
-    s.method = &methods::pm;
-    s.spp = 1;
-    s.light_paths = 5'000;
-    return s;
-}
+Settings small_settings() { return test::settings_from("method=pm spp=1 light_paths=5k"); }
 
 std::string refusal(Scene& scene, const Settings& settings) {
     try {

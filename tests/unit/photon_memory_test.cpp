@@ -1,6 +1,7 @@
 // The ceiling on the memory of photons holds, by what was allocated, and thins without bias.
 #include "methods/photons/memory_plan.h"
 #include "methods/render.h"
+#include "support/settings_from.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -9,16 +10,10 @@ namespace keyhole {
 namespace {
 
 Settings settings_for(const char* method, std::int64_t memory) {
-    Settings s;
+    Settings s = test::settings_from(
+        "spp=1 gather_rays=1 brightness_samples=20k mutations=60k light_paths=60k importons=100k chain_share=0.5");
     s.method = &method_named(method);
     s.photon_memory = memory;
-    s.spp = 1;
-    s.gather_rays.value = 1;
-    s.brightness_samples = 20'000;
-    s.mutations = 60'000;
-    s.light_paths = 60'000;
-    s.importons = 100'000;
-    s.chain_share.value = 0.5;
     return s;
 }
 

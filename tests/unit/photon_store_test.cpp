@@ -1,4 +1,4 @@
-#include "photonmap/photon_store.h"
+#include "photonmap/map_stores.h"
 
 #include "core/statistics.h"
 #include "photon_support.h"

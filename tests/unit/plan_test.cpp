@@ -3,6 +3,7 @@
 #include "methods/choice/effort.h"
 #include "methods/method.h"
 #include "methods/photons/plan.h"
+#include "support/settings_from.h"
 #include "support/test_scenes.h"
 
 #include <gmock/gmock.h>
@@ -17,15 +18,9 @@ using testing::HasSubstr;
 namespace {
 
 Settings small_settings(const std::string& method) {
-    Settings s;
+    Settings s = test::settings_from(
+        "spp=1 gather_rays=1 brightness_samples=20k mutations=20k light_paths=20k importons=20k cache_rays=64");
     s.method = &method_named(method);
-    s.spp = 1;
-    s.gather_rays.value = 1;
-    s.brightness_samples = 20'000;
-    s.mutations = 20'000;
-    s.light_paths = 20'000;
-    s.importons = 20'000;
-    s.cache_rays = 64;
     return s;
 }
 

@@ -1,6 +1,6 @@
 // The principled material in scene files, ours and pbrt's.
 #include "core/error.h"
-#include "scene/load/load_yaml.h"
+#include "scene/load/load.h"
 #include "support/pbrt_scenes.h"
 #include "support/scratch_directory.h"
 

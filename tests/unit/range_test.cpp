@@ -2,11 +2,10 @@
 // held in few bits.
 #include "methods/method.h"
 #include "methods/render.h"
+#include "support/settings_from.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>
-
-#include <cmath>
 
 namespace keyhole {
 namespace {
@@ -20,12 +19,8 @@ double mean_of_picture(const char* method, double radiance, float unit = 1) {
         .camera(at(1, 1, 1.9f), at(1, 0.5f, 0), 60)
         .window(16, 12);
     const auto scene = m.build();
-    Settings s;
+    Settings s = test::settings_from("spp=64 mutations=20k brightness_samples=20k light_paths=20k");
     s.method = &method_named(method);
-    s.spp = 64;
-    s.mutations = 20'000;
-    s.brightness_samples = 20'000;
-    s.light_paths = 20'000;
     const Image beauty = render(*scene, s, {}).picture.layers.at("beauty");
     double sum = 0;
     for (const float x : beauty.data) sum += x;

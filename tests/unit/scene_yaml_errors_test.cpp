@@ -1,6 +1,6 @@
 // Every mistake in a scene file is reported where it stands.
 #include "core/error.h"
-#include "scene/load/load_yaml.h"
+#include "scene/load/load.h"
 #include "support/scratch_directory.h"
 
 #include <gtest/gtest.h>

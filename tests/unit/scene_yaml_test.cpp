@@ -2,7 +2,7 @@
 #include "core/error.h"
 #include "sampling/proposals/registry.h"
 #include "scene/geometry.h"
-#include "scene/load/load_yaml.h"
+#include "scene/load/load.h"
 #include "support/scratch_directory.h"
 #include "support/signed_volume.h"
 
@@ -233,7 +233,7 @@ TEST_F(SceneYaml, IncludesConcatenateAndAreOverruled) {
     EXPECT_EQ(scene.description.camera.fov_degrees, 33);
     expect_near(scene.description.camera.origin, {0, 0, 9});
     EXPECT_EQ(scene.settings.spp, 8);
-    EXPECT_EQ(scene.settings.seed, 9);
+    EXPECT_EQ(scene.settings.seed, 9u);
 }
 
 TEST_F(SceneYaml, IncludeCycleIsReported) {

@@ -1,7 +1,7 @@
 // The scenes that come with the program: they load, are as large and as closed as they say, and are what generate.py
 // makes.
 #include "core/rng.h"
-#include "scene/load/load_yaml.h"
+#include "scene/load/load.h"
 #include "scene/warp.h"
 #include "support/scratch_directory.h"
 #include "support/signed_volume.h"

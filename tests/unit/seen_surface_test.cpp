@@ -1,11 +1,11 @@
 // The layers `albedo` and `normal` mean the same by every method.
 #include "methods/render.h"
+#include "support/settings_from.h"
 #include "support/test_scenes.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cmath>
 
 namespace keyhole {
 namespace {
@@ -24,18 +24,9 @@ Quarters quarters(const Image& image) {
 }
 
 Picture picture_by(Scene& scene, const char* method) {
-    Settings s;
+    Settings s = test::settings_from("spp=64 max_depth=8 brightness_samples=2k importons=2k light_paths=4k photons=2k "
+                                     "gather_rays=1 irradiance_cache=false chains=10 mutations=1k");
     s.method = &method_named(method);
-    s.spp = 64;
-    s.max_depth = 8;
-    s.brightness_samples = 2'000;
-    s.importons = 2'000;
-    s.light_paths = 4'000;
-    s.photons = 2'000;
-    s.gather_rays.value = 1;
-    s.irradiance_cache = false;
-    s.chains = 10;
-    s.mutations = 1'000;
     return render(scene, s, {}).picture;
 }
 

@@ -1,10 +1,9 @@
 // How the time of stage three is split between records of the irradiance cache and samples of pixels.
 #include "core/statistics.h"
 #include "methods/choice/stage_balance.h"
+#include "support/settings_from.h"
 
 #include <gtest/gtest.h>
-
-#include <cmath>
 
 namespace keyhole {
 namespace {
@@ -18,13 +17,7 @@ Experience ten_seconds(const Settings& s) {
     return {s, 1, kPixels, stats, 10};
 }
 
-Settings settings() {
-    Settings s;
-    s.cache_rays = 1000;
-    s.spp = 1000;
-    s.passes = 1;
-    return s;
-}
+Settings settings() { return test::settings_from("cache_rays=1k spp=1k passes=1"); }
 
 /// The squared error that is left with settings `s`.
 double error(const Settings& s, const PhotonQuality::Noise& noise) {

@@ -1,6 +1,6 @@
 // The density of light sub-paths under light tracing, and the weights that follow from it: path by path as light was
 // traced, and by histogram against sub-paths drawn evenly over the surfaces.
-#include "photonmap/power/technique_weights.h"
+#include "photonmap/photon_weighing.h"
 
 #include "core/statistics.h"
 #include "photonmap/importance/importance_tracing.h"

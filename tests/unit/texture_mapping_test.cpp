@@ -1,13 +1,11 @@
 // Textures by place: projections in place of texture coordinates, checkerboards and noise in space, mixes by direction.
 #include "scene/geometry.h"
-#include "scene/load/load_yaml.h"
+#include "scene/load/load.h"
 #include "scene/texture.h"
 #include "support/pbrt_scenes.h"
 #include "support/scratch_directory.h"
 
 #include <gtest/gtest.h>
-
-#include <cmath>
 
 namespace keyhole {
 namespace {

@@ -3,9 +3,8 @@
 
 #include "cli/chart/reference.h"
 #include "cli/chart/runs.h"
-#include "film/errors/repeat_error.h"
+#include "film/image_error.h"
 
-#include <map>
 #include <optional>
 
 namespace keyhole {

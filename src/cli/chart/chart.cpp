@@ -1,8 +1,7 @@
 #include "cli/chart/chart.h"
 
 #include "cli/chart/outputs.h"
-#include "cli/command.h"
-#include "cli/resolution.h"
+#include "cli/program.h"
 #include "cli/words/tell.h"
 #include "cli/words/units.h"
 #include "core/bytes.h"

@@ -1,11 +1,10 @@
 // The page of a chart: its data as JSON, put into the page's parts.
 #include "cli/chart/outputs.h"
-#include "cli/page/data_uri.h"
 #include "cli/page/page_parts.h"
 #include "cli/pictures/beauty.h"
-#include "cli/words/stats_json.h"
+#include "cli/words/report.h"
 #include "film/files/atomic_file.h"
-#include "film/grey.h"
+#include "film/image_error.h"
 #include "film/tonemap.h"
 
 #include <nlohmann/json.hpp>

@@ -1,12 +1,39 @@
 // What the pictures of a chart are held against.
 #pragma once
 
-#include "cli/chart/renderer.h"
+#include "cli/chart/chart.h"
+#include "cli/chart/runs.h"
+#include "core/progress.h"
 #include "film/picture.h"
 
+#include <functional>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace keyhole {
+
+/// Thread-safe.
+class Renderer {
+  public:
+    Renderer(const ChartOptions& options, const StopToken& stop) : options_(options), stop_(stop) {}
+
+    /// Renders the picture, of which the file keeps "beauty" alone.
+    /// @param settings KEY=VALUE, after those of the options.
+    /// What went wrong stands in the result's `failure`.
+    RunResult render(const ChartScene& scene, double cpu_seconds, const std::vector<std::string>& settings,
+                     const std::string& picture) const;
+
+    bool stopped() const { return stop_.requested(); }
+
+  private:
+    const ChartOptions& options_;
+    const StopToken& stop_;
+};
+
+/// Calls body(i) for i in [0, n) in that order, `jobs` at a time. After an exception no more are begun, and the first
+/// one is thrown on.
+void run_jobs(int jobs, std::size_t n, const std::function<void(std::size_t)>& body);
 
 struct Reference {
     Image first;

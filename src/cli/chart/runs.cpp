@@ -1,6 +1,6 @@
 #include "cli/chart/runs.h"
 
-#include "cli/words/stats_json.h"
+#include "cli/words/report.h"
 #include "core/error.h"
 #include "methods/method.h"
 #include "scene/load/yaml/settings_text.h"

@@ -1,7 +1,7 @@
 // The runs of a chart, and the file that keeps what they gave.
 #pragma once
 
-#include "cli/chart/options.h"
+#include "cli/chart/chart.h"
 
 #include <cstdint>
 #include <fstream>

@@ -1,15 +1,18 @@
 #include "cli/inspect/page_data.h"
 
 #include "cli/inspect/page_arrays.h"
-#include "cli/inspect/user_path_entries.h"
-#include "cli/page/data_uri.h"
+#include "cli/page/page_parts.h"
 #include "cli/pictures/beauty.h"
 #include "cli/words/metadata.h"
-#include "cli/words/stats_json.h"
+#include "cli/words/report.h"
 #include "film/tonemap.h"
 #include "sampling/guidance/nearest_emitter.h"
+#include "sampling/guidance/user_paths.h"
+#include "scene/load/yaml/user_path_file.h"
+#include "scene/scene.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +22,52 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json vector_json(const Vec3& v) { return {v.x, v.y, v.z}; }
+Json vector_json(const auto& v) { return {v.x, v.y, v.z}; }
+
+/// Degrees as they were given, but for the last digits that the way to radians and back costs.
+double degrees(double radians) {
+    const double d = radians * 180 / kPi;
+    return std::stod(fmt::format("{:.12g}", d));
+}
+
+Json points_json(const UserPathSpec& path) {
+    Json points = Json::array();
+    for (const UserPathPoint& p : path.points) {
+        if (p.bounce) continue;
+        Json point{{"p", vector_json(p.p)}};
+        if (p.through)
+            point["through"] = {{"corner", vector_json(p.through->corner)},
+                                {"u", vector_json(p.through->u)},
+                                {"v", vector_json(p.through->v)}};
+        points.push_back(point);
+    }
+    return points;
+}
+
+/// An entry as in the file, with its angles in degrees; `paths`, the names of the paths that it stands for; what became
+/// of the first in the scene: `error`, or `signature` and `seen`.
+Json entry_json(const UserPathEntry& of, const Scene& scene) {
+    const UserPathSpec& first = of.paths.front();
+    Json names = Json::array(), beta = Json::array();
+    for (const UserPathSpec& path : of.paths) names.push_back(path.name);
+    for (std::size_t i = of.least_bounces; i < first.beta.size(); ++i) beta.push_back(degrees(first.beta[i]));
+    Json entry{{"name", of.name},
+               {"weight", std::stod(fmt::format("{:.12g}", of.weight))},
+               {"paths", names},
+               {"beta", beta},
+               {"patch", first.patch ? Json(*first.patch) : Json()},
+               {"tolerance", first.tolerance ? Json(*first.tolerance) : Json()},
+               {"bounces", of.most_bounces > 0 ? Json{of.least_bounces, of.most_bounces} : Json()},
+               {"points", points_json(first)}};
+    try {
+        const UserPath bound = bind_user_path(scene, first);
+        entry["signature"] = bound.signature();
+        entry["seen"] = bound.seen;
+    } catch (const InputError& e) {
+        entry["error"] = e.what();
+    }
+    return entry;
+}
 
 /// To a millionth of `size`, or nearly.
 Json rounded(const Vec3& v, double size) {
@@ -171,6 +219,8 @@ Json page_data(const Scene& scene, const Inspection& inspection, const PageSubje
     const PlaceCode surface{scene.lower(), scene.upper()}, air{lower, upper};
     BinaryData data;
     add_arrays(inspection, surface, air, far, data);
+    Json user_paths = Json::array();
+    for (const UserPathEntry& entry : entries_of(subject.user_paths)) user_paths.push_back(entry_json(entry, scene));
     Json json{{"program", "keyhole " KEYHOLE_VERSION},
               {"scene", subject.scene},
               {"seconds", subject.seconds},
@@ -180,7 +230,7 @@ Json page_data(const Scene& scene, const Inspection& inspection, const PageSubje
               {"air", air.json()},
               {"counts", counts_json(inspection)},
               {"emitters", emitters_json(scene)},
-              {"userPaths", user_path_entries(subject.user_paths, scene)},
+              {"userPaths", user_paths},
               {"stats", stats_of(inspection.render)}};
     json["binary"] = data.json();
     return json;

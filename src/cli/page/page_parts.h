@@ -1,8 +1,10 @@
 // Pages, each from the files of its folder page/, which the build puts into the program.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace keyhole {
 
@@ -14,5 +16,8 @@ struct PageParts {
     std::string with(std::string data) const;
 };
 extern const PageParts kChartPage, kInspectionPage;
+
+/// A PNG, of pixels with 3 channels (sRGB) or 1 (grey).
+std::string png_uri(int width, int height, int channels, const std::vector<std::uint8_t>& pixels);
 
 } // namespace keyhole

@@ -1,6 +1,6 @@
 #include "cli/progress/interrupt.h"
 
-#include "cli/command.h"
+#include "cli/program.h"
 #include "film/files/atomic_file.h"
 
 #include <atomic>

@@ -1,12 +1,11 @@
 #include "cli/words/report.h"
 
-#include "cli/words/figures.h"
 #include "cli/words/tell.h"
 #include "cli/words/units.h"
 
 #include <fmt/format.h>
 
-#include <cstdio>
+#include <map>
 
 namespace keyhole {
 namespace {
@@ -28,6 +27,40 @@ void print_proposals(const std::vector<ProposalStats>& proposals) {
     }
 }
 
+/// All figures that are known but those that have keys of their own in `--stats`.
+std::map<std::string, double> figures(const RenderStats& stats) {
+    std::map<std::string, double> all = stats.values;
+    const auto add = [&](const char* name, const auto& figure) {
+        if (figure) all[name] = static_cast<double>(*figure);
+    };
+    add("passes", stats.passes);
+    add("effort", stats.effort);
+    add("empty pixels", stats.no_samples);
+    if (stats.agreement) {
+        all["chains, agreement (split R-hat)"] = stats.agreement->r_hat;
+        all["chains, error of block brightness"] = stats.agreement->error;
+    }
+    const PhotonQuality& q = stats.photon_quality;
+    add("photon power, share of the brightest 0.1 %", q.of_brightest);
+    if (q.cut_off.value_or(0) > 0) add("photon power, share cut off outliers", q.cut_off);
+    if (q.lookups) {
+        all["photons per lookup"] = q.lookups->found;
+        all["photons per lookup, effective"] = q.lookups->effective;
+        all["photons per lookup, share of those asked for"] = q.lookups->share;
+    }
+    if (q.cache) {
+        all["cached irradiances"] = q.cache->records;
+        all["cached irradiances, noise of one pass"] = q.cache->noise;
+        all["cached irradiances, share of points without"] = q.cache->starving;
+    }
+    if (q.noise) {
+        all["squared error of one sample a pixel"] = q.noise->samples;
+        all["squared error of cached irradiances by their first rays"] = q.noise->records;
+    }
+    add("photons seen, share of the picture not confirmed by pilots", q.unconfirmed);
+    return all;
+}
+
 } // namespace
 
 void print_warnings(const RenderStats& stats) {
@@ -46,6 +79,41 @@ void print_report(const RenderStats& stats) {
              with_prefix(static_cast<double>(stats.importon_bytes)));
     for (const auto& [name, value] : figures(stats)) tell("{}: {:.6g}\n", name, value);
     if (!stats.proposals.empty()) print_proposals(stats.proposals);
+}
+
+using Json = nlohmann::ordered_json;
+
+Json stats_json(const RenderStats& s) {
+    Json stages = Json::array(), proposals = Json::array();
+    for (const StageStats& stage : s.stages)
+        stages.push_back({{"name", stage.stage->name},
+                          {"wall_seconds", stage.wall_seconds},
+                          {"cpu_seconds", stage.cpu_seconds},
+                          {"rays", stage.rays}});
+    for (const ProposalStats& p : s.proposals)
+        proposals.push_back({{"name", p.name},
+                             {"proposed", p.proposed},
+                             {"failed", p.failed},
+                             {"zero", p.zero},
+                             {"nan", p.nan},
+                             {"rejected", p.rejected},
+                             {"accepted", p.accepted},
+                             {"seconds", p.seconds},
+                             {"deposited", p.deposited}});
+    return {{"complete", s.complete},
+            {"method", s.method},
+            {"brightness", s.brightness},
+            {"brightness_error", s.brightness_error},
+            {"stages", stages},
+            {"proposals", proposals},
+            {"photons_global", s.photons_global},
+            {"photons_caustic", s.photons_caustic},
+            {"photon_bytes", s.photon_bytes},
+            {"importons", s.importons},
+            {"importon_bytes", s.importon_bytes},
+            {"values", figures(s)},
+            {"remarks", s.remarks},
+            {"warnings", s.warnings}};
 }
 
 } // namespace keyhole

@@ -69,7 +69,7 @@ void keep_importons(const Scene& scene, const Settings& settings, const Inspecti
     const Importons found = trace_importance(scene,
                                              {.samples = static_cast<std::int64_t>(limits.importons),
                                               .max_scatterings = static_cast<int>(settings.max_depth),
-                                              .seed = static_cast<std::uint64_t>(settings.seed)},
+                                              .seed = settings.seed},
                                              context);
     out.importon_count = found.first.size() + found.second.size();
     const auto add = [&](const std::vector<Photon>& importons, bool first) {
@@ -95,7 +95,7 @@ Inspection inspect_scene(Scene& scene, const Settings& settings, const UserPaths
     Findings findings;
     const LearnedDirectLightScope direct_light(scene, settings, context);
     out.learned_direct_light = direct_light.learned() != nullptr;
-    PassRecorder recorder(limits, static_cast<std::uint64_t>(settings.seed), direct_light.learned(), out);
+    PassRecorder recorder(limits, settings.seed, direct_light.learned(), out);
     out.render = render_by_method({scene, settings, paths, context, {}, findings, &recorder});
     out.render.settings = settings;
     Settings other = settings;

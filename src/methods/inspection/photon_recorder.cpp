@@ -1,4 +1,4 @@
-#include "methods/inspection/photon_recorder.h"
+#include "methods/inspection/inspection.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,4 @@
-#include "methods/inspection/pixel_light.h"
+#include "methods/inspection/inspection.h"
 
 #include "core/parallel.h"
 #include "gather/direct_light.h"

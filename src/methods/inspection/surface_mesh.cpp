@@ -1,4 +1,4 @@
-#include "methods/inspection/surface_mesh.h"
+#include "methods/inspection/inspection.h"
 
 #include "film/tonemap.h"
 #include "scene/geometry.h"

@@ -6,10 +6,10 @@
 #include "methods/photons/learn_light_paths.h"
 #include "methods/photons/memory_plan.h"
 #include "methods/photons/radii.h"
-#include "methods/photons/trials/combination_trial.h"
+#include "methods/photons/trials/trials.h"
 #include "photonmap/emission.h"
 #include "photonmap/photon_sampling.h"
-#include "photonmap/power/power.h"
+#include "photonmap/power.h"
 #include "sampling/proposals/tuning.h"
 #include "session/stage_clock.h"
 

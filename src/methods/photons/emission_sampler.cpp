@@ -5,7 +5,7 @@
 #include "methods/photons/memory_plan.h"
 #include "methods/photons/photon_sampler.h"
 #include "methods/photons/radii.h"
-#include "methods/photons/trials/emission_trial.h"
+#include "methods/photons/trials/trials.h"
 #include "photonmap/emission.h"
 #include "session/stage_clock.h"
 

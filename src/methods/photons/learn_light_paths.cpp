@@ -19,7 +19,7 @@ LearnedLightPaths learn_light_paths(const SamplerContext& c, std::int64_t paths,
                        {.paths = paths,
                         .max_scatterings = static_cast<int>(c.settings.max_depth),
                         .set = c.path_set(),
-                        .seed = static_cast<std::uint64_t>(c.settings.seed),
+                        .seed = c.settings.seed,
                         .most_bytes = static_cast<std::size_t>(c.settings.photon_memory) / kMemoryOfLearning},
                        run);
     learned.emission.emplace(c.scene, std::move(found.ends));

@@ -1,7 +1,7 @@
 // Where light paths begin and go on, learned once for all passes: whoever makes one of them makes the same photons.
 #pragma once
 
-#include "core/stage.h"
+#include "core/render_stats.h"
 #include "methods/photons/photon_sampler.h"
 #include "sampling/guidance/learned/learned_emission.h"
 #include "sampling/guidance/learned/learned_scattering.h"

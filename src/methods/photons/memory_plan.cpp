@@ -2,7 +2,7 @@
 
 #include "gather/direct_irradiance_cache.h"
 #include "photonmap/irradiance/irradiance_map.h"
-#include "photonmap/photon_store.h"
+#include "photonmap/map_stores.h"
 
 #include <algorithm>
 

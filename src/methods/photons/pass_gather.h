@@ -64,4 +64,13 @@ class PassGather {
     std::optional<FinalGather> gather_;
 };
 
+/// Who watches a pass: its photons, the paths that brought them, and what is made of them.
+class PassObserver : public PhotonObserver {
+  public:
+    /// All photons of a pass are there.
+    virtual void sampled(const Photons& photons) = 0;
+    /// The maps and the irradiance cache of the pass are; `gather` lasts as long as the call.
+    virtual void ready(const PassGather& gather) = 0;
+};
+
 } // namespace keyhole

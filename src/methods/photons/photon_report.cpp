@@ -3,7 +3,8 @@
 #include "core/parallel.h"
 #include "core/statistics.h"
 #include "core/vec.h"
-#include "photonmap/power/outlying_power.h"
+#include "film/image_error.h"
+#include "photonmap/power.h"
 #include "sampling/paths/image_lattice.h"
 
 #include <fmt/format.h>
@@ -28,7 +29,6 @@ constexpr double kMostNoise = 0.2;   ///< of irradiance records, where passes do
 constexpr double kNoiseShows = 0.05; ///< of the picture, from records: less of it is no blotch
 
 constexpr int kPoints = 4096;  // of the picture that are looked at for false spots
-constexpr double kDark = 0.01; // of the square of the mean: what is darker still has no relative error to speak of
 constexpr double kMost = 0.98; // of pixels: the rest hold bright, rare samples, which say nothing of the others
 
 double share_of_brightest(const std::vector<Photon>& photons) {
@@ -115,9 +115,7 @@ std::optional<PhotonQuality::Noise> noise_of(const FinalGather& gather, const Im
         mean += p.mean / pixels;
         rays += p.rays / pixels;
     }
-    const auto relative = [&](double squared, const Pixel& p) {
-        return squared / (p.mean * p.mean + kDark * mean * mean);
-    };
+    const auto relative = [&](double squared, const Pixel& p) { return squared / error_unit(p.mean, mean); };
     std::vector<double> samples, records;
     for (const Pixel& p : seen_pixels) {
         samples.push_back(relative(p.variance, p));

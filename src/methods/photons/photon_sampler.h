@@ -4,7 +4,6 @@
 #include "core/progress.h"
 #include "core/render_stats.h"
 #include "core/settings.h"
-#include "methods/photons/work_shares.h"
 #include "photonmap/importance/importance_tracing.h"
 #include "photonmap/photon_weighing.h"
 #include "photonmap/photons.h"
@@ -13,10 +12,16 @@
 #include "sampling/paths/path_set.h"
 #include "scene/scene.h"
 
-#include <memory>
 #include <optional>
 
 namespace keyhole {
+
+struct WorkShares {
+    double chains; ///< of `mutations`; light paths get the rest of `light_paths`
+    /// So many steps of a chain count as one independent sample in the weights of its photons: neighbouring states know
+    /// of each other. Nothing is biased, whatever it is.
+    double correlation;
+};
 
 /// Stages one and two of a pass: everything up to the photons. Called for one pass after the other.
 class PhotonSampler {
@@ -55,9 +60,5 @@ struct SamplerContext {
                 .weight = weight};
     }
 };
-
-/// The photons of settings.load_map. sample() throws InputError if the file isn't for this scene.
-/// @throws InputError if more than one pass is asked for.
-std::unique_ptr<PhotonSampler> make_file_sampler(const SamplerContext& context);
 
 } // namespace keyhole

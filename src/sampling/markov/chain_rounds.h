@@ -17,8 +17,6 @@ class ChainRounds {
     static ChainRounds of_length(std::int64_t steps, std::int64_t length) { return {steps, length, 0}; }
     static ChainRounds even(std::int64_t steps, std::int64_t count) { return {steps, 0, count}; }
 
-    std::int64_t steps() const { return steps_; }
-
     /// Calls advance(n) for each round of n steps until all are done, or after a stop; the first one always. Tells
     /// nothing of its progress: chains do. @returns the steps that were done, by each chain
     template <class Advance> std::int64_t run(const RunContext& context, Advance&& advance) const {

@@ -4,7 +4,6 @@
 #include "core/kronecker.h"
 #include "core/parallel.h"
 #include "core/progress.h"
-#include "sampling/guidance/user_path_gain.h"
 #include "sampling/markov/chain.h"
 #include "sampling/markov/convergence.h"
 #include "sampling/paths/path.h"

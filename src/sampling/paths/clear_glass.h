@@ -5,7 +5,6 @@
 #pragma once
 
 #include "sampling/paths/path.h"
-#include "sampling/paths/path_class.h"
 #include "scene/scene.h"
 
 #include <functional>

@@ -41,12 +41,8 @@ template <class Sink> struct CompletePaths {
 template <class Sink>
 void trace_independent(Technique technique, const Scene& scene, const Vec2& image, const ConnectionRule& wanted,
                        SampleSource& source, Sink& sink) {
-    const int max_scatterings = wanted.max_scatterings;
     if (technique == Technique::bidirectional) {
-        SubPathPair& pair = SubPathPair::scratch();
-        auto& [eye, light] = pair;
-        trace_eye_subpath(scene, image, most_eye_vertices(max_scatterings), source, &source, eye);
-        trace_light_subpath(scene, most_light_vertices(max_scatterings), source, &source, light);
+        SubPathPair& pair = trace_both_subpaths(scene, image, wanted.max_scatterings, source, source);
         struct {
             const PathSet& set;
             Sink& sink;
@@ -59,7 +55,7 @@ void trace_independent(Technique technique, const Scene& scene, const Vec2& imag
         return;
     }
     CompletePaths<Sink> paths{scene, image, wanted.set, sink};
-    trace_path(scene, image, max_scatterings, source, paths);
+    trace_path(scene, image, wanted.max_scatterings, source, paths);
 }
 
 } // namespace keyhole

@@ -5,7 +5,6 @@
 #include "sampling/paths/bidirectional_tracer.h"
 #include "sampling/paths/path.h"
 
-#include <array>
 #include <memory>
 
 namespace keyhole {
@@ -63,16 +62,11 @@ class PathSample {
 /// other asks for more or fewer numbers than before.
 struct PrimarySources {
     SampleSource &eye, &light, &choice;
-
-    std::array<SampleSource*, 3> all() const { return {&eye, &light, &choice}; }
 };
 
 /// Maps primary samples, uniform in [0,1), to splats whose expected value is the picture. Immutable and thread-safe.
 class PathBuilder {
   public:
-    using Sources = PrimarySources;
-    using Sample = PathSample;
-
     virtual ~PathBuilder() = default;
     /// Fills `sample`, which is empty. It stays so where no path is completed.
     virtual void build(PrimarySources sources, PathSample& sample) const = 0;

@@ -82,10 +82,7 @@ class BidirectionalBuilder final : public PathBuilder {
 
     void build(PrimarySources sources, PathSample& sample) const override {
         const Vec2 image = window_point(sources.eye);
-        SubPathPair& pair = SubPathPair::scratch();
-        auto& [eye, light] = pair;
-        trace_eye_subpath(*c_.scene, image, most_eye_vertices(c_.max_scatterings), sources.eye, &sources.eye, eye);
-        trace_light_subpath(*c_.scene, most_light_vertices(c_.max_scatterings), sources.light, &sources.light, light);
+        SubPathPair& pair = trace_both_subpaths(*c_.scene, image, c_.max_scatterings, sources.eye, sources.light);
         struct {
             PathSample& sample;
             void contribution(const Connection& connection, const Rgb& value, LightClass kind) {

@@ -2,6 +2,10 @@
 
 #include "core/parallel.h"
 
+#include <cmath>
+#include <optional>
+#include <utility>
+
 namespace keyhole {
 namespace {
 
@@ -22,6 +26,73 @@ class Fixed final : public SampleSource {
 };
 
 } // namespace
+
+/// A chain as the kernel's space. What it stays at a state is deposited at once when it leaves, together with what the
+/// state brought as a candidate: most of the work of a deposit doesn't depend on its weight. Large steps are samples on
+/// their own account, too (Kelemen et al. 2002, section 3.4), where `large_count` says so.
+///
+/// `Store`: store(sample, weight), for positive weights.
+template <class Store> class PrimaryChains::DepositingChain {
+  public:
+    DepositingChain(Chain& chain, bool large_count, Store store)
+        : chain_(chain), large_count_(large_count), store_(std::move(store)) {}
+
+    /// Makes so many steps and deposits all that they bring. `change` goes before some of them.
+    void make_steps(const PrimaryKernel& kernel, std::int64_t steps, const std::optional<ReversibleJump>& change) {
+        int left_out = 0;
+        for (std::int64_t done = 0; done < steps;) {
+            if (change && chain_.rng.next() < kChange) {
+                drop_candidate();
+                // It leaves the same path with another target, by which deposits divide.
+                if (change->move(chain_.state, chain_.rng, chain_.changes)) leave(chain_.state.candidate());
+            }
+            const bool counts = kernel.step(*this, chain_.rng, chain_.counts, *this);
+            left_out = counts ? 0 : left_out + 1;
+            if (left_out == kMostLeftOut) (*this)(false, 1, false), left_out = 0, ++done;
+            done += counts ? 1 : 0;
+        }
+        drop_candidate();
+        leave(chain_.state.sample());
+        for (std::uint64_t i = 0; i < chain_.counts.large.failed; ++i) chain_.large.add(0); // of target 0
+    }
+
+    // For the kernel.
+    double propose(Step step) {
+        drop_candidate();
+        return chain_.state.propose(step);
+    }
+    double target() const { return chain_.state.target(); }
+    void accept() {
+        leave(chain_.state.sample());
+        chain_.stay = std::exchange(candidate_, 0);
+        chain_.state.accept();
+    }
+    void operator()(bool candidate, double weight, bool large) {
+        if (!candidate) {
+            chain_.stay += weight;
+            return;
+        }
+        if (large) chain_.large.add(chain_.state.candidate().target());
+        candidate_ = weight + (large && large_count_ ? 1 : 0);
+    }
+
+  private:
+    /// Deposits what wasn't accepted.
+    void drop_candidate() {
+        if (candidate_ > 0) store_(chain_.state.candidate(), candidate_);
+        candidate_ = 0;
+    }
+    /// Deposits `state`, which is the chain's or was it until now.
+    void leave(const PathSample& state) {
+        if (chain_.stay > 0) store_(state, chain_.stay);
+        chain_.stay = 0;
+    }
+
+    Chain& chain_;
+    bool large_count_;
+    Store store_;
+    double candidate_ = 0; ///< weight that the candidate is to be deposited with
+};
 
 PrimaryChains::PrimaryChains(const std::vector<PrimaryStratum>& strata, std::uint64_t seed, bool mis_of_large_steps,
                              std::uint64_t group)
@@ -59,23 +130,6 @@ PrimaryChains::Weights PrimaryChains::weights(std::size_t stratum, const Primary
             static_cast<double>(size()) / static_cast<double>(members_[stratum])};
 }
 
-template <class Space>
-void PrimaryChains::make_steps(Chain& chain, const PrimaryKernel& kernel, std::int64_t steps, Space& space) const {
-    const auto& change = (*strata_)[chain.stratum].change;
-    int left_out = 0;
-    for (std::int64_t done = 0; done < steps;) {
-        if (change && chain.rng.next() < kChange) {
-            space.drop_candidate();
-            // It leaves the same path with another target, by which deposits divide.
-            if (change->move(chain.state, chain.rng, chain.changes)) space.leave(chain.state.candidate());
-        }
-        const bool counts = kernel.step(space, chain.rng, chain.counts, space);
-        left_out = counts ? 0 : left_out + 1;
-        if (left_out == kMostLeftOut) space(false, 1, false), left_out = 0, ++done;
-        done += counts ? 1 : 0;
-    }
-}
-
 void PrimaryChains::advance(const PrimaryKernel& kernel, std::int64_t steps, const RunContext& context,
                             const Deposit& deposit) {
     std::vector<Weights> by_stratum;
@@ -93,10 +147,7 @@ void PrimaryChains::advance(const PrimaryKernel& kernel, std::int64_t steps, con
                 deposit(s, factor);
             }
         });
-        make_steps(chain, kernel, steps, space);
-        space.drop_candidate();
-        space.leave(chain.state.sample());
-        chain.count_failed_large_steps(0);
+        space.make_steps(kernel, steps, (*strata_)[chain.stratum].change);
         context.advance(steps);
     });
     for (const auto& chain : chains_) {

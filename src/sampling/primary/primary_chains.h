@@ -1,12 +1,14 @@
-// Many chains in primary sample space, side by side.
+// Chains in primary sample space, side by side, and their deposits.
 #pragma once
 
+#include "core/statistics.h"
 #include "sampling/markov/convergence.h"
-#include "sampling/primary/primary_chain.h"
+#include "sampling/primary/primary_kernel.h"
 #include "sampling/primary/primary_start.h"
 #include "sampling/primary/primary_state.h"
 
 #include <functional>
+#include <memory>
 
 namespace keyhole {
 
@@ -46,12 +48,17 @@ class PrimaryChains {
     std::uint64_t broken() const;
 
   private:
-    struct Chain : PrimaryChain<PrimaryState> {
+    struct Chain {
         const std::size_t stratum;
+        Rng rng;
+        PrimaryState state;
+        PrimaryCounts counts;
         ChangeCounts changes;
+        RunningStats large; ///< targets of large steps, of a round
+        double stay = 0;    ///< weight that the state has gained and not yet deposited
 
         Chain(const PathBuilder& builder, std::size_t of, const Rng& random)
-            : PrimaryChain(builder, random), stratum(of) {}
+            : stratum(of), rng(random), state(builder, rng) {}
         void begin_round() {
             counts = {};
             changes = {};
@@ -69,10 +76,9 @@ class PrimaryChains {
     struct Estimate {
         double mean, error; ///< of the brightness of a stratum
     };
+    template <class Store> class DepositingChain;
     Estimate estimate(std::size_t stratum) const;
     Weights weights(std::size_t stratum, const PrimaryKernel& kernel) const;
-    template <class Space>
-    void make_steps(Chain& chain, const PrimaryKernel& kernel, std::int64_t steps, Space& space) const;
 
     const std::vector<PrimaryStratum>* strata_;
     bool mis_of_large_steps_;

@@ -1,14 +1,34 @@
 #include "sampling/primary/primary_start.h"
 
+#include "core/rng.h"
 #include "core/shared_work.h"
-#include "sampling/paths/resampling.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 
 namespace keyhole {
 namespace {
+
+/// Calls choose(item) `count` times in all, in the order of `items`, for each of them weight(item) / total * count
+/// times on average, up or down to the next whole number. Not at all if all weights are 0.
+template <class Items, class Weight, class Choose>
+void resample_systematically(const Items& items, std::int64_t count, Rng& rng, Weight&& weight, Choose&& choose) {
+    double total = 0;
+    for (const auto& item : items) total += weight(item);
+    const double shift = rng.next();
+    double passed = 0;
+    std::int64_t chosen = 0;
+    for (const auto& item : items) {
+        const double w = weight(item);
+        if (!(w > 0)) continue;
+        passed += w;
+        for (; chosen < count && (static_cast<double>(chosen) + shift) / static_cast<double>(count) * total < passed;
+             ++chosen)
+            choose(item);
+    }
+}
 
 constexpr std::int64_t kBlock = 1024;
 /// Seeds are chosen among the first samples; brightness is measured by all.
@@ -90,10 +110,7 @@ PrimaryStart PrimaryStart::by_length(const BuilderContext& builders, const Emitt
     const int most = builders.max_scatterings;
     const auto sample = [&](std::int64_t i, PrimaryRandom& random, std::vector<Find>& found) {
         const Vec2 image = window_point(random.eye);
-        SubPathPair& pair = SubPathPair::scratch();
-        auto& [eye, light] = pair;
-        trace_eye_subpath(scene, image, most_eye_vertices(most), random.eye, &random.choice, eye);
-        trace_light_subpath(scene, most_light_vertices(most), random.light, &random.choice, light);
+        SubPathPair& pair = trace_both_subpaths(scene, image, most, random.eye, random.light, &random.choice);
         struct {
             std::int64_t i;
             std::vector<Find>& found;

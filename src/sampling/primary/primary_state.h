@@ -4,31 +4,27 @@
 #include "sampling/primary/path_builder.h"
 #include "sampling/primary/primary_vector.h"
 
-#include <array>
 #include <utility>
 
 namespace keyhole {
 
-/// The `Space` of PrimaryKernel over the numbers that a `Builder` draws from its `Builder::Sources`, an aggregate of
-/// references with
-///     std::array<SampleSource*, N> all() const;
-/// Builder::build(sources, sample) makes a `Builder::Sample` of them, which has a target. Refers to itself: neither
-/// copied nor moved.
-template <class Builder> class PrimaryStateOf {
+/// The `Space` of PrimaryKernel over the numbers that a path builder draws. Candidates and the state leave their
+/// sub-paths in different rooms of the thread. Refers to itself: neither copied nor moved.
+class PrimaryState {
   public:
-    using Sources = typename Builder::Sources;
-    using Sample = typename Builder::Sample;
-
     /// `builder` and `rng` must outlive the state.
-    PrimaryStateOf(const Builder& builder, Rng& rng)
-        : builder_(&builder), streams_(make_streams(clock_, rng, std::make_index_sequence<kStreams>())) {}
-    PrimaryStateOf(const PrimaryStateOf&) = delete;
-    PrimaryStateOf& operator=(const PrimaryStateOf&) = delete;
+    PrimaryState(const PathBuilder& builder, Rng& rng)
+        : builder_(&builder), eye_(clock_, rng), light_(clock_, rng), choice_(clock_, rng) {
+        candidate_.set_room(1);
+    }
+    PrimaryState(const PrimaryState&) = delete;
+    PrimaryState& operator=(const PrimaryState&) = delete;
 
     /// The state becomes what `sources` make.
-    void start(Sources sources) {
+    void start(PrimarySources sources) {
         state_.clear();
-        start(sources.all(), std::make_index_sequence<kStreams>());
+        Recorder eye(sources.eye, eye_), light(sources.light, light_), choice(sources.choice, choice_);
+        builder_->build({eye, light, choice}, state_);
     }
 
     double propose(Step step) {
@@ -41,16 +37,16 @@ template <class Builder> class PrimaryStateOf {
     }
 
     void accept() {
-        for (PrimaryStream& s : streams_) s.accept();
+        for (PrimaryStream* s : {&eye_, &light_, &choice_}) s->accept();
         ++clock_.now;
         if (clock_.step == Step::large) clock_.last_large = clock_.now;
-        std::swap(state_, candidate_);
+        adopt();
     }
 
     /// The coordinates of the state itself, from their start.
-    Sources replay() {
+    PrimarySources replay() {
         clock_.step = Step::stay;
-        return rewound(std::make_index_sequence<kStreams>());
+        return rewound();
     }
     /// What the state's coordinates make, after some were set; the candidate.
     double rebuild() {
@@ -58,23 +54,26 @@ template <class Builder> class PrimaryStateOf {
         build_candidate();
         return candidate_.target();
     }
-    /// The sample of rebuild() is the state's.
-    void adopt() { std::swap(state_, candidate_); }
+    /// The candidate, such as that of rebuild(), is the state's sample.
+    void adopt() {
+        std::swap(state_, candidate_);
+        path_is_kept_ = true;
+    }
+    /// Whether the state's sub-paths are where its builder left them. False once other states had their turn.
+    bool path_is_kept() const { return path_is_kept_; }
+    void set_path_kept(bool kept) { path_is_kept_ = kept; }
 
     double target() const { return state_.target(); }
-    const Sample& sample() const { return state_; }
-    const Sample& candidate() const { return candidate_; }
+    const PathSample& sample() const { return state_; }
+    const PathSample& candidate() const { return candidate_; }
     /// Candidates with a value that was not a number.
     std::uint64_t broken() const { return broken_; }
 
-  protected:
-    PrimaryStream& stream(std::size_t i) { return streams_[i]; }
-    Sample& candidate_sample() { return candidate_; }
+    PrimaryStream& eye() { return eye_; }
+    PrimaryStream& light() { return light_; }
+    PrimaryStream& choice() { return choice_; }
 
   private:
-    static constexpr std::size_t kStreams = std::tuple_size_v<decltype(std::declval<Sources>().all())>;
-    using Streams = std::array<PrimaryStream, kStreams>;
-
     /// Notes down what another source says.
     class Recorder final : public SampleSource {
       public:
@@ -90,53 +89,20 @@ template <class Builder> class PrimaryStateOf {
         PrimaryStream* to_;
     };
 
-    template <std::size_t... I> static Streams make_streams(PrimaryClock& clock, Rng& rng, std::index_sequence<I...>) {
-        return {((void)I, PrimaryStream(clock, rng))...};
-    }
-    template <std::size_t... I> void start(const std::array<SampleSource*, kStreams>& from, std::index_sequence<I...>) {
-        std::array<Recorder, kStreams> recorders{Recorder(*from[I], streams_[I])...};
-        builder_->build(Sources{recorders[I]...}, state_);
-    }
-    template <std::size_t... I> Sources rewound(std::index_sequence<I...>) {
-        for (PrimaryStream& s : streams_) s.rewind();
-        return {streams_[I]...};
+    PrimarySources rewound() {
+        for (PrimaryStream* s : {&eye_, &light_, &choice_}) s->rewind();
+        return {eye_, light_, choice_};
     }
     void build_candidate() {
         candidate_.clear();
-        builder_->build(rewound(std::make_index_sequence<kStreams>()), candidate_);
+        builder_->build(rewound(), candidate_);
     }
 
-    const Builder* builder_;
+    const PathBuilder* builder_;
     PrimaryClock clock_;
-    Streams streams_;
-    Sample state_, candidate_;
+    PrimaryStream eye_, light_, choice_;
+    PathSample state_, candidate_;
     std::uint64_t broken_ = 0;
-};
-
-/// Of whole paths. Candidates and the state leave their sub-paths in different rooms of the thread.
-class PrimaryState final : public PrimaryStateOf<PathBuilder> {
-  public:
-    PrimaryState(const PathBuilder& builder, Rng& rng) : PrimaryStateOf(builder, rng) {
-        candidate_sample().set_room(1);
-    }
-
-    void accept() {
-        PrimaryStateOf::accept();
-        path_is_kept_ = true;
-    }
-    void adopt() {
-        PrimaryStateOf::adopt();
-        path_is_kept_ = true;
-    }
-    /// Whether the state's sub-paths are where its builder left them. False once other states had their turn.
-    bool path_is_kept() const { return path_is_kept_; }
-    void set_path_kept(bool kept) { path_is_kept_ = kept; }
-
-    PrimaryStream& eye() { return stream(0); }
-    PrimaryStream& light() { return stream(1); }
-    PrimaryStream& choice() { return stream(2); }
-
-  private:
     bool path_is_kept_ = false;
 };
 

@@ -1,11 +1,41 @@
 // Another technique for the same path: reversible jumps between the primary sample spaces of techniques.
 #pragma once
 
-#include "sampling/primary/inverse.h"
+#include "sampling/paths/path.h"
 #include "sampling/primary/path_builder.h"
 #include "sampling/primary/primary_state.h"
+#include "scene/scene.h"
+
+#include <array>
+#include <optional>
+#include <vector>
 
 namespace keyhole {
+
+// From paths back to primary samples: numbers that make a sampling routine take the choice that it took. Where several
+// do, one of them is drawn uniformly (Bitterli et al. 2017, "probabilistic inverses").
+
+/// The three numbers with which the BSDF at `v`, reached along `back`, continues along `to` by v.event. None for models
+/// without an inverse: diffuse, mirrors, smooth and rough conductors and smooth glass have one.
+std::optional<std::array<double, 3>> invert_bsdf(const Vertex& v, const Vec3& back, const Vec3& to, SampleSource& rng);
+
+/// Inverses of the sampling of emitters. Immutable and thread-safe.
+class EmitterInverse {
+  public:
+    /// `scene` must outlive this.
+    explicit EmitterInverse(const Scene& scene);
+
+    /// The numbers with which sample_emitter() makes `point`. None but for one-sided triangle meshes that emit.
+    std::optional<std::array<double, 4>> point(const SurfacePoint& point, SampleSource& rng) const;
+
+    /// The numbers with which its emitter sends a ray from `point` along `w`; for points that point() inverts.
+    std::array<double, 2> ray(const SurfacePoint& point, const Vec3& w) const;
+
+  private:
+    const Scene* scene_;
+    std::vector<double> choice_;                 ///< running sum of the probabilities of emitters
+    std::vector<EmitterDistribution> triangles_; ///< by shape, where it emits
+};
 
 /// What became of reversible jumps.
 struct ChangeCounts {

@@ -1,7 +1,6 @@
 // BD, bidirectional: delete a sub-path, insert one of possibly other length, sampled from either end and joined (Veach
 // 1997, section 11.2.1). It reaches every path that carries light: it alone makes a chain ergodic.
 #include "core/integer_power.h"
-#include "sampling/proposals/cut.h"
 #include "sampling/proposals/edit.h"
 #include "sampling/proposals/registry.h"
 

@@ -1,9 +1,11 @@
-// What the proposals share: comparing paths, growing sub-paths, joining them.
+// What the proposals share: comparing and cutting paths, growing sub-paths, joining them.
 #pragma once
 
 #include "sampling/markov/mixture.h"
 #include "sampling/paths/measure.h"
+#include "sampling/paths/path.h"
 #include "sampling/paths/walk.h"
+#include "scene/scene.h"
 
 namespace keyhole {
 
@@ -73,5 +75,25 @@ Vec3 leaving_direction(const Path& path, int i, int step);
 
 /// Whether two paths have the same vertices specular in the same way.
 bool same_events(const Path& x, const Path& y);
+
+/// What a proposal keeps of a path of n vertices when it replaces a part of it: x[0..light] and x[eye..n-1]. light = -1
+/// and eye = n: nothing on that side. Kept ends are non-specular: beyond a specular vertex nothing is free to choose,
+/// and the same path would be made with several deletions. Likewise the eye is always replaced together with the edge
+/// that leaves it, and a point light together with the edge that leaves it: a second way to the same path would have to
+/// be summed.
+struct Cut {
+    int light, eye;
+    int removed() const { return eye - light - 1; }
+    friend bool operator==(const Cut&, const Cut&) = default;
+};
+
+/// Whether x[i] may be the last vertex that is kept on the light's side.
+bool can_keep_light(const Scene& scene, const Path& x, int i);
+/// Whether x[i] may be the first vertex that is kept on the eye's side.
+inline bool can_keep_eye(const Path& x, int i) { return !x.x[i].specular(); }
+
+/// The cut by which y came from x: what the two have in common, but for ends that are never kept. The new vertices of y
+/// are what a transition density has to be a density of.
+Cut cut_between(const Scene& scene, const Path& x, const Path& y);
 
 } // namespace keyhole

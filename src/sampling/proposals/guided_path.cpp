@@ -3,7 +3,7 @@
 // has no peaks where one connection's edge is short: unlike UP it leaves from, and comes to, such paths as readily as
 // others.
 #include "sampling/guidance/guided_paths.h"
-#include "sampling/proposals/cut.h"
+#include "sampling/proposals/edit.h"
 #include "sampling/proposals/registry.h"
 
 namespace keyhole {

@@ -5,7 +5,7 @@
 // A fixed x0 would be a point mass against the other proposals' densities: it lies in a patch of the emitter. The way
 // back is rarely a user path's: mixtures judge UP together with BD.
 #include "sampling/guidance/guided_subpath.h"
-#include "sampling/proposals/cut.h"
+#include "sampling/proposals/edit.h"
 #include "sampling/proposals/registry.h"
 
 #include <algorithm>

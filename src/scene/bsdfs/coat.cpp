@@ -42,19 +42,6 @@ Fractions rough_fractions(double cos_i, double alpha, double eta) {
 /// Midpoints of n equal parts of [0,1].
 double node(std::size_t i, std::size_t n) { return (static_cast<double>(i) + 0.5) / static_cast<double>(n); }
 
-/// Position of x in [0,1] in a table of n entries: the entry to the left and the share of the one to the right.
-struct TablePosition {
-    std::size_t i;
-    double t;
-};
-TablePosition locate(double x, std::size_t n) {
-    const double s = std::clamp(x, 0.0, 1.0) * static_cast<double>(n - 1);
-    const auto i = std::min(static_cast<std::size_t>(s), n - 2);
-    return {i, s - static_cast<double>(i)};
-}
-
-double lerp(double a, double b, double t) { return a + (b - a) * t; }
-
 } // namespace
 
 std::shared_ptr<const CoatInterface> CoatInterface::of(double eta) {
@@ -117,15 +104,15 @@ double CoatInterface::mean_through(double alpha, double thickness) const {
     const auto [a, ta] = locate(alpha, kAlphas);
     const auto [u, tu] = locate(std::exp(-thickness), kClear);
     const auto row = [&, u = u, tu = tu](std::size_t k) {
-        return lerp(mean_through_[k][u], mean_through_[k][u + 1], tu);
+        return between(mean_through_[k][u], mean_through_[k][u + 1], tu);
     };
-    return lerp(row(a), row(a + 1), ta);
+    return between(row(a), row(a + 1), ta);
 }
 
 double CoatInterface::look_up(const Table& table, double cos_i, double alpha) {
     const auto [a, ta] = locate(alpha, kAlphas);
     const auto [c, tc] = locate(std::sqrt(cos_i), kCosines);
-    return lerp(lerp(table[a][c], table[a][c + 1], tc), lerp(table[a + 1][c], table[a + 1][c + 1], tc), ta);
+    return between(between(table[a][c], table[a][c + 1], tc), between(table[a + 1][c], table[a + 1][c + 1], tc), ta);
 }
 
 double CoatInterface::reflectance(double cos_i, double alpha) const {
@@ -148,7 +135,7 @@ double CoatInterface::attenuation(double cos_i, double thickness) const {
 
 double CoatInterface::internal_reflectance(double alpha, double thickness) const {
     const auto [a, t] = locate(alpha, kAlphas);
-    const double clear = std::max(0.0, lerp(internal_[a], internal_[a + 1], t));
+    const double clear = std::max(0.0, between(internal_[a], internal_[a + 1], t));
     if (thickness == 0) return clear;
     double left = 0;
     for (std::size_t i = 0; i < kNodes; ++i) left += internal_share_[i] * std::exp(-2 * thickness / node(i, kNodes));

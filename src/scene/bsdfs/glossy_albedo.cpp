@@ -1,7 +1,7 @@
 #include "scene/bsdfs/glossy_albedo.h"
 
 #include "core/vec.h"
-#include "scene/bsdfs/fresnel_weight.h"
+#include "scene/bsdfs/fresnel.h"
 #include "scene/bsdfs/microfacet.h"
 
 #include <algorithm>
@@ -15,18 +15,6 @@ constexpr std::size_t kAlphaNodes = 33, kCosineNodes = 33;
 /// Of roots of reflectances, 0.05 apart: that of the index 1.5, by far the commonest, is one of them.
 constexpr std::size_t kRootNodes = 11;
 constexpr std::size_t kFacetNodes = 65;
-
-struct Entry {
-    std::size_t i;
-    double share; // of the next one
-};
-Entry entry_at(double x, std::size_t n) {
-    const double s = std::clamp(x, 0.0, 1.0) * static_cast<double>(n - 1);
-    const auto i = std::min(static_cast<std::size_t>(s), n - 2);
-    return {i, s - static_cast<double>(i)};
-}
-
-double between(double a, double b, double share) { return a + (b - a) * share; }
 
 /// What all facets reflect along one direction, by the cosine to each, as if they reflected all: shared out to the
 /// nodes (i / (kFacetNodes - 1))^2.
@@ -49,7 +37,7 @@ FacetCosines integrate_ggx(double cosine, double alpha) {
             const LocalVec to = h * (2 * c) - w;
             if (!(c > 0) || !(to.z > 0)) continue;
             const double weight = share * ggx.masking(w, to) * unmasked;
-            const auto [k, next] = entry_at(std::sqrt(c), kFacetNodes);
+            const auto [k, next] = locate(std::sqrt(c), kFacetNodes);
             sum[k] += weight * (1 - next);
             sum[k + 1] += weight * next;
         }
@@ -88,7 +76,7 @@ struct Albedos {
         schlick += share * other.schlick;
         for (std::size_t r = 0; r < kRootNodes; ++r) dielectric[r] += share * other.dielectric[r];
     }
-    GgxAlbedo at(const Entry& root) const {
+    GgxAlbedo at(const TablePosition& root) const {
         return {whole, schlick, between(dielectric[root.i], dielectric[root.i + 1], root.share)};
     }
 };
@@ -102,12 +90,12 @@ Albedos weights_at(double cosine) {
     return weights;
 }
 
-GgxAlbedo between(const GgxAlbedo& a, const GgxAlbedo& b, double share) {
+GgxAlbedo albedo_between(const GgxAlbedo& a, const GgxAlbedo& b, double share) {
     return {between(a.whole, b.whole, share), between(a.schlick, b.schlick, share),
             between(a.dielectric, b.dielectric, share)};
 }
 
-Entry root_entry(double root) { return entry_at(root / DielectricWeight::kMostRoot, kRootNodes); }
+TablePosition root_entry(double root) { return locate(root / DielectricWeight::kMostRoot, kRootNodes); }
 
 struct GgxAlbedoTable {
     std::array<std::array<Albedos, kCosineNodes>, kAlphaNodes> entries;
@@ -139,7 +127,7 @@ struct GgxAlbedoTable {
                 sum.add(weights_at(cosine), weight);
                 continue;
             }
-            const auto [c, share] = entry_at(std::sqrt(cosine), kCosineNodes);
+            const auto [c, share] = locate(std::sqrt(cosine), kCosineNodes);
             sum.add(entries[alpha][c], weight * (1 - share));
             sum.add(entries[alpha][c + 1], weight * share);
         }
@@ -157,9 +145,9 @@ const GgxAlbedoTable& ggx_albedo_table() {
 GgxAlbedo ggx_albedo(double cosine, double alpha, double root) {
     if (alpha == 0) return {1, schlick_weight(cosine), DielectricWeight(root)(cosine)};
     const GgxAlbedoTable& t = ggx_albedo_table();
-    const auto [a, across] = entry_at(std::sqrt(alpha), kAlphaNodes);
-    const auto [c, along] = entry_at(std::sqrt(cosine), kCosineNodes);
-    const Entry r = root_entry(root);
+    const auto [a, across] = locate(std::sqrt(alpha), kAlphaNodes);
+    const auto [c, along] = locate(std::sqrt(cosine), kCosineNodes);
+    const TablePosition r = root_entry(root);
     const Albedos *low = &t.entries[a][c], *high = &t.entries[a + 1][c];
     const auto mixed = [&, along = along, across = across](const auto& of) {
         return between(between(of(low[0]), of(low[1]), along), between(of(high[0]), of(high[1]), along), across);
@@ -175,9 +163,9 @@ double mean_alpha(float alpha_x, float alpha_y) {
 
 GgxAlbedo mean_ggx_albedo(double alpha, double root) {
     const GgxAlbedoTable& t = ggx_albedo_table();
-    const auto [a, share] = entry_at(std::sqrt(alpha), kAlphaNodes);
-    const Entry r = root_entry(root);
-    return between(t.means[a].at(r), t.means[a + 1].at(r), share);
+    const auto [a, share] = locate(std::sqrt(alpha), kAlphaNodes);
+    const TablePosition r = root_entry(root);
+    return albedo_between(t.means[a].at(r), t.means[a + 1].at(r), share);
 }
 
 double sheen_albedo(double cosine) {
@@ -186,7 +174,7 @@ double sheen_albedo(double cosine) {
         for (std::size_t i = 0; i < kCosineNodes; ++i) entries[i] = integrate_sheen(entry_cosine(i));
         return entries;
     }();
-    const auto [c, share] = entry_at(std::sqrt(cosine), kCosineNodes);
+    const auto [c, share] = locate(std::sqrt(cosine), kCosineNodes);
     return between(table[c], table[c + 1], share);
 }
 

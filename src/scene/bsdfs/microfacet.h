@@ -14,6 +14,18 @@ using LocalVec = Imath::V3d;
 /// Up to this roughness a surface counts as smooth.
 constexpr double kSmoothAlpha = 1e-3;
 
+/// Position of x in [0,1] in a table of n entries: the entry to the left, and the share of the one to the right.
+struct TablePosition {
+    std::size_t i;
+    double share;
+};
+inline TablePosition locate(double x, std::size_t n) {
+    const double s = std::clamp(x, 0.0, 1.0) * static_cast<double>(n - 1);
+    const auto i = std::min(static_cast<std::size_t>(s), n - 2);
+    return {i, s - static_cast<double>(i)};
+}
+inline double between(double a, double b, double share) { return a + (b - a) * share; }
+
 /// Anisotropic GGX with Smith's masking, around +z (Heitz 2014, "Understanding the Masking-Shadowing Function"). All
 /// directions are unit with z > 0 unless said otherwise.
 struct Ggx {

@@ -1,6 +1,6 @@
 #include "scene/bsdfs/principled.h"
 
-#include "scene/bsdfs/fresnel_weight.h"
+#include "scene/bsdfs/fresnel.h"
 #include "scene/warp.h"
 
 #include <algorithm>

@@ -7,6 +7,7 @@
 
 #include <Imath/ImathMatrix.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -64,6 +65,19 @@ struct EnvironmentImage {
     int width = 0, height = 0;  ///< an octahedral picture is square
     std::vector<Vec3> radiance; ///< [W/(m^2 sr)] row by row from the top; each pixel is constant
     SphereLayout layout = SphereLayout::lat_long;
+
+    /// Index of the pixel at a place of the picture.
+    std::size_t pixel_at(const Vec2d& place) const {
+        const auto cell = [](double x, int n) {
+            return static_cast<std::size_t>(std::clamp(static_cast<int>(x * n), 0, n - 1));
+        };
+        return cell(place.y, height) * static_cast<std::size_t>(width) + cell(place.x, width);
+    }
+    /// The place at (u, v) of pixel i, each in [0,1).
+    Vec2d place_in(std::size_t i, double u, double v) const {
+        const auto row = static_cast<std::size_t>(width);
+        return {(static_cast<double>(i % row) + u) / width, (static_cast<double>(i / row) + v) / height};
+    }
 };
 
 /// Reads the pixels of an image file: floats as radiance, integers as sRGB.

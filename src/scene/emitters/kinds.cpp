@@ -1,21 +1,12 @@
-// The kinds of emitters that scene files list. A new file of this folder gets a line here.
+// The kinds of emitters that scene files list. A new file of this folder gets its function here.
 #include "scene/load/properties.h"
-
-#define KEYHOLE_EMITTER_FILES(FILE)                                                                                    \
-    FILE(distant)                                                                                                      \
-    FILE(environment)                                                                                                  \
-    FILE(picture)                                                                                                      \
-    FILE(point)                                                                                                        \
-    FILE(spot)
 
 namespace keyhole {
 
-#define KEYHOLE_DECLARE(FILE) EmitterKinds FILE##_kinds();
-KEYHOLE_EMITTER_FILES(KEYHOLE_DECLARE)
+EmitterKinds infinite_kinds(), picture_kinds(), point_kinds();
 
 const EmitterKinds& emitter_kinds() {
-#define KEYHOLE_LIST(FILE) FILE##_kinds(),
-    static const EmitterKinds kinds = joined<EmitterPtr>({KEYHOLE_EMITTER_FILES(KEYHOLE_LIST)});
+    static const EmitterKinds kinds = joined<EmitterPtr>({infinite_kinds(), picture_kinds(), point_kinds()});
     return kinds;
 }
 

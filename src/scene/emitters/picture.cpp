@@ -73,9 +73,7 @@ template <class View> class PictureEmitter final : public EmitterAtAPoint {
 
     EmitterRay sample_ray(const SurfacePoint& point, SampleSource& source) const override {
         const double u0 = source.next(), u1 = source.next(), u2 = source.next();
-        const std::size_t i = pixels_.sample(u0), width = static_cast<std::size_t>(image_.width);
-        const Vec2d place((static_cast<double>(i % width) + u1) / image_.width,
-                          (static_cast<double>(i / width) + u2) / image_.height);
+        const Vec2d place = image_.place_in(pixels_.sample(u0), u1, u2);
         const Vec3 w = Vec3(Imath::V3d(view_.direction(place)) * to_world_).normalized();
         return {point, w, ray_pdf(point, w)};
     }
@@ -102,22 +100,16 @@ template <class View> class PictureEmitter final : public EmitterAtAPoint {
 
     std::optional<std::size_t> pixel_at(const Vec3& local) const {
         const std::optional<Vec2d> place = view_.place(local);
-        if (!place) return std::nullopt;
-        const auto cell = [](double x, int n) {
-            return static_cast<std::size_t>(std::clamp(static_cast<int>(x * n), 0, n - 1));
-        };
-        return cell(place->y, image_.height) * static_cast<std::size_t>(image_.width) + cell(place->x, image_.width);
+        return place ? std::optional(image_.pixel_at(*place)) : std::nullopt;
     }
 
     /// [sr], by the midpoints of a grid, which is finer in small pictures.
     double pixel_solid_angle(std::size_t i) const {
         const int steps = image_.radiance.size() < 65536 ? 8 : 1;
-        const std::size_t width = static_cast<std::size_t>(image_.width);
         double sum = 0;
         for (int k = 0; k < steps * steps; ++k) {
             const double x = (k % steps + 0.5) / steps, y = (k / steps + 0.5) / steps; // NOLINT: rows of the grid
-            sum += view_.solid_angle(view_.direction({(static_cast<double>(i % width) + x) / image_.width,
-                                                      (static_cast<double>(i / width) + y) / image_.height}));
+            sum += view_.solid_angle(view_.direction(image_.place_in(i, x, y)));
         }
         return sum / (steps * steps) / static_cast<double>(image_.radiance.size());
     }

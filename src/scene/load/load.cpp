@@ -1,8 +1,5 @@
 #include "scene/load/load.h"
 
-#include "scene/load/load_gltf.h"
-#include "scene/load/load_pbrt.h"
-
 namespace keyhole {
 
 LoadedScene load(const std::string& path, const std::vector<std::string>& overrides,

@@ -1,28 +1,7 @@
-// The kinds of materials that scene files know. A new file of this folder gets a line here.
+// The kinds of materials that scene files know. A new file of this folder gets its function here.
 #include "scene/load/properties.h"
 
-#define KEYHOLE_MATERIAL_FILES(FILE)                                                                                   \
-    FILE(coated)                                                                                                       \
-    FILE(conductor)                                                                                                    \
-    FILE(dielectric)                                                                                                   \
-    FILE(diffuse)                                                                                                      \
-    FILE(hair)                                                                                                         \
-    FILE(measured)                                                                                                     \
-    FILE(mix)                                                                                                          \
-    FILE(principled)                                                                                                   \
-    FILE(subsurface)
-
 namespace keyhole {
-
-#define KEYHOLE_DECLARE(FILE) MaterialKinds FILE##_kinds();
-KEYHOLE_MATERIAL_FILES(KEYHOLE_DECLARE)
-
-const MaterialKinds& material_kinds() {
-#define KEYHOLE_LIST(FILE) FILE##_kinds(),
-    static const MaterialKinds kinds = joined<MaterialPtr>({KEYHOLE_MATERIAL_FILES(KEYHOLE_LIST)});
-    return kinds;
-}
-
 namespace {
 
 /// pbrt's is a file. Null where there are none.
@@ -34,6 +13,16 @@ ColorTexture read_normals(Properties& p) {
 }
 
 } // namespace
+
+MaterialKinds coated_kinds(), conductor_kinds(), dielectric_kinds(), diffuse_kinds(), mix_kinds(), principled_kinds(),
+    substitute_kinds(), subsurface_kinds();
+
+const MaterialKinds& material_kinds() {
+    static const MaterialKinds kinds =
+        joined<MaterialPtr>({coated_kinds(), conductor_kinds(), dielectric_kinds(), diffuse_kinds(), substitute_kinds(),
+                             mix_kinds(), principled_kinds(), subsurface_kinds()});
+    return kinds;
+}
 
 MaterialPtr read_material(const Kind<MaterialPtr>& kind, Properties& p) {
     MaterialPtr material = kind.read(p);

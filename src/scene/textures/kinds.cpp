@@ -1,20 +1,15 @@
-// The kinds of textures that scene files know. A new file of this folder gets a line here.
+// The kinds of textures that scene files know. A new file of this folder gets its function here.
 #include "scene/load/properties.h"
-
-#define KEYHOLE_TEXTURE_FILES(FILE)                                                                                    \
-    FILE(image)                                                                                                        \
-    FILE(noise)                                                                                                        \
-    FILE(simple)
 
 namespace keyhole {
 
-#define KEYHOLE_DECLARE(FILE) template <class T> TextureKinds<T> FILE##_kinds();
-KEYHOLE_TEXTURE_FILES(KEYHOLE_DECLARE)
+template <class T> TextureKinds<T> image_kinds();
+template <class T> TextureKinds<T> noise_kinds();
+template <class T> TextureKinds<T> simple_kinds();
 
 template <class T> const TextureKinds<T>& texture_kinds() {
-#define KEYHOLE_LIST(FILE) FILE##_kinds<T>(),
     static const TextureKinds<T> kinds =
-        joined<std::shared_ptr<const Texture<T>>>({KEYHOLE_TEXTURE_FILES(KEYHOLE_LIST)});
+        joined<std::shared_ptr<const Texture<T>>>({image_kinds<T>(), noise_kinds<T>(), simple_kinds<T>()});
     return kinds;
 }
 

@@ -1,4 +1,4 @@
-#include "methods/photons/trials/combination_trial.h"
+#include "methods/photons/trials/trials.h"
 
 #include "core/parallel.h"
 #include "methods/method.h"
@@ -6,7 +6,7 @@
 #include "methods/photons/learn_light_paths.h"
 #include "methods/photons/radii.h"
 #include "photonmap/importance/importance_tracing.h"
-#include "photonmap/power/technique_weights.h"
+#include "photonmap/photon_weighing.h"
 #include "sampling/guidance/guided_light.h"
 #include "sampling/markov/chain.h"
 #include "sampling/proposals/registry.h"
@@ -15,7 +15,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <optional>
 #include <ranges>

@@ -1,4 +1,4 @@
-#include "methods/photons/trials/emission_trial.h"
+#include "methods/photons/trials/trials.h"
 
 #include "core/shared_work.h"
 

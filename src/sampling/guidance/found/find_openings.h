@@ -1,7 +1,7 @@
 // User paths that the renderer finds itself: through the openings that light has to pass.
 #pragma once
 
-#include "sampling/guidance/found/transport_ends.h"
+#include "sampling/guidance/found/passages.h"
 #include "sampling/guidance/learned/learned_emission.h"
 #include "scene/load/yaml/user_path_file.h"
 #include "scene/scene.h"

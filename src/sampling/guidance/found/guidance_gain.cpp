@@ -26,9 +26,8 @@ class Cells {
 
     Cell operator()(const Vec3& p, const Vec3& n) const {
         const Vec3 at = (p - lower_) / size_;
-        const std::array<float, 3> size{std::abs(n.x), std::abs(n.y), std::abs(n.z)};
-        const int axis = size[0] >= size[1] && size[0] >= size[2] ? 0 : size[1] >= size[2] ? 1 : 2;
-        return {static_cast<int>(at.x), static_cast<int>(at.y), static_cast<int>(at.z), 2 * axis + (n[axis] < 0)};
+        const auto facet = static_cast<int>(facet_of(n));
+        return {static_cast<int>(at.x), static_cast<int>(at.y), static_cast<int>(at.z), 2 * (facet % 3) + facet / 3};
     }
 
   private:

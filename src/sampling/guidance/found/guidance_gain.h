@@ -1,7 +1,7 @@
 // What it would bring light paths to be led.
 #pragma once
 
-#include "sampling/guidance/found/transport_ends.h"
+#include "sampling/guidance/found/passages.h"
 #include "sampling/guidance/guided_subpath.h"
 #include "sampling/guidance/learned/learned_emission.h"
 

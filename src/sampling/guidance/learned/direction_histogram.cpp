@@ -2,14 +2,33 @@
 
 #include "scene/emitters/sphere_map.h"
 
+#include <Imath/ImathBoxAlgo.h>
 #include <Imath/ImathMatrix.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 namespace keyhole {
 namespace {
+
+constexpr std::size_t kPointsOfLeaf = 8;
+constexpr int kMostDepth = 12;
+/// Of a node's share, what is divided by area.
+constexpr double kEven = 0.1;
+/// Of all samples, those that are spread evenly over the bounding box and so much of its width on each side of it.
+constexpr double kEvenly = 0.15, kAround = 0.2;
+
+double area(const Imath::Box2d& box) {
+    const Imath::V2d size = box.size();
+    return size.x * size.y;
+}
+
+double weight_of(std::span<const PlaneHistogram::Point> points) {
+    return std::accumulate(points.begin(), points.end(), 0.0,
+                           [](double sum, const PlaneHistogram::Point& p) { return sum + p.weight; });
+}
 
 /// Fewer rays than this on either half tell nothing of where they meet.
 constexpr std::size_t kLeastRays = 16;
@@ -75,12 +94,81 @@ std::vector<Vec3> likely_normals(std::span<const DirectionHistogram::Ray> rays) 
 
 } // namespace
 
+PlaneHistogram::PlaneHistogram(std::span<Point> points, const Imath::Box2d& limits) {
+    for (const Point& p : points) box_.extendBy(p.x);
+    if (points.size() < 2 || !(area(box_) > 0) || !(weight_of(points) > 0)) return;
+    for (int k = 0; k < 2; ++k) {
+        const double more = kAround * box_.size()[k];
+        around_.min[k] = std::max(box_.min[k] - more, limits.min[k]);
+        around_.max[k] = std::min(box_.max[k] + more, limits.max[k]);
+    }
+    build(points, box_, 0);
+}
+
+void PlaneHistogram::build(std::span<Point> points, const Imath::Box2d& box, int depth) {
+    const std::size_t self = nodes_.size();
+    nodes_.emplace_back();
+    if (points.size() < 2 * kPointsOfLeaf || depth == kMostDepth) return;
+    const int axis = box.size().y > box.size().x ? 1 : 0;
+    const auto middle = points.begin() + static_cast<std::ptrdiff_t>(points.size() / 2);
+    std::ranges::nth_element(points, middle, {}, [&](const Point& p) { return p.x[axis]; });
+    const double split = middle->x[axis];
+    if (!(split > box.min[axis] && split < box.max[axis])) return;
+    Imath::Box2d left = box, right = box;
+    left.max[axis] = right.min[axis] = split;
+    const auto lower = points.first(points.size() / 2), upper = points.subspan(points.size() / 2);
+    const double below = weight_of(lower), all = below + weight_of(upper), by_area = area(left) / area(box);
+    nodes_[self].left_share = (1 - kEven) * (all > 0 ? below / all : by_area) + kEven * by_area;
+    nodes_[self].split = split;
+    nodes_[self].axis = static_cast<std::uint8_t>(axis);
+    build(lower, left, depth + 1);
+    nodes_[self].right = static_cast<std::uint32_t>(nodes_.size());
+    build(upper, right, depth + 1);
+}
+
+PlaneHistogram::Place PlaneHistogram::sample(double u0, double u1) const {
+    if (u0 >= kEvenly) return sample_tree((u0 - kEvenly) / (1 - kEvenly), u1);
+    return around_.min + Place(u0 / kEvenly, u1) * around_.size();
+}
+
+double PlaneHistogram::pdf(const Place& place) const {
+    if (Imath::clip(place, around_) != place) return 0; // also where it is no number
+    return kEvenly / area(around_) + (1 - kEvenly) * tree_pdf(place);
+}
+
+PlaneHistogram::Place PlaneHistogram::sample_tree(double u0, double u1) const {
+    Imath::Box2d box = box_;
+    std::uint32_t i = 0;
+    while (nodes_[i].right != 0) {
+        const Node& n = nodes_[i];
+        const bool left = u0 < n.left_share;
+        u0 = left ? u0 / n.left_share : (u0 - n.left_share) / (1 - n.left_share);
+        (left ? box.max : box.min)[n.axis] = n.split;
+        i = left ? i + 1 : n.right;
+    }
+    return box.min + Place(u0, u1) * box.size();
+}
+
+double PlaneHistogram::tree_pdf(const Place& place) const {
+    if (!box_.intersects(place)) return 0;
+    Imath::Box2d box = box_;
+    double share = 1;
+    std::uint32_t i = 0;
+    while (nodes_[i].right != 0) {
+        const Node& n = nodes_[i];
+        const bool left = place[n.axis] < n.split;
+        share *= left ? n.left_share : 1 - n.left_share;
+        (left ? box.max : box.min)[n.axis] = n.split;
+        i = left ? i + 1 : n.right;
+    }
+    return share / area(box);
+}
+
 DirectionHistogram::DirectionHistogram(std::span<const Ray> rays, const std::optional<Plane>& plane) : plane_(plane) {
     if (plane_) frame_ = Frame(plane_->n);
     std::vector<PlaneHistogram::Point> on_map, points;
     for (const Ray& ray : rays) {
-        const Vec2d place = sphere_place(SphereLayout::octahedral, ray.w);
-        on_map.push_back({{place.x, place.y}, ray.weight});
+        on_map.push_back({place_on_map(ray.w), ray.weight});
         if (!plane_) continue;
         if (!(std::abs(ray.w.dot(frame_.n)) > kFlattest)) continue;
         if (const auto at = crossing(plane_->center, frame_, ray.p, ray.w); at && at->along > 0)
@@ -127,23 +215,21 @@ double DirectionHistogram::share_of_octahedron(const Vec3& p) const {
 
 Vec3 DirectionHistogram::sample_on_plane(double u0, double u1) const {
     const PlaneHistogram::Place place = histogram_.sample(u0, u1);
-    return plane_->center + frame_.to_world(Vec3(static_cast<float>(place.x[0]), static_cast<float>(place.x[1]), 0));
+    return plane_->center + frame_.to_world(Vec3(static_cast<float>(place.x), static_cast<float>(place.y), 0));
 }
 
 std::optional<DirectionHistogram::OnPlane> DirectionHistogram::on_plane(const Vec3& p, const Vec3& w) const {
     const auto at = crossing(plane_->center, frame_, p, w);
     if (!at) return std::nullopt;
-    return OnPlane{at->q, histogram_.pdf({{at->local.x, at->local.y}}) / std::abs(w.dot(frame_.n))};
+    return OnPlane{at->q, histogram_.pdf({at->local.x, at->local.y}) / std::abs(w.dot(frame_.n))};
 }
 
 Vec3 DirectionHistogram::sample_on_map(double u0, double u1) const {
-    const PlaneHistogram::Place place = octahedral_.sample(u0, u1);
-    return sphere_direction(SphereLayout::octahedral, {place.x[0], place.x[1]});
+    return sphere_direction(SphereLayout::octahedral, octahedral_.sample(u0, u1));
 }
 
 DirectionHistogram::Place DirectionHistogram::place_on_map(const Vec3& w) {
-    const Vec2d place = sphere_place(SphereLayout::octahedral, w);
-    return {{place.x, place.y}};
+    return sphere_place(SphereLayout::octahedral, w);
 }
 
 double DirectionHistogram::pdf_on_map(const Place& place) const {

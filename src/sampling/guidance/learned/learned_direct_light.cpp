@@ -1,7 +1,6 @@
 #include "sampling/guidance/learned/learned_direct_light.h"
 
 #include "core/kronecker.h"
-#include "core/parallel.h"
 #include "sampling/paths/direct_light.h"
 
 #include <algorithm>
@@ -146,10 +145,7 @@ LearnedDirectLight::LearnedDirectLight(const Scene& scene, std::span<const Found
     tree_ = std::move(by_cell.tree);
     const WiderCells wider(found, kTimesWider * kLeastFound);
     bytes_of_wider_ = wider.bytes();
-    cells_.resize(tree_.size());
-    parallel_for(static_cast<std::int64_t>(cells_.size()), [&](std::int64_t i) {
-        cells_[static_cast<std::size_t>(i)] = make_cell(by_cell.cells[static_cast<std::size_t>(i)], wider);
-    });
+    cells_ = by_cell.made([&](std::span<const FoundLight* const> here) { return make_cell(here, wider); });
     double sum = 0;
     for (const Cell& cell : cells_) sum += cell.ratio * static_cast<double>(cell.count);
     if (!found.empty()) ratio_ = sum / static_cast<double>(found.size());

@@ -2,8 +2,6 @@
 // the sky.
 #pragma once
 
-#include "sampling/guidance/learned/found_light.h"
-#include "sampling/guidance/learned/nested_histogram.h"
 #include "sampling/guidance/learned/wider_cells.h"
 #include "scene/scene.h"
 

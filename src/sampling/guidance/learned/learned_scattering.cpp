@@ -1,6 +1,5 @@
 #include "sampling/guidance/learned/learned_scattering.h"
 
-#include "core/parallel.h"
 #include "sampling/paths/measure.h"
 
 #include <algorithm>
@@ -30,10 +29,7 @@ std::vector<DirectionHistogram::Ray> rays_of(std::span<const SeenScattering* con
 LearnedScattering::LearnedScattering(std::span<const SeenScattering> seen) {
     SeenInCells by_cell(seen, kLeastSeen);
     tree_ = std::move(by_cell.tree);
-    cells_.resize(tree_.size());
-    parallel_for(static_cast<std::int64_t>(cells_.size()), [&](std::int64_t i) {
-        cells_[static_cast<std::size_t>(i)] = make_cell(by_cell.cells[static_cast<std::size_t>(i)]);
-    });
+    cells_ = by_cell.made(make_cell);
     double all = 0;
     for (std::size_t i = 0; i < cells_.size(); ++i)
         for (const SeenScattering* s : by_cell.cells[i]) {

@@ -1,6 +1,7 @@
 // Parts of a scene's surfaces that lie and look alike.
 #pragma once
 
+#include "core/parallel.h"
 #include "core/vec.h"
 
 #include <cstddef>
@@ -60,6 +61,15 @@ template <class Seen> struct SeenInCells {
         tree = SurfaceCells(std::move(places), least);
         cells.resize(tree.size());
         for (const Seen& s : seen) cells[tree.cell_of(s.at)].push_back(&s);
+    }
+
+    /// make(what stands in it) of each cell.
+    template <class Make> auto made(const Make& make) const {
+        std::vector<decltype(make(cells[0]))> all(cells.size());
+        parallel_for(static_cast<std::int64_t>(all.size()), [&](std::int64_t i) {
+            all[static_cast<std::size_t>(i)] = make(cells[static_cast<std::size_t>(i)]);
+        });
+        return all;
     }
 };
 

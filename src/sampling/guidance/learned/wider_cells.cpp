@@ -1,7 +1,5 @@
 #include "sampling/guidance/learned/wider_cells.h"
 
-#include "core/parallel.h"
-
 #include <algorithm>
 #include <iterator>
 
@@ -26,6 +24,9 @@ WiderCells::Directions histograms(std::span<const FoundLight* const> found) {
     return all;
 }
 
+/// Of all directions, those of the wider cell.
+constexpr double kWiderShare = 0.25;
+
 } // namespace
 
 WiderCells::WiderCells(std::span<const FoundLight> found, std::size_t least) {
@@ -33,10 +34,7 @@ WiderCells::WiderCells(std::span<const FoundLight> found, std::size_t least) {
     std::ranges::copy_if(found, std::back_inserter(sky), &FoundLight::infinite);
     SeenInCells by_cell(std::span<const FoundLight>(sky), least);
     tree_ = std::move(by_cell.tree);
-    cells_.resize(tree_.size());
-    parallel_for(static_cast<std::int64_t>(cells_.size()), [&](std::int64_t i) {
-        cells_[static_cast<std::size_t>(i)] = histograms(by_cell.cells[static_cast<std::size_t>(i)]);
-    });
+    cells_ = by_cell.made(histograms);
 }
 
 std::size_t WiderCells::bytes() const {
@@ -44,6 +42,18 @@ std::size_t WiderCells::bytes() const {
     for (const Directions& cell : cells_)
         for (const auto& [emitter, histogram] : cell) sum += sizeof(DirectionHistogram) + histogram->bytes();
     return sum;
+}
+
+Vec3 NestedHistogram::sample(const Vec3& p, double u0, double u1) const {
+    if (!wider_) return own_.sample(p, u0, u1);
+    if (u0 < kWiderShare) return wider_->sample(p, u0 / kWiderShare, u1);
+    return own_.sample(p, (u0 - kWiderShare) / (1 - kWiderShare), u1);
+}
+
+double NestedHistogram::pdf(const Vec3& p, const Vec3& w) const {
+    const DirectionHistogram::Place on_map = DirectionHistogram::place_on_map(w);
+    const double own = own_.pdf(p, w, on_map);
+    return wider_ ? (1 - kWiderShare) * own + kWiderShare * wider_->pdf(p, w, on_map) : own;
 }
 
 } // namespace keyhole

@@ -1,4 +1,4 @@
-#include "scene/load/load_gltf.h"
+#include "scene/load/load.h"
 
 #include "scene/emitters/emitters.h"
 #include "scene/load/gltf/importable.h"

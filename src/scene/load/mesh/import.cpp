@@ -1,7 +1,7 @@
 #include "scene/load/load_mesh.h"
 
 #include "core/error.h"
-#include "scene/load/load_gltf.h"
+#include "scene/load/load.h"
 
 #include <assimp/BaseImporter.h>
 #include <assimp/DefaultIOSystem.h>

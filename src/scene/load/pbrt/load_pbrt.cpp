@@ -1,4 +1,4 @@
-#include "scene/load/load_pbrt.h"
+#include "scene/load/load.h"
 
 #include "scene/load/pbrt/importer.h"
 

@@ -1,7 +1,6 @@
-#include "scene/load/load_yaml.h"
+#include "scene/load/load.h"
 
 #include "scene/load/input.h"
-#include "scene/load/load_pbrt.h"
 #include "scene/load/yaml/camera.h"
 #include "scene/load/yaml/shapes.h"
 

@@ -5,9 +5,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <concepts>
 
 namespace keyhole {
 namespace {
@@ -62,12 +62,13 @@ struct Setter {
         error = fmt::format("found '{}' for '{}', {}", value.substr(0, 40), key, expected);
     }
 
-    void operator()(const char* name, std::int64_t& member, std::int64_t minimum, std::int64_t maximum, const char*) {
+    template <std::integral T>
+    void operator()(const char* name, T& member, std::int64_t minimum, std::int64_t maximum, const char*) {
         if (!matches(name)) return;
         const auto x = parse_whole(value);
         if (!x || *x < minimum || *x > maximum)
             return refuse(fmt::format("expected a whole number from {} to {}", minimum, maximum));
-        member = *x;
+        member = static_cast<T>(*x);
     }
     void operator()(const char* name, double& member, double minimum, double maximum, const char*) {
         if (!matches(name)) return;

@@ -19,12 +19,6 @@ using MediumTable = NamedTable<std::shared_ptr<const Medium>>;
 /// Meshes already imported, by path.
 using MeshCache = std::map<std::string, TriangleMesh>;
 
-/// The values of `type` that read_geometry() knows.
-const std::vector<std::string_view>& geometry_types();
-
-/// The geometry of a shape of a known type, in its own space. @throws InputError for mistakes and bad mesh files.
-Geometry read_geometry(const std::string& type, const YamlNode& node, MeshCache& meshes);
-
 /// Reads lists of shapes and puts them into world space. Holds the named groups and the meshes already imported.
 class ShapeReader {
   public:

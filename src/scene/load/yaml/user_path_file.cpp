@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <span>
 #include <string_view>
 
 namespace keyhole {
@@ -110,7 +109,7 @@ UserPathSpec with_bounces(UserPathSpec path, std::int64_t count) {
 }
 
 /// What tells the paths of one entry apart.
-std::string bounces_text(std::int64_t count) { return fmt::format(", {} bounces", count); }
+std::string bounces_text(auto count) { return fmt::format(", {} bounces", count); }
 
 /// One path, or one for each number of bounces.
 std::vector<UserPathSpec> read_paths(const YamlNode& node, std::size_t number, const Defaults& defaults) {
@@ -141,8 +140,9 @@ std::vector<UserPathSpec> read_paths(const YamlNode& node, std::size_t number, c
     return paths;
 }
 
-std::int64_t bounces_of(const UserPathSpec& path) {
-    return std::ranges::count_if(path.points, [](const UserPathPoint& p) { return p.bounce; });
+std::size_t bounces_of(const UserPathSpec& path) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(path.points, [](const UserPathPoint& p) { return p.bounce; }));
 }
 
 /// The name without its number of bounces.
@@ -174,16 +174,12 @@ std::string quoted(const std::string& word) {
     return s + "\"";
 }
 
-/// Paths of one entry.
-std::string entry_text(std::span<const UserPathSpec> paths) {
-    const UserPathSpec& path = paths.front();
-    const std::int64_t bounces = bounces_of(path);
-    double weight = 0;
-    for (const UserPathSpec& p : paths) weight += p.weight;
-    std::string text = fmt::format("  - name: {}\n    weight: {:.4g}\n    beta: [",
-                                   quoted(paths.size() > 1 ? std::string(entry_name(path)) : path.name), weight);
-    for (auto i = static_cast<std::size_t>(bounces); i < path.beta.size(); ++i)
-        text += fmt::format("{}{:.3g}", i > static_cast<std::size_t>(bounces) ? ", " : "", path.beta[i] * 180 / kPi);
+std::string entry_text(const UserPathEntry& entry) {
+    const UserPathSpec& path = entry.paths.front();
+    const std::size_t bounces = entry.least_bounces;
+    std::string text = fmt::format("  - name: {}\n    weight: {:.4g}\n    beta: [", quoted(entry.name), entry.weight);
+    for (std::size_t i = bounces; i < path.beta.size(); ++i)
+        text += fmt::format("{}{:.3g}", i > bounces ? ", " : "", path.beta[i] * 180 / kPi);
     text += "]\n";
     if (path.patch) text += fmt::format("    patch: {:.4g}\n", *path.patch);
     if (path.tolerance) text += fmt::format("    tolerance: {:.4g}\n", *path.tolerance);
@@ -197,8 +193,8 @@ std::string entry_text(std::span<const UserPathSpec> paths) {
                                 o->u.x, o->u.y, o->u.z, o->v.x, o->v.y, o->v.z);
         text += fmt::format("      - {}\n", list(p.p));
         if (&p != path.points.data() || bounces == 0) continue;
-        text += paths.size() > 1 ? fmt::format("      - bounces: [{}, {}]\n", bounces, bounces_of(paths.back()))
-                                 : fmt::format("      - bounces: {}\n", bounces);
+        text += entry.paths.size() > 1 ? fmt::format("      - bounces: [{}, {}]\n", bounces, entry.most_bounces)
+                                       : fmt::format("      - bounces: {}\n", bounces);
     }
     return text;
 }
@@ -226,6 +222,20 @@ UserPathFile load_user_paths(const std::string& path) {
     return file;
 }
 
+std::vector<UserPathEntry> entries_of(const UserPathFile& file) {
+    std::vector<UserPathEntry> entries;
+    for (const UserPathSpec& path : file.paths) {
+        if (entries.empty() || !follows(entries.back().paths.back(), path))
+            entries.push_back({.name = path.name, .paths = {&path, 0}, .least_bounces = bounces_of(path)});
+        UserPathEntry& entry = entries.back();
+        entry.paths = {entry.paths.data(), entry.paths.size() + 1};
+        if (entry.paths.size() == 2) entry.name = entry_name(path);
+        entry.weight += path.weight;
+        entry.most_bounces = bounces_of(path);
+    }
+    return entries;
+}
+
 std::string user_paths_text(const UserPathFile& file, const std::string& comment) {
     std::string text;
     for (std::size_t at = 0; at < comment.size();) {
@@ -234,12 +244,7 @@ std::string user_paths_text(const UserPathFile& file, const std::string& comment
         at = end + 1;
     }
     text += "paths:\n";
-    for (auto path = file.paths.begin(); path != file.paths.end();) {
-        auto end = path + 1;
-        while (end != file.paths.end() && follows(*(end - 1), *end)) ++end;
-        text += entry_text({path, end});
-        path = end;
-    }
+    for (const UserPathEntry& entry : entries_of(file)) text += entry_text(entry);
     return text;
 }
 

@@ -5,6 +5,7 @@
 #include "core/vec.h"
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,17 @@ struct UserPathSpec {
 struct UserPathFile {
     std::vector<UserPathSpec> paths;
 };
+
+/// An entry of a file: a path, or one for each of several numbers of bounces.
+struct UserPathEntry {
+    std::string name;
+    double weight = 0;                               ///< of all its paths
+    std::span<const UserPathSpec> paths;             ///< at least one, each with one bounce more than the one before
+    std::size_t least_bounces = 0, most_bounces = 0; ///< of the first and the last
+};
+
+/// The entries that the paths of a file come from, in their order; they refer to it.
+std::vector<UserPathEntry> entries_of(const UserPathFile& file);
 
 /// Half-angle where a file gives none [rad].
 constexpr double kDefaultBeta = 5 * kPi / 180;
