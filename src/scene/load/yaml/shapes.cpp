@@ -34,10 +34,14 @@ void ShapeReader::read_shapes(const YamlNode& section) {
 }
 
 void ShapeReader::append(std::vector<Shape> shapes) {
-    for (Shape& shape : shapes) {
-        triangles_ += triangle_count(shape.geometry);
-        shapes_.push_back(std::move(shape));
-    }
+    for (const TriangleMesh* mesh : held_meshes(shapes)) triangles_ += mesh->triangles.size();
+    for (Shape& shape : shapes) shapes_.push_back(std::move(shape));
+}
+
+std::vector<Shape> ShapeReader::take_shapes() {
+    group_meshes_.clear();
+    flatten_few_copies(shapes_);
+    return std::move(shapes_);
 }
 
 void ShapeReader::check_unused_groups() {
@@ -65,13 +69,14 @@ void ShapeReader::read_shape(const YamlNode& node, const Placement& placement) {
     ++leaves_;
     check_limits(node);
     Shape shape;
-    shape.geometry = read_geometry(type, node, meshes_);
+    std::optional<Geometry> geometry;
+    if (!group_meshes_.contains(&node)) geometry = read_geometry(type, node, meshes_);
     const MapReader map(node, "a shape");
     Placement own = inherit(map, placement);
-    transform_geometry(shape.geometry, own.to_world);
-    if (map.boolean("flip", false)) flip(shape.geometry);
-    const double area = surface_area(shape);
-    if (!has_bounded_positions(shape.geometry))
+    shape.geometry = place(std::move(geometry), type, node, own);
+    const bool is_copy = std::holds_alternative<MeshInstance>(shape.geometry); // which has an area, and emits nothing
+    const double area = is_copy ? 1 : surface_area(shape);
+    if (!is_copy && !has_bounded_positions(shape.geometry))
         fail(node, "found a shape too large or too far, expected it within 1e13");
     if (type == "mesh" && !has_area(shape.geometry))
         return warnings_.add_flat_mesh(node.position(), fmt::format("mesh '{}'", map.at("file").text));
@@ -93,9 +98,39 @@ void ShapeReader::read_shape(const YamlNode& node, const Placement& placement) {
     shape.alpha = alpha != nullptr ? read_float_texture(*alpha, kOpacity) : surface.alpha;
     if (const YamlNode* inside = map.find("inside")) shape.inside = media_.resolve(*inside);
     if (const YamlNode* outside = map.find("outside")) shape.outside = media_.resolve(*outside);
-    triangles_ += triangle_count(shape.geometry);
+    if (!is_copy) triangles_ += triangle_count(shape);
     shapes_.push_back(std::move(shape));
     check_limits(node);
+}
+
+/// @param geometry in its own space; none where it was read before.
+Geometry ShapeReader::place(std::optional<Geometry> geometry, const std::string& type, const YamlNode& node,
+                            const Placement& own) {
+    const MapReader map(node, "a shape");
+    const bool emits = map.find("emission") != nullptr || (own.material && !is_black(own.material->surface().emission));
+    if (type == "mesh" && own.copy != nullptr && !emits)
+        if (GroupMesh* shared = shared_mesh(geometry, node, own)) {
+            const std::size_t triangles = shared->mesh.mesh().triangles.size();
+            if (!is_worth_sharing(triangles, ++shared->copies)) triangles_ += triangles; // they may be few
+            return shared->mesh.placed(own.copy);
+        }
+    if (!geometry) geometry = read_geometry(type, node, meshes_);
+    transform_geometry(*geometry, own.to_world);
+    if (map.boolean("flip", false)) flip(*geometry);
+    return std::move(*geometry);
+}
+
+/// Takes `geometry` if it is the first copy. Null: there is another mesh under the same name, or one without an area.
+ShapeReader::GroupMesh* ShapeReader::shared_mesh(std::optional<Geometry>& geometry, const YamlNode& node,
+                                                 const Placement& own) {
+    if (const auto known = group_meshes_.find(&node); known != group_meshes_.end())
+        return known->second.to_object == own.to_object ? &known->second : nullptr;
+    if (!has_area(*geometry)) return nullptr;
+    transform_geometry(*geometry, own.to_object);
+    if (MapReader(node, "a shape").boolean("flip", false)) flip(*geometry);
+    SharedMesh mesh(std::move(std::get<TriangleMesh>(*geometry)));
+    geometry.reset();
+    return &group_meshes_.emplace(&node, GroupMesh{std::move(mesh), own.to_object}).first->second;
 }
 
 void ShapeReader::read_group(const YamlNode& node, const Placement& placement) {
@@ -111,7 +146,10 @@ void ShapeReader::read_instance(const YamlNode& node, const Placement& placement
     if (found == groups_.end())
         throw UnknownName(reference.position(), fmt::format("group '{}'", name), unknown_name("group", name, groups_));
     ++instances_;
-    read_named_group(found->second, reference, inherit(map, placement));
+    Placement own = inherit(map, placement);
+    own.copy = std::make_shared<const ObjectToWorld>(own.to_world);
+    own.to_object = Transform();
+    read_named_group(found->second, reference, own);
 }
 
 void ShapeReader::read_named_group(Group& group, const YamlNode& user, const Placement& placement) {
@@ -132,7 +170,9 @@ ShapeReader::Placement ShapeReader::inherit(const MapReader& map, const Placemen
     Placement own = placement;
     ++own.depth;
     if (const YamlNode* transform = map.find("transform")) {
-        own.to_world = read_transform(*transform) * placement.to_world;
+        const Transform t = read_transform(*transform);
+        own.to_world = t * placement.to_world;
+        own.to_object = t * placement.to_object;
         if (!(regularity(own.to_world) > 1e-12))
             fail(*transform,
                  "found a transform that is singular with those around it, expected one that can be inverted");

@@ -8,6 +8,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,7 +47,7 @@ class ShapeReader {
     /// Appends shapes that stand ready.
     void append(std::vector<Shape> shapes);
 
-    std::vector<Shape> take_shapes() { return std::move(shapes_); }
+    std::vector<Shape> take_shapes();
     bool empty() const { return shapes_.empty(); }
     /// Groups placed by name, as often as they are.
     std::size_t instances() const { return instances_; }
@@ -55,15 +56,23 @@ class ShapeReader {
     /// What the shapes in a group inherit.
     struct Placement {
         Transform to_world;
-        std::shared_ptr<const Material> material; ///< for those without one; may be null
-        std::string name, material_name;          ///< of those without one; may be empty
-        int depth = 0;                            ///< groups around
+        Transform to_object;                       ///< from there: the space of the innermost instance
+        std::shared_ptr<const ObjectToWorld> copy; ///< from that to the world; null: not in an instance
+        std::shared_ptr<const Material> material;  ///< for those without one; may be null
+        std::string name, material_name;           ///< of those without one; may be empty
+        int depth = 0;                             ///< groups around
     };
     struct Group {
         YamlPtr key, shapes;
         bool used = false;
         bool open = false;  ///< being read, so that an instance of it would be within itself
         bool empty = false; ///< holds no shape
+    };
+    /// A mesh of a group, in the space of its instances.
+    struct GroupMesh {
+        SharedMesh mesh;
+        Transform to_object; ///< that it had before; an alias of the same map may have another one
+        std::size_t copies = 0;
     };
 
     void add_group(const YamlNode::Entry& entry);
@@ -73,6 +82,9 @@ class ShapeReader {
     void read_group(const YamlNode& node, const Placement& placement);
     Placement inherit(const MapReader& map, const Placement& placement) const;
     void read_named_group(Group& group, const YamlNode& user, const Placement& placement);
+    Geometry place(std::optional<Geometry> geometry, const std::string& type, const YamlNode& node,
+                   const Placement& own);
+    GroupMesh* shared_mesh(std::optional<Geometry>& geometry, const YamlNode& node, const Placement& own);
     void check_limits(const YamlNode& node) const;
 
     const MaterialTable& materials_;
@@ -81,6 +93,7 @@ class ShapeReader {
     Mistakes& mistakes_;
     std::map<std::string, Group> groups_;
     MeshCache meshes_;
+    std::map<const YamlNode*, GroupMesh> group_meshes_;
     std::vector<Shape> shapes_;
     std::size_t triangles_ = 0, instances_ = 0;
     std::size_t leaves_ = 0; ///< shapes that were read, those without an area and parts of one file as one
