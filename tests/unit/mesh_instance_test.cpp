@@ -49,15 +49,21 @@ std::vector<Shape> some_copies() {
                                    transform_mesh(mesh, moved({}, 0.6, {0.2, 0.3, 0}));
                                    return mesh;
                                }());
-    const auto holes = function_texture<double>([](const SurfacePoint& p) {
-        return std::fmod(7 * p.uv.x, 1.0f) < 0.5f || std::fmod(5 * p.uv.y, 1.0f) < 0.6f ? 1.0 : 0.0;
-    });
+    // Each copy has others.
+    const auto holes = [](std::uint64_t copy) {
+        return function_texture<double>([copy](const SurfacePoint& p) {
+            return std::fmod(7 * p.uv.x + 0.3f * float(copy), 1.0f) < 0.5f ||
+                           std::fmod(5 * std::abs(p.p.y), 1.0f) < 0.4f
+                       ? 1.0
+                       : 0.0;
+        });
+    };
     std::vector<Shape> shapes;
     for (std::uint64_t i = 0; i < 8; ++i) {
         const auto place = std::make_shared<const ObjectToWorld>(moved(
             random_transform(i, i % 2 == 1), 1, {1.3 * double(i % 2), 1.1 * double(i / 2 % 2), 1.2 * double(i / 4)}));
         shapes.push_back(instance_of(large, place, textured()));
-        if (i != 3) shapes.back().alpha = holes;
+        if (i > 0) shapes.back().alpha = holes(i);
         shapes.push_back(instance_of(small, place, textured()));
         if (i % 3 == 0)
             shapes.push_back(
@@ -101,6 +107,28 @@ TEST(MeshInstance, HasThePointsOfTheMeshThatWouldStandThere) {
             const auto corners = triangle_corners(copy, t);
             EXPECT_NEAR(a.ng.dot((corners[1] - corners[0]).normalized()), 0, 1e-4f);
             EXPECT_EQ(triangle_area(copy, t), triangle_area(there, t));
+        }
+    }
+}
+
+/// Normals that are those of the triangles stay that.
+TEST(MeshInstance, TakesNormalsWithIt) {
+    const auto mesh = ball();
+    TriangleMesh faceted;
+    for (std::uint32_t t = 0; t < mesh->triangles.size(); ++t) {
+        for (const std::uint32_t i : mesh->triangles[t]) {
+            faceted.positions.push_back(mesh->positions[i]);
+            faceted.normals.push_back(triangle_point(*mesh, t, 0.3f, 0.3f).ng);
+        }
+        faceted.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+    }
+    const auto shared = std::make_shared<const TriangleMesh>(std::move(faceted));
+    for (std::uint64_t seed = 0; seed < 10; ++seed) {
+        const auto place = std::make_shared<const ObjectToWorld>(random_transform(seed, seed % 2 == 1));
+        const Shape copy = instance_of(shared, place, textured());
+        for (std::uint32_t t = 0; t < shared->triangles.size(); ++t) {
+            const SurfacePoint p = triangle_point(copy, t, 0.2f, 0.5f);
+            EXPECT_LT((p.ns - p.ng).length(), 1e-5f);
         }
     }
 }

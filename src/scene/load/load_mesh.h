@@ -124,7 +124,4 @@ class SharedMesh {
     double reach_ = 0; // the largest coordinate
 };
 
-/// Moves the meshes of instances that aren't worth sharing to where they stand.
-void flatten_few_copies(std::vector<Shape>& shapes);
-
 } // namespace keyhole

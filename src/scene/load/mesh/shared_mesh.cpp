@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <utility>
 
 namespace keyhole {
@@ -41,17 +40,6 @@ Geometry SharedMesh::placed(const std::shared_ptr<const ObjectToWorld>& to_world
     }
     if (to_world->rounds_little() && farthest <= kMaxMeshCoordinate) return instance;
     return flattened(instance);
-}
-
-void flatten_few_copies(std::vector<Shape>& shapes) {
-    std::map<const TriangleMesh*, std::size_t> copies;
-    for (const Shape& shape : shapes)
-        if (const auto* instance = std::get_if<MeshInstance>(&shape.geometry)) ++copies[instance->mesh.get()];
-    for (Shape& shape : shapes) {
-        const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
-        if (instance == nullptr || is_worth_sharing(triangle_count(shape), copies[instance->mesh.get()])) continue;
-        shape.geometry = flattened(*instance);
-    }
 }
 
 } // namespace keyhole

@@ -38,12 +38,6 @@ void ShapeReader::append(std::vector<Shape> shapes) {
     for (Shape& shape : shapes) shapes_.push_back(std::move(shape));
 }
 
-std::vector<Shape> ShapeReader::take_shapes() {
-    group_meshes_.clear();
-    flatten_few_copies(shapes_);
-    return std::move(shapes_);
-}
-
 void ShapeReader::check_unused_groups() {
     const std::size_t shapes = shapes_.size(), instances = instances_, leaves = leaves_;
     for (auto& [name, group] : groups_)
@@ -69,11 +63,19 @@ void ShapeReader::read_shape(const YamlNode& node, const Placement& placement) {
     ++leaves_;
     check_limits(node);
     Shape shape;
-    std::optional<Geometry> geometry;
-    if (!group_meshes_.contains(&node)) geometry = read_geometry(type, node, meshes_);
+    const auto known = group_meshes_.find(&node);
+    const bool held = known != group_meshes_.end() && known->second.shared;
+    if (!held) shape.geometry = read_geometry(type, node, meshes_);
     const MapReader map(node, "a shape");
     Placement own = inherit(map, placement);
-    shape.geometry = place(std::move(geometry), type, node, own);
+    GroupMesh* group = type == "mesh" ? group_mesh(node, own) : nullptr;
+    if (group != nullptr && group->shared) {
+        shape.geometry = group->shared->placed(own.copy);
+    } else {
+        if (held) shape.geometry = read_geometry(type, node, meshes_);
+        transform_geometry(shape.geometry, own.to_world);
+        if (map.boolean("flip", false)) flip(shape.geometry);
+    }
     const bool is_copy = std::holds_alternative<MeshInstance>(shape.geometry); // which has an area, and emits nothing
     const double area = is_copy ? 1 : surface_area(shape);
     if (!is_copy && !has_bounded_positions(shape.geometry))
@@ -100,37 +102,32 @@ void ShapeReader::read_shape(const YamlNode& node, const Placement& placement) {
     if (const YamlNode* outside = map.find("outside")) shape.outside = media_.resolve(*outside);
     if (!is_copy) triangles_ += triangle_count(shape);
     shapes_.push_back(std::move(shape));
+    if (group != nullptr && !group->shared) add_copy(*group, node, own);
     check_limits(node);
 }
 
-/// @param geometry in its own space; none where it was read before.
-Geometry ShapeReader::place(std::optional<Geometry> geometry, const std::string& type, const YamlNode& node,
-                            const Placement& own) {
-    const MapReader map(node, "a shape");
-    const bool emits = map.find("emission") != nullptr || (own.material && !is_black(own.material->surface().emission));
-    if (type == "mesh" && own.copy != nullptr && !emits)
-        if (GroupMesh* shared = shared_mesh(geometry, node, own)) {
-            const std::size_t triangles = shared->mesh.mesh().triangles.size();
-            if (!is_worth_sharing(triangles, ++shared->copies)) triangles_ += triangles; // they may be few
-            return shared->mesh.placed(own.copy);
-        }
-    if (!geometry) geometry = read_geometry(type, node, meshes_);
-    transform_geometry(*geometry, own.to_world);
-    if (map.boolean("flip", false)) flip(*geometry);
-    return std::move(*geometry);
+/// What instances may share of a mesh in a group. Null: nothing, for another mesh has the name, or what emits is not
+/// shared.
+ShapeReader::GroupMesh* ShapeReader::group_mesh(const YamlNode& node, const Placement& own) {
+    const bool emits = MapReader(node, "a shape").find("emission") != nullptr ||
+                       (own.material && !is_black(own.material->surface().emission));
+    if (own.copy == nullptr || emits) return nullptr;
+    const auto known = group_meshes_.try_emplace(&node, GroupMesh{own.to_object, {}, {}}).first;
+    return known->second.to_object == own.to_object ? &known->second : nullptr;
 }
 
-/// Takes `geometry` if it is the first copy. Null: there is another mesh under the same name, or one without an area.
-ShapeReader::GroupMesh* ShapeReader::shared_mesh(std::optional<Geometry>& geometry, const YamlNode& node,
-                                                 const Placement& own) {
-    if (const auto known = group_meshes_.find(&node); known != group_meshes_.end())
-        return known->second.to_object == own.to_object ? &known->second : nullptr;
-    if (!has_area(*geometry)) return nullptr;
-    transform_geometry(*geometry, own.to_object);
-    if (MapReader(node, "a shape").boolean("flip", false)) flip(*geometry);
-    SharedMesh mesh(std::move(std::get<TriangleMesh>(*geometry)));
-    geometry.reset();
-    return &group_meshes_.emplace(&node, GroupMesh{std::move(mesh), own.to_object}).first->second;
+/// The last shape is a copy; with enough of them all become instances.
+void ShapeReader::add_copy(GroupMesh& mesh, const YamlNode& node, const Placement& own) {
+    mesh.copies.push_back({shapes_.size() - 1, own.copy});
+    const std::size_t triangles = triangle_count(shapes_.back()), copies = mesh.copies.size();
+    if (!is_worth_sharing(triangles, copies)) return;
+    Geometry geometry = read_geometry("mesh", node, meshes_);
+    transform_geometry(geometry, mesh.to_object);
+    if (MapReader(node, "a shape").boolean("flip", false)) flip(geometry);
+    mesh.shared.emplace(std::move(std::get<TriangleMesh>(geometry)));
+    for (const GroupMesh::Copy& copy : mesh.copies) shapes_[copy.shape].geometry = mesh.shared->placed(copy.to_world);
+    triangles_ -= (copies - 1) * triangles;
+    mesh.copies.clear();
 }
 
 void ShapeReader::read_group(const YamlNode& node, const Placement& placement) {

@@ -47,7 +47,7 @@ class ShapeReader {
     /// Appends shapes that stand ready.
     void append(std::vector<Shape> shapes);
 
-    std::vector<Shape> take_shapes();
+    std::vector<Shape> take_shapes() { return std::move(shapes_); }
     bool empty() const { return shapes_.empty(); }
     /// Groups placed by name, as often as they are.
     std::size_t instances() const { return instances_; }
@@ -68,11 +68,15 @@ class ShapeReader {
         bool open = false;  ///< being read, so that an instance of it would be within itself
         bool empty = false; ///< holds no shape
     };
-    /// A mesh of a group, in the space of its instances.
+    /// A mesh of a group: held once for all of its instances as soon as there are enough of them.
     struct GroupMesh {
-        SharedMesh mesh;
-        Transform to_object; ///< that it had before; an alias of the same map may have another one
-        std::size_t copies = 0;
+        Transform to_object; ///< an alias of the same map may have another one
+        struct Copy {
+            std::size_t shape;
+            std::shared_ptr<const ObjectToWorld> to_world;
+        };
+        std::vector<Copy> copies; ///< with meshes of their own, until it is shared
+        std::optional<SharedMesh> shared;
     };
 
     void add_group(const YamlNode::Entry& entry);
@@ -82,9 +86,8 @@ class ShapeReader {
     void read_group(const YamlNode& node, const Placement& placement);
     Placement inherit(const MapReader& map, const Placement& placement) const;
     void read_named_group(Group& group, const YamlNode& user, const Placement& placement);
-    Geometry place(std::optional<Geometry> geometry, const std::string& type, const YamlNode& node,
-                   const Placement& own);
-    GroupMesh* shared_mesh(std::optional<Geometry>& geometry, const YamlNode& node, const Placement& own);
+    GroupMesh* group_mesh(const YamlNode& node, const Placement& own);
+    void add_copy(GroupMesh& mesh, const YamlNode& node, const Placement& own);
     void check_limits(const YamlNode& node) const;
 
     const MaterialTable& materials_;
