@@ -34,13 +34,18 @@ RTCRay make_ray(const Vec3& origin, const Vec3& direction, float nearest, float 
     return ray;
 }
 
-/// Within a copy geometries are numbered from the first of its shapes, whose number the copy has. Of the triangles of
-/// mirrored copies the second and the third corner change places.
-RayHit hit_of(const std::vector<Shape>& shapes, unsigned instance, const RayHit& hit) {
-    if (instance == RTC_INVALID_GEOMETRY_ID) return hit;
+/// A hit in a copy, whose geometries are numbered from the first of its shapes, which the copy has the number of. Of
+/// the triangles of mirrored copies the second and the third corner change places.
+RayHit hit_of_copy(const std::vector<Shape>& shapes, unsigned instance, const RayHit& hit) {
     const std::uint32_t shape = instance + hit.shape;
     const bool mirrored = std::get<MeshInstance>(shapes[shape].geometry).to_world->is_mirrored();
     return {shape, hit.primitive, mirrored ? hit.v : hit.u, mirrored ? hit.u : hit.v, hit.t};
+}
+
+/// Not in line: most hits are none of a copy, and the rest of what follows is.
+[[gnu::noinline]] RayHit hit_of_copy(const std::vector<Shape>& shapes, const RTCRayHit& query) {
+    const RTCHit& hit = query.hit;
+    return hit_of_copy(shapes, hit.instID[0], {hit.geomID, hit.primID, hit.u, hit.v, query.ray.tfar});
 }
 
 /// Lets a ray pass where its shape has a hole.
@@ -49,9 +54,10 @@ void pass_holes(const RTCFilterFunctionNArguments* arguments) {
     const auto& shapes = *static_cast<const std::vector<Shape>*>(arguments->geometryUserPtr);
     RTCRayN* ray = arguments->ray;
     RTCHitN* hit = arguments->hit;
-    const RayHit at = hit_of(shapes, RTCHitN_instID(hit, 1, 0, 0),
-                             {RTCHitN_geomID(hit, 1, 0), RTCHitN_primID(hit, 1, 0), RTCHitN_u(hit, 1, 0),
-                              RTCHitN_v(hit, 1, 0), RTCRayN_tfar(ray, 1, 0)});
+    RayHit at{RTCHitN_geomID(hit, 1, 0), RTCHitN_primID(hit, 1, 0), RTCHitN_u(hit, 1, 0), RTCHitN_v(hit, 1, 0),
+              RTCRayN_tfar(ray, 1, 0)};
+    const unsigned copy = RTCHitN_instID(hit, 1, 0, 0);
+    if (copy != RTC_INVALID_GEOMETRY_ID) at = hit_of_copy(shapes, copy, at);
     // Within a copy those of its object, which only spheres would need.
     const Vec3 origin(RTCRayN_org_x(ray, 1, 0), RTCRayN_org_y(ray, 1, 0), RTCRayN_org_z(ray, 1, 0));
     const Vec3 direction(RTCRayN_dir_x(ray, 1, 0), RTCRayN_dir_y(ray, 1, 0), RTCRayN_dir_z(ray, 1, 0));
@@ -63,11 +69,14 @@ void pass_holes(const RTCFilterFunctionNArguments* arguments) {
 
 SurfacePoint hit_point(const Shape& shape, const RayHit& hit, const Vec3& origin, const Vec3& direction) {
     const bool parametrised = reads_parametrisation(shape);
-    const auto* sphere = std::get_if<Sphere>(&shape.geometry);
-    SurfacePoint s =
-        sphere == nullptr
-            ? triangle_point(shape, hit.primitive, hit.u, hit.v, parametrised)
-            : sphere_point(*sphere, (origin + direction * hit.t - sphere->center).normalized(), parametrised);
+    const auto point = [&]() -> SurfacePoint {
+        if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry))
+            return triangle_point(*mesh, hit.primitive, hit.u, hit.v, parametrised);
+        if (const auto* sphere = std::get_if<Sphere>(&shape.geometry))
+            return sphere_point(*sphere, (origin + direction * hit.t - sphere->center).normalized(), parametrised);
+        return triangle_point(shape, hit.primitive, hit.u, hit.v, parametrised);
+    };
+    SurfacePoint s = point();
     s.shape = hit.shape;
     s.material = shape.material.get();
     return s;
@@ -210,7 +219,8 @@ std::optional<RayHit> Accelerator::intersect(const Vec3& origin, const Vec3& dir
     rtcIntersect1(embree_->scene, &context, &query);
     const RTCHit& hit = query.hit;
     if (hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-    return hit_of(embree_->shapes, hit.instID[0], {hit.geomID, hit.primID, hit.u, hit.v, query.ray.tfar});
+    if (hit.instID[0] != RTC_INVALID_GEOMETRY_ID) return hit_of_copy(embree_->shapes, query);
+    return RayHit{hit.geomID, hit.primID, hit.u, hit.v, query.ray.tfar};
 }
 
 bool Accelerator::occluded(const Vec3& origin, const Vec3& direction, float farthest) const {

@@ -22,26 +22,20 @@ void set_parametrisation(SurfacePoint& s, const Vec3& dpdu, const Vec3& dpdv) {
     s.dpdv = {dpdv.dot(s.tangent), dpdv.dot(s.ns.cross(s.tangent))};
 }
 
-/// A triangle in world space.
-struct Corners {
-    const TriangleMesh& mesh; ///< in any space
-    std::array<std::uint32_t, 3> index;
-    std::array<Vec3, 3> p;
-    Imath::V3d ab, ac; ///< edges, not rounded to where they stand: triangles of an object all have normals
-};
+using Corners = std::array<std::uint32_t, 3>;
 
-void parametrise(SurfacePoint& s, const Corners& corners, float u, float v) {
-    const auto& [mesh, index, p, ab, ac] = corners;
-    const Vec3 b(ab), c(ac);
-    s.uv = Vec2(u, v);
-    Vec3 dpdu = b, dpdv = c;
+/// @param ab,ac edges of the triangle
+void parametrise(SurfacePoint& s, const TriangleMesh& mesh, const Corners& corners, const Vec3& ab, const Vec3& ac,
+                 const Vec2& at) {
+    s.uv = at;
+    Vec3 dpdu = ab, dpdv = ac;
     if (!mesh.uvs.empty()) {
-        const Vec2 &ta = mesh.uvs[index[0]], &tb = mesh.uvs[index[1]], &tc = mesh.uvs[index[2]];
-        s.uv = ta * (1 - u - v) + tb * u + tc * v;
+        const Vec2 &ta = mesh.uvs[corners[0]], &tb = mesh.uvs[corners[1]], &tc = mesh.uvs[corners[2]];
+        s.uv = ta * (1 - at.x - at.y) + tb * at.x + tc * at.y;
         const float det = (tb.x - ta.x) * (tc.y - ta.y) - (tc.x - ta.x) * (tb.y - ta.y);
         if (det != 0) {
-            dpdu = (b * (tc.y - ta.y) - c * (tb.y - ta.y)) / det;
-            dpdv = (c * (tb.x - ta.x) - b * (tc.x - ta.x)) / det;
+            dpdu = (ab * (tc.y - ta.y) - ac * (tb.y - ta.y)) / det;
+            dpdv = (ac * (tb.x - ta.x) - ab * (tc.x - ta.x)) / det;
         }
     }
     set_parametrisation(s, dpdu, dpdv);
@@ -51,47 +45,48 @@ void parametrise(SurfacePoint& s, const Corners& corners, float u, float v) {
 struct InPlace {
     const Vec3& point(const Vec3& p) const { return p; }
     const Vec3& normal(const Vec3& n) const { return n; }
-    bool is_mirrored() const { return false; }
     float rounding_along(const Vec3& /*n*/, const Vec3& /*size*/) const { return 0; }
 };
 
 Imath::V3d edge_of(const Vec3& from, const Vec3& to, const InPlace& /*to_world*/) { return Imath::V3d(to - from); }
+/// Not rounded to where it stands, so that triangles of an object all have normals.
 Imath::V3d edge_of(const Vec3& from, const Vec3& to, const ObjectToWorld& to_world) {
     return to_world.direction(Imath::V3d(to) - Imath::V3d(from));
 }
 
-template <class ToWorld> Corners corners_of(const TriangleMesh& mesh, std::uint32_t triangle, const ToWorld& to_world) {
-    auto [a, b, c] = mesh.triangles[triangle];
-    if (to_world.is_mirrored()) std::swap(b, c);
-    const Vec3 &p = mesh.positions[a], &q = mesh.positions[b], &r = mesh.positions[c];
-    return {mesh,
-            {a, b, c},
-            {to_world.point(p), to_world.point(q), to_world.point(r)},
-            edge_of(p, q, to_world),
-            edge_of(p, r, to_world)};
+/// Anticlockwise from outside, in the world.
+const Corners& corners_of(const TriangleMesh& mesh, std::uint32_t triangle, const InPlace& /*to_world*/) {
+    return mesh.triangles[triangle];
+}
+Corners corners_of(const TriangleMesh& mesh, std::uint32_t triangle, const ObjectToWorld& to_world) {
+    const auto& [a, b, c] = mesh.triangles[triangle];
+    return to_world.is_mirrored() ? Corners{a, c, b} : Corners{a, b, c};
 }
 
-/// Its primitive is not set.
 template <class ToWorld>
-SurfacePoint point_of(const Corners& corners, const ToWorld& to_world, Vec2 at, bool parametrised) {
-    const auto& [mesh, index, p, ab, ac] = corners;
-    const auto& [a, b, c] = p;
-    const float u = at.x, v = at.y, w = 1 - u - v;
+[[gnu::always_inline]] inline SurfacePoint point_of(const TriangleMesh& mesh, std::uint32_t triangle,
+                                                    const ToWorld& to_world, float u, float v, bool parametrised) {
+    const Corners& corners = corners_of(mesh, triangle, to_world);
+    const Vec3 &pa = mesh.positions[corners[0]], &pb = mesh.positions[corners[1]], &pc = mesh.positions[corners[2]];
+    const auto &a = to_world.point(pa), &b = to_world.point(pb), &c = to_world.point(pc);
+    const float w = 1 - u - v;
     SurfacePoint s;
     s.p = a * w + b * u + c * v;
     // Lengths to the fourth power, which floats don't hold for all that may be in a scene.
-    const Imath::V3d n = ab.cross(ac);
+    const Imath::V3d n = edge_of(pa, pb, to_world).cross(edge_of(pa, pc, to_world));
     s.ng = Vec3(n * (1 / std::max(n.length(), std::numeric_limits<double>::min())));
     const Vec3 size = absolute(a) * w + absolute(b) * u + absolute(c) * v;
     s.offset = kRelativeError * absolute(s.ng).dot(size) + to_world.rounding_along(s.ng, size);
     s.ns = s.ng;
+    s.primitive = triangle;
     if (!mesh.normals.empty()) {
-        const auto normal = [&](std::size_t k) { return to_world.normal(mesh.normals[index[k]]); };
+        const auto normal = [&](std::size_t k) { return to_world.normal(mesh.normals[corners[k]]); };
         s.ns = (normal(0) * w + normal(1) * u + normal(2) * v).normalized();
         if (s.ns.length2() == 0) s.ns = s.ng;
         if (s.ns.dot(s.ng) < 0) s.ns = -s.ns;
     }
-    if (parametrised) parametrise(s, corners, u, v);
+    if (parametrised)
+        parametrise(s, mesh, corners, Vec3(edge_of(pa, pb, to_world)), Vec3(edge_of(pa, pc, to_world)), {u, v});
     return s;
 }
 
@@ -102,8 +97,8 @@ template <class F> auto of_triangles(const Shape& shape, F&& f) {
     return f(*instance.mesh, *instance.to_world);
 }
 
-double area_of(const std::array<Vec3, 3>& p) {
-    return Imath::V3d(p[1] - p[0]).cross(Imath::V3d(p[2] - p[0])).length() / 2;
+double area_of(const Vec3& a, const Vec3& b, const Vec3& c) {
+    return Imath::V3d(b - a).cross(Imath::V3d(c - a)).length() / 2;
 }
 
 void parametrise(SurfacePoint& s, const Sphere& sphere, const Vec3& outward) {
@@ -120,22 +115,21 @@ void parametrise(SurfacePoint& s, const Sphere& sphere, const Vec3& outward) {
 float rounding_along(const Vec3& n, const Vec3& p) { return kRelativeError * absolute(n).dot(absolute(p)); }
 
 SurfacePoint triangle_point(const TriangleMesh& mesh, std::uint32_t triangle, float u, float v, bool parametrised) {
-    SurfacePoint s = point_of(corners_of(mesh, triangle, InPlace()), InPlace(), {u, v}, parametrised);
-    s.primitive = triangle;
-    return s;
+    return point_of(mesh, triangle, InPlace(), u, v, parametrised);
 }
 
 SurfacePoint triangle_point(const Shape& shape, std::uint32_t triangle, float u, float v, bool parametrised) {
     return of_triangles(shape, [&](const TriangleMesh& mesh, const auto& to_world) {
-        SurfacePoint s = point_of(corners_of(mesh, triangle, to_world), to_world, {u, v}, parametrised);
-        s.primitive = triangle;
-        return s;
+        return point_of(mesh, triangle, to_world, u, v, parametrised);
     });
 }
 
 std::array<Vec3, 3> triangle_corners(const Shape& shape, std::uint32_t triangle) {
-    return of_triangles(
-        shape, [&](const TriangleMesh& mesh, const auto& to_world) { return corners_of(mesh, triangle, to_world).p; });
+    return of_triangles(shape, [&](const TriangleMesh& mesh, const auto& to_world) {
+        const auto [a, b, c] = corners_of(mesh, triangle, to_world);
+        return std::array<Vec3, 3>{to_world.point(mesh.positions[a]), to_world.point(mesh.positions[b]),
+                                   to_world.point(mesh.positions[c])};
+    });
 }
 
 SurfacePoint sphere_point(const Sphere& sphere, const Vec3& outward, bool parametrised) {
@@ -149,10 +143,14 @@ SurfacePoint sphere_point(const Sphere& sphere, const Vec3& outward, bool parame
 }
 
 double triangle_area(const TriangleMesh& mesh, std::uint32_t triangle) {
-    return area_of(corners_of(mesh, triangle, InPlace()).p);
+    const auto& [a, b, c] = mesh.triangles[triangle];
+    return area_of(mesh.positions[a], mesh.positions[b], mesh.positions[c]);
 }
 
-double triangle_area(const Shape& shape, std::uint32_t triangle) { return area_of(triangle_corners(shape, triangle)); }
+double triangle_area(const Shape& shape, std::uint32_t triangle) {
+    const auto [a, b, c] = triangle_corners(shape, triangle);
+    return area_of(a, b, c);
+}
 
 bool has_area(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& triangle) {
     const Vec3& a = mesh.positions[triangle[0]];
