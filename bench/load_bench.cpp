@@ -68,8 +68,8 @@ int main(int argc, char** argv) {
     });
     const keyhole::Scene scene(keyhole::load(path).description);
     const Cost building = best(rounds, [&] {
-        keyhole::Accelerator accelerator;
-        for (std::uint32_t i = 0; i < scene.shapes().size(); ++i) accelerator.attach(scene.shapes()[i], i);
+        keyhole::Accelerator accelerator(scene.shapes());
+        for (std::uint32_t i = 0; i < scene.shapes().size(); ++i) accelerator.attach(i);
         accelerator.commit();
     });
     const Cost loading = best(rounds, [&] { const keyhole::Scene loaded(keyhole::load(path).description); });

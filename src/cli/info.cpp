@@ -57,12 +57,11 @@ Json textures_json(const std::vector<LoadedImage>& images) {
 }
 
 Json memory_json(const Scene& scene, const std::vector<LoadedImage>& images) {
-    std::size_t geometry = 0, textures = 0;
-    for (const Shape& shape : scene.shapes()) geometry += geometry_bytes(shape);
+    std::size_t textures = 0;
     for (const LoadedImage& image : images) textures += image.bytes;
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
-    return {{"geometry", geometry},
+    return {{"geometry", geometry_bytes(scene.shapes())},
             {"embree", scene.accelerator_bytes()},
             {"textures", textures},
             {"peak", static_cast<std::int64_t>(usage.ru_maxrss) * 1024}};
@@ -89,6 +88,8 @@ Json scene_info(const std::string& path) {
 
     const std::vector<Shape>& shapes = scene.shapes();
     const std::vector<LoadedImage> images = loaded_images();
+    std::size_t held = 0;
+    for (const TriangleMesh* mesh : held_meshes(shapes)) held += mesh->triangles.size();
     const auto count = [&](auto test) { return std::ranges::count_if(shapes, test); };
     return {{"scene", path},
             {"resolution", {scene.camera().window().width, scene.camera().window().height}},
@@ -96,6 +97,7 @@ Json scene_info(const std::string& path) {
             {"bounds", {{"lower", vector_json(scene.lower())}, {"upper", vector_json(scene.upper())}}},
             {"shapes", shapes.size()},
             {"triangles", scene.triangle_count()},
+            {"triangles_held", held},
             {"spheres", count([](const Shape& s) { return std::holds_alternative<Sphere>(s.geometry); })},
             {"emitting_shapes", count([](const Shape& s) { return s.emission != nullptr; })},
             {"instances", loaded.instances},
@@ -149,9 +151,11 @@ void print_text(const Json& info) {
                                vector(camera["direction"]), camera["fov"].get<double>(),
                                camera["lens_radius"].get<double>() > 0 ? ", thin lens" : ""));
     line("bounds", fmt::format("{} to {}", vector(info["bounds"]["lower"]), vector(info["bounds"]["upper"])));
-    line("shapes", fmt::format("{}: {} triangles, {} spheres, {} lights; {} instances", info["shapes"].get<int>(),
-                               info["triangles"].get<std::size_t>(), info["spheres"].get<int>(),
-                               info["emitting_shapes"].get<int>(), info["instances"].get<std::size_t>()));
+    const auto triangles = info["triangles"].get<std::size_t>(), held = info["triangles_held"].get<std::size_t>();
+    line("shapes",
+         fmt::format("{}: {} triangles{}, {} spheres, {} lights; {} instances", info["shapes"].get<int>(), triangles,
+                     held != triangles ? fmt::format(" ({} held)", held) : "", info["spheres"].get<int>(),
+                     info["emitting_shapes"].get<int>(), info["instances"].get<std::size_t>()));
     std::string materials;
     for (const auto& [kind, count] : info["materials"].items())
         materials += fmt::format("{}{} {}", materials.empty() ? "" : ", ", count.get<int>(), kind);

@@ -3,7 +3,6 @@
 #include "core/shared_work.h"
 #include "gather/direct_irradiance.h"
 #include "photonmap/surface/surface_region.h"
-#include "scene/geometry.h"
 #include "scene/material.h"
 
 #include <algorithm>
@@ -24,7 +23,7 @@ constexpr float kAcross = 1e-7f, kAtOrigin = 1e-10f;
 /// The surface that `place` lies on, found again by a short ray from above. None where something lies in between.
 std::optional<SurfacePoint> surface_at(const Scene& scene, const Photon& place) {
     const Vec3 n = place.normal().decode();
-    const float rounding = rounding_along(n, place.position()) + kAcross * place.position().length() +
+    const float rounding = scene.rounding_along(n, place.position()) + kAcross * place.position().length() +
                            kAtOrigin * scene.bounding_sphere().radius;
     const float above = kAbove * rounding;
     SurfacePoint start;

@@ -28,7 +28,7 @@ constexpr std::array kSteps{kCoarsest, kCoarsest / 2, kCoarsest / 4, kCoarsest /
 std::optional<Wall> wall_between(const Scene& scene, const Vec3& from, const Vec3& normal, const Vec3& to) {
     const Vec3 d = to - from;
     SurfacePoint above;
-    above.p = from + normal * std::max(kLift * d.length(), 2 * rounding_along(normal, from));
+    above.p = from + normal * std::max(kLift * d.length(), 2 * scene.rounding_along(normal, from));
     above.ng = normal;
     const auto hit = d == Vec3(0, 0, 0) ? std::nullopt : scene.trace(above, d.normalized());
     if (!hit || hit->site == Site::infinite || (hit->p - above.p).length2() > d.length2()) return std::nullopt;

@@ -2,17 +2,27 @@
 
 #include "core/bytes.h"
 #include "sampling/paths/light_tracer.h"
+#include "scene/geometry.h"
+
+#include <map>
 
 namespace keyhole {
 namespace {
 
-void add_geometry(const Shape& shape, Hash& hash) {
+/// Of copies the mesh once.
+void add_geometry(const Shape& shape, std::map<const TriangleMesh*, std::size_t>& meshes, Hash& hash) {
     if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) {
         hash.add(sphere->center);
         hash.add(sphere->radius);
         return;
     }
-    const auto& mesh = std::get<TriangleMesh>(shape.geometry);
+    const TriangleMesh& mesh = *held_mesh(shape);
+    if (const auto* instance = std::get_if<MeshInstance>(&shape.geometry)) {
+        const auto [known, fresh] = meshes.try_emplace(&mesh, meshes.size());
+        hash.add(instance->to_world->matrix());
+        hash.add(known->second);
+        if (!fresh) return;
+    }
     hash.add(mesh.positions);
     hash.add(mesh.normals);
     hash.add(mesh.triangles);
@@ -40,7 +50,8 @@ struct Probe {
 
 std::uint64_t scene_hash(const Scene& scene) {
     Hash hash;
-    for (const Shape& shape : scene.shapes()) add_geometry(shape, hash);
+    std::map<const TriangleMesh*, std::size_t> meshes;
+    for (const Shape& shape : scene.shapes()) add_geometry(shape, meshes, hash);
     add_camera(scene.camera(), hash);
     Probe probe{hash};
     for (std::uint64_t i = 0; i < 4096; ++i) {

@@ -5,14 +5,15 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 namespace keyhole {
 
 /// Where a ray meets a shape.
 struct RayHit {
-    std::uint32_t shape;     ///< as in attach()
+    std::uint32_t shape;     ///< its index
     std::uint32_t primitive; ///< triangle within it
-    float u, v;              ///< barycentric coordinates on a triangle
+    float u, v;              ///< barycentric coordinates on a triangle, as triangle_point() has them
     float t;                 ///< along the ray's direction, in its lengths
 };
 
@@ -21,16 +22,19 @@ struct RayHit {
 SurfacePoint hit_point(const Shape& shape, const RayHit& hit, const Vec3& origin, const Vec3& direction);
 
 /// A bounding volume hierarchy over shapes. Where a shape has an alpha texture, rays pass its holes; others don't pay
-/// for that. Thread-safe once committed.
+/// for that. Of an object that has copies there is one hierarchy, which holds the meshes that stand in its space, and
+/// one of all copies. Thread-safe once committed.
 class Accelerator {
   public:
-    Accelerator();
+    /// The shapes must outlive this, and stay where they are.
+    explicit Accelerator(const std::vector<Shape>& shapes);
     ~Accelerator();
     Accelerator(const Accelerator&) = delete;
     Accelerator& operator=(const Accelerator&) = delete;
 
-    /// Adds a shape under a number of its own. The shape must outlive this, and stay where it is.
-    void attach(const Shape& shape, std::uint32_t index);
+    /// Adds a shape, by its index. Those of one copy of an object form one instance if nothing but them is attached
+    /// in between, or shapes that are no instances.
+    void attach(std::uint32_t index);
     /// Builds; to be called once, before rays.
     void commit();
 
@@ -39,7 +43,7 @@ class Accelerator {
     /// Whether anything is hit at t in [0, farthest].
     bool occluded(const Vec3& origin, const Vec3& direction, float farthest) const;
 
-    /// Bounding box of all shapes; lower > upper if there are none.
+    /// Bounding box of all shapes, of copies that around the box of their object; lower > upper if there are none.
     Vec3 lower() const;
     Vec3 upper() const;
 

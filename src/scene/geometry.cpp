@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <string_view>
+#include <utility>
 
 namespace keyhole {
 namespace {
@@ -21,21 +22,83 @@ void set_parametrisation(SurfacePoint& s, const Vec3& dpdu, const Vec3& dpdv) {
     s.dpdv = {dpdv.dot(s.tangent), dpdv.dot(s.ns.cross(s.tangent))};
 }
 
-void parametrise(SurfacePoint& s, const TriangleMesh& mesh, float u, float v) {
-    const auto& [ia, ib, ic] = mesh.triangles[s.primitive];
-    const Vec3 &a = mesh.positions[ia], &b = mesh.positions[ib], &c = mesh.positions[ic];
-    s.uv = Vec2(u, v);
-    Vec3 dpdu = b - a, dpdv = c - a;
+using Corners = std::array<std::uint32_t, 3>;
+
+/// @param ab,ac edges of the triangle
+void parametrise(SurfacePoint& s, const TriangleMesh& mesh, const Corners& corners, const Vec3& ab, const Vec3& ac,
+                 const Vec2& at) {
+    s.uv = at;
+    Vec3 dpdu = ab, dpdv = ac;
     if (!mesh.uvs.empty()) {
-        const Vec2 &ta = mesh.uvs[ia], &tb = mesh.uvs[ib], &tc = mesh.uvs[ic];
-        s.uv = ta * (1 - u - v) + tb * u + tc * v;
+        const Vec2 &ta = mesh.uvs[corners[0]], &tb = mesh.uvs[corners[1]], &tc = mesh.uvs[corners[2]];
+        s.uv = ta * (1 - at.x - at.y) + tb * at.x + tc * at.y;
         const float det = (tb.x - ta.x) * (tc.y - ta.y) - (tc.x - ta.x) * (tb.y - ta.y);
         if (det != 0) {
-            dpdu = ((b - a) * (tc.y - ta.y) - (c - a) * (tb.y - ta.y)) / det;
-            dpdv = ((c - a) * (tb.x - ta.x) - (b - a) * (tc.x - ta.x)) / det;
+            dpdu = (ab * (tc.y - ta.y) - ac * (tb.y - ta.y)) / det;
+            dpdv = (ac * (tb.x - ta.x) - ab * (tc.x - ta.x)) / det;
         }
     }
     set_parametrisation(s, dpdu, dpdv);
+}
+
+/// Of a mesh that stands in the world.
+struct InPlace {
+    const Vec3& point(const Vec3& p) const { return p; }
+    const Vec3& normal(const Vec3& n) const { return n; }
+    float rounding_along(const Vec3& /*n*/, const Vec3& /*size*/) const { return 0; }
+};
+
+Imath::V3d edge_of(const Vec3& from, const Vec3& to, const InPlace& /*to_world*/) { return Imath::V3d(to - from); }
+/// Not rounded to where it stands, so that triangles of an object all have normals.
+Imath::V3d edge_of(const Vec3& from, const Vec3& to, const ObjectToWorld& to_world) {
+    return to_world.direction(Imath::V3d(to) - Imath::V3d(from));
+}
+
+/// Anticlockwise from outside, in the world.
+const Corners& corners_of(const TriangleMesh& mesh, std::uint32_t triangle, const InPlace& /*to_world*/) {
+    return mesh.triangles[triangle];
+}
+Corners corners_of(const TriangleMesh& mesh, std::uint32_t triangle, const ObjectToWorld& to_world) {
+    const auto& [a, b, c] = mesh.triangles[triangle];
+    return to_world.is_mirrored() ? Corners{a, c, b} : Corners{a, b, c};
+}
+
+template <class ToWorld>
+[[gnu::always_inline]] inline SurfacePoint point_of(const TriangleMesh& mesh, std::uint32_t triangle,
+                                                    const ToWorld& to_world, float u, float v, bool parametrised) {
+    const Corners& corners = corners_of(mesh, triangle, to_world);
+    const Vec3 &pa = mesh.positions[corners[0]], &pb = mesh.positions[corners[1]], &pc = mesh.positions[corners[2]];
+    const auto &a = to_world.point(pa), &b = to_world.point(pb), &c = to_world.point(pc);
+    const float w = 1 - u - v;
+    SurfacePoint s;
+    s.p = a * w + b * u + c * v;
+    // Lengths to the fourth power, which floats don't hold for all that may be in a scene.
+    const Imath::V3d n = edge_of(pa, pb, to_world).cross(edge_of(pa, pc, to_world));
+    s.ng = Vec3(n * (1 / std::max(n.length(), std::numeric_limits<double>::min())));
+    const Vec3 size = absolute(a) * w + absolute(b) * u + absolute(c) * v;
+    s.offset = kRelativeError * absolute(s.ng).dot(size) + to_world.rounding_along(s.ng, size);
+    s.ns = s.ng;
+    s.primitive = triangle;
+    if (!mesh.normals.empty()) {
+        const auto normal = [&](std::size_t k) { return to_world.normal(mesh.normals[corners[k]]); };
+        s.ns = (normal(0) * w + normal(1) * u + normal(2) * v).normalized();
+        if (s.ns.length2() == 0) s.ns = s.ng;
+        if (s.ns.dot(s.ng) < 0) s.ns = -s.ns;
+    }
+    if (parametrised)
+        parametrise(s, mesh, corners, Vec3(edge_of(pa, pb, to_world)), Vec3(edge_of(pa, pc, to_world)), {u, v});
+    return s;
+}
+
+/// What `f(mesh, to_world)` says of the triangles of a shape.
+template <class F> auto of_triangles(const Shape& shape, F&& f) {
+    if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) return f(*mesh, InPlace());
+    const auto& instance = std::get<MeshInstance>(shape.geometry);
+    return f(*instance.mesh, *instance.to_world);
+}
+
+double area_of(const Vec3& a, const Vec3& b, const Vec3& c) {
+    return Imath::V3d(b - a).cross(Imath::V3d(c - a)).length() / 2;
 }
 
 void parametrise(SurfacePoint& s, const Sphere& sphere, const Vec3& outward) {
@@ -52,24 +115,21 @@ void parametrise(SurfacePoint& s, const Sphere& sphere, const Vec3& outward) {
 float rounding_along(const Vec3& n, const Vec3& p) { return kRelativeError * absolute(n).dot(absolute(p)); }
 
 SurfacePoint triangle_point(const TriangleMesh& mesh, std::uint32_t triangle, float u, float v, bool parametrised) {
-    const auto& [ia, ib, ic] = mesh.triangles[triangle];
-    const Vec3 &a = mesh.positions[ia], &b = mesh.positions[ib], &c = mesh.positions[ic];
-    const float w = 1 - u - v;
-    SurfacePoint s;
-    s.p = a * w + b * u + c * v;
-    // Lengths to the fourth power, which floats don't hold for all that may be in a scene.
-    const Imath::V3d n = Imath::V3d(b - a).cross(Imath::V3d(c - a));
-    s.ng = Vec3(n * (1 / std::max(n.length(), std::numeric_limits<double>::min())));
-    s.offset = kRelativeError * absolute(s.ng).dot(absolute(a) * w + absolute(b) * u + absolute(c) * v);
-    s.ns = s.ng;
-    s.primitive = triangle;
-    if (!mesh.normals.empty()) {
-        s.ns = (mesh.normals[ia] * w + mesh.normals[ib] * u + mesh.normals[ic] * v).normalized();
-        if (s.ns.length2() == 0) s.ns = s.ng;
-        if (s.ns.dot(s.ng) < 0) s.ns = -s.ns;
-    }
-    if (parametrised) parametrise(s, mesh, u, v);
-    return s;
+    return point_of(mesh, triangle, InPlace(), u, v, parametrised);
+}
+
+SurfacePoint triangle_point(const Shape& shape, std::uint32_t triangle, float u, float v, bool parametrised) {
+    return of_triangles(shape, [&](const TriangleMesh& mesh, const auto& to_world) {
+        return point_of(mesh, triangle, to_world, u, v, parametrised);
+    });
+}
+
+std::array<Vec3, 3> triangle_corners(const Shape& shape, std::uint32_t triangle) {
+    return of_triangles(shape, [&](const TriangleMesh& mesh, const auto& to_world) {
+        const auto [a, b, c] = corners_of(mesh, triangle, to_world);
+        return std::array<Vec3, 3>{to_world.point(mesh.positions[a]), to_world.point(mesh.positions[b]),
+                                   to_world.point(mesh.positions[c])};
+    });
 }
 
 SurfacePoint sphere_point(const Sphere& sphere, const Vec3& outward, bool parametrised) {
@@ -84,8 +144,12 @@ SurfacePoint sphere_point(const Sphere& sphere, const Vec3& outward, bool parame
 
 double triangle_area(const TriangleMesh& mesh, std::uint32_t triangle) {
     const auto& [a, b, c] = mesh.triangles[triangle];
-    const Imath::V3d e(mesh.positions[b] - mesh.positions[a]), f(mesh.positions[c] - mesh.positions[a]);
-    return e.cross(f).length() / 2;
+    return area_of(mesh.positions[a], mesh.positions[b], mesh.positions[c]);
+}
+
+double triangle_area(const Shape& shape, std::uint32_t triangle) {
+    const auto [a, b, c] = triangle_corners(shape, triangle);
+    return area_of(a, b, c);
 }
 
 bool has_area(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& triangle) {
@@ -94,9 +158,43 @@ bool has_area(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& tria
     return n.length2() > std::numeric_limits<float>::min();
 }
 
-bool has_area(const std::variant<TriangleMesh, Sphere>& geometry) {
+bool has_area(const Geometry& geometry) {
+    const auto any = [](const TriangleMesh& mesh) {
+        return std::ranges::any_of(mesh.triangles, [&](const auto& t) { return has_area(mesh, t); });
+    };
+    if (const auto* instance = std::get_if<MeshInstance>(&geometry)) return any(*instance->mesh);
     const auto* mesh = std::get_if<TriangleMesh>(&geometry);
-    return mesh == nullptr || std::ranges::any_of(mesh->triangles, [&](const auto& t) { return has_area(*mesh, t); });
+    return mesh == nullptr || any(*mesh);
+}
+
+const TriangleMesh* held_mesh(const Shape& shape) {
+    if (const auto* instance = std::get_if<MeshInstance>(&shape.geometry)) return instance->mesh.get();
+    return std::get_if<TriangleMesh>(&shape.geometry);
+}
+
+std::set<const TriangleMesh*> held_meshes(const std::vector<Shape>& shapes) {
+    std::set<const TriangleMesh*> meshes;
+    for (const Shape& shape : shapes) meshes.insert(held_mesh(shape));
+    meshes.erase(nullptr);
+    return meshes;
+}
+
+std::size_t geometry_bytes(const std::vector<Shape>& shapes) {
+    const auto bytes = [](const auto& list) { return list.size() * sizeof(list[0]); };
+    std::size_t sum = 0;
+    for (const TriangleMesh* mesh : held_meshes(shapes))
+        sum += bytes(mesh->positions) + bytes(mesh->normals) + bytes(mesh->uvs) + bytes(mesh->triangles);
+    std::set<const ObjectToWorld*> copies;
+    for (const Shape& shape : shapes) {
+        if (std::holds_alternative<Sphere>(shape.geometry)) sum += sizeof(Sphere);
+        if (const auto* instance = std::get_if<MeshInstance>(&shape.geometry)) copies.insert(instance->to_world.get());
+    }
+    return sum + copies.size() * sizeof(ObjectToWorld);
+}
+
+std::size_t triangle_count(const Shape& shape) {
+    const TriangleMesh* mesh = held_mesh(shape);
+    return mesh != nullptr ? mesh->triangles.size() : 0;
 }
 
 double surface_area(const Shape& shape) {
@@ -104,38 +202,41 @@ double surface_area(const Shape& shape) {
         const double r = sphere->radius;
         return 4 * kPi * r * r;
     }
-    const auto& mesh = std::get<TriangleMesh>(shape.geometry);
     double area = 0;
-    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) area += triangle_area(mesh, i);
+    for (std::uint32_t i = 0; i < triangle_count(shape); ++i) area += triangle_area(shape, i);
     return area;
 }
 
-std::size_t geometry_bytes(const Shape& shape) {
-    const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
-    if (mesh == nullptr) return sizeof(Sphere);
-    const auto bytes = [](const auto& list) { return list.size() * sizeof(list[0]); };
-    return bytes(mesh->positions) + bytes(mesh->normals) + bytes(mesh->uvs) + bytes(mesh->triangles);
+void transform_mesh(TriangleMesh& mesh, const ObjectToWorld& to_world) {
+    for (Vec3& p : mesh.positions) p = to_world.point(p);
+    for (Vec3& n : mesh.normals) n = to_world.normal(n);
+    if (!to_world.is_mirrored()) return;
+    for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
+}
+
+TriangleMesh flattened(const MeshInstance& instance) {
+    TriangleMesh mesh = *instance.mesh;
+    transform_mesh(mesh, *instance.to_world);
+    return mesh;
 }
 
 bool is_invisible_light(const Shape& shape) {
     return shape.emission && shape.alpha && shape.alpha->is_constant() && !(shape.alpha->value({}) > 0);
 }
 
-void drop_needless_normals(Shape& shape) {
+void drop_needless_normals(TriangleMesh& mesh) {
     constexpr double kAlike = 1 - 1e-8; // cosine: normals as files have them, rounded
-    auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
-    if (mesh == nullptr) return;
-    for (std::uint32_t i = 0; i < mesh->triangles.size() && !mesh->normals.empty(); ++i) {
-        const Imath::V3d ng(triangle_point(*mesh, i, 0.25f, 0.25f, false).ng);
-        for (const std::uint32_t corner : mesh->triangles[i])
-            if (!(std::abs(Imath::V3d(mesh->normals[corner]).normalized().dot(ng)) > kAlike)) return;
+    for (std::uint32_t i = 0; i < mesh.triangles.size() && !mesh.normals.empty(); ++i) {
+        const Imath::V3d ng(triangle_point(mesh, i, 0.25f, 0.25f, false).ng);
+        for (const std::uint32_t corner : mesh.triangles[i])
+            if (!(std::abs(Imath::V3d(mesh.normals[corner]).normalized().dot(ng)) > kAlike)) return;
     }
-    mesh->normals.clear();
+    mesh.normals.clear();
 }
 
 bool may_be_clear(const Shape& shape) {
     const ClearGlass glass = shape.material->traits().clear;
-    const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
+    const TriangleMesh* mesh = held_mesh(shape);
     if (glass != ClearGlass::face) return glass == ClearGlass::pane;
     if (mesh == nullptr || mesh->normals.empty()) return mesh != nullptr;
     return std::ranges::any_of(mesh->triangles, [&](const auto& corners) {

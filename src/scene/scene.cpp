@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -37,6 +38,13 @@ void check_sphere(const Sphere& sphere) {
         throw InputError("a sphere needs a finite centre and a positive radius");
 }
 
+void check_instance(const MeshInstance& instance) {
+    if (instance.mesh == nullptr || instance.to_world == nullptr)
+        throw InputError("an instance has no mesh or no transform");
+    if (!instance.to_world->rounds_little())
+        throw InputError("an instance needs a transform that can be inverted without loss");
+}
+
 /// Of an eye that sees nothing near.
 bool begins_farther_on(const SurfacePoint& p) { return p.site == Site::point && p.offset > 0; }
 
@@ -54,13 +62,20 @@ void merge_environments(std::vector<std::unique_ptr<Emitter>>& emitters) {
 
 /// Shapes ready for rays: checked, without what no ray could tell from nothing.
 std::vector<Shape> checked(std::vector<Shape> shapes) {
+    std::set<const TriangleMesh*> meshes;
     for (Shape& shape : shapes) {
         if (is_invisible_light(shape)) shape.material = make_interface(); // where nothing scatters and no photon lies
+        if (const auto* instance = std::get_if<MeshInstance>(&shape.geometry)) {
+            check_instance(*instance);
+            if (meshes.insert(instance->mesh.get()).second) check_mesh(*instance->mesh);
+            if (shape.emission)
+                shape.geometry = flattened(*instance); // each light has its own triangles to choose from
+        }
         if (auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) {
             check_mesh(*mesh);
             std::erase_if(mesh->triangles, [&](const auto& t) { return !has_area(*mesh, t); });
-        } else {
-            check_sphere(std::get<Sphere>(shape.geometry));
+        } else if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) {
+            check_sphere(*sphere);
         }
     }
     return shapes;
@@ -76,7 +91,8 @@ std::pair<Vec3, Vec3> box_around(const Vec3& eye) {
 
 Scene::Scene(SceneDescription description)
     : shapes_(checked(std::move(description.shapes))), media_(shapes_, std::move(description.medium)),
-      emitters_(std::move(description.emitters)), camera_(description.camera, description.window) {
+      emitters_(std::move(description.emitters)), camera_(description.camera, description.window),
+      accelerator_(shapes_) {
     attach_shapes();
     prepare_emitters();
 }
@@ -87,18 +103,22 @@ void Scene::attach_shapes() {
     for (std::uint32_t i = 0; i < shapes_.size(); ++i) {
         Shape& shape = shapes_[i];
         if (is_interface(shape)) continue;
-        if (shape.material && shape.material->traits().clear == ClearGlass::face) drop_needless_normals(shape);
+        auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
+        if (mesh != nullptr && shape.material && shape.material->traits().clear == ClearGlass::face)
+            drop_needless_normals(*mesh);
         if (shape.emission && surface_area(shape) > 0) {
             emitter_of_shape_[i] = static_cast<std::uint32_t>(emitters_.size());
             emitters_.push_back(make_area_emitter(shape, i));
         }
         if (is_invisible_light(shape)) continue;
-        accelerator_.attach(shape, i);
+        if (const auto* instance = std::get_if<MeshInstance>(&shape.geometry))
+            instance_rounding_ = std::max(instance_rounding_, instance->to_world->relative_rounding());
+        accelerator_.attach(i);
         if (!shape.material) continue;
         traits_ = traits_ | shape.material->traits();
         if (!may_be_clear(shape)) continue;
-        if (!clear_glass_) clear_glass_ = std::make_unique<Accelerator>();
-        clear_glass_->attach(shape, i);
+        if (!clear_glass_) clear_glass_ = std::make_unique<Accelerator>(shapes_);
+        clear_glass_->attach(i);
     }
     accelerator_.commit();
     if (clear_glass_) clear_glass_->commit();
@@ -174,10 +194,13 @@ bool Scene::visible(const Vec3& a, const Vec3& b) const {
     return !accelerator_.occluded(a, b - a, kEdgeEnd);
 }
 
+float Scene::rounding_along(const Vec3& n, const Vec3& p) const {
+    return keyhole::rounding_along(n, p) + 2 * instance_rounding_ * p.length();
+}
+
 std::size_t Scene::triangle_count() const {
     std::size_t n = 0;
-    for (const Shape& s : shapes_)
-        if (const auto* mesh = std::get_if<TriangleMesh>(&s.geometry)) n += mesh->triangles.size();
+    for (const Shape& s : shapes_) n += keyhole::triangle_count(s);
     return n;
 }
 

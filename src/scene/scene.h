@@ -97,7 +97,11 @@ class Scene {
     /// nothing by rounding.
     BoundingSphere bounding_sphere() const { return {(lower_ + upper_) / 2, 1.001f * (upper_ - lower_).length() / 2}; }
 
+    /// Those that rays meet.
     std::size_t triangle_count() const;
+    /// Bound on the error along unit `n` of a position on a surface [m], whatever the surface:
+    /// keyhole::rounding_along(), and what the transforms of instances add to it.
+    float rounding_along(const Vec3& n, const Vec3& p) const;
     /// Memory of the structures that rays are traced with.
     std::size_t accelerator_bytes() const {
         return accelerator_.bytes() + media_.accelerator_bytes() + (clear_glass_ ? clear_glass_->bytes() : 0);
@@ -123,6 +127,7 @@ class Scene {
     Camera camera_;
     BsdfTraits traits_;
     Vec3 lower_{0, 0, 0}, upper_{0, 0, 0};
+    float instance_rounding_ = 0; // the largest, relative to sizes of coordinates
     Accelerator accelerator_;
     std::unique_ptr<Accelerator> clear_glass_; // over what may be that; null if there is none
 };

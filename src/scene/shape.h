@@ -5,6 +5,7 @@
 #include "scene/emitters/emission_profile.h"
 #include "scene/material.h"
 #include "scene/media/medium.h"
+#include "scene/object_to_world.h"
 
 #include <array>
 #include <cstdint>
@@ -15,7 +16,8 @@
 
 namespace keyhole {
 
-/// Indexed triangles in world space. The outside of a triangle is where its corners run anticlockwise.
+/// Indexed triangles in world space, but for those of a MeshInstance. The outside of a triangle is where its corners
+/// run anticlockwise.
 struct TriangleMesh {
     std::vector<Vec3> positions;
     std::vector<Vec3> normals; ///< unit, one per position; or empty: flat
@@ -30,6 +32,14 @@ struct Sphere {
     bool inward = false;
 };
 
+/// A copy of a mesh that is held once. Its triangles have the numbers that they have in the mesh.
+struct MeshInstance {
+    std::shared_ptr<const TriangleMesh> mesh;      ///< in the space of an object
+    std::shared_ptr<const ObjectToWorld> to_world; ///< the same one for all shapes of one copy of the object
+};
+
+using Geometry = std::variant<TriangleMesh, Sphere, MeshInstance>;
+
 /// What a surface emits, for shapes that are area lights.
 struct SurfaceEmission {
     Rgb radiance{0.0};      ///< W/(m^2 sr), along the normal
@@ -40,7 +50,7 @@ struct SurfaceEmission {
 
 /// Geometry with its material and, for area lights, its emission.
 struct Shape {
-    std::variant<TriangleMesh, Sphere> geometry;
+    Geometry geometry;                        ///< of area lights within a Scene no MeshInstance
     std::shared_ptr<const Material> material; ///< null: black; of a boundary of media: nothing that light would notice
     std::unique_ptr<SurfaceEmission> emission;
     FloatTexture alpha{}; ///< opacity, as is_opaque() reads it; null: opaque. Of an area light 0: see below
@@ -62,7 +72,7 @@ inline bool reads_parametrisation(const Shape& shape) {
 bool is_invisible_light(const Shape& shape);
 
 /// Drops the normals of a mesh if they are those that its triangles have anyway.
-void drop_needless_normals(Shape& shape);
+void drop_needless_normals(TriangleMesh& mesh);
 
 /// Whether light may go straight through `shape`, which has a material: a pane, or glass of which a triangle, at least,
 /// has one shading normal.

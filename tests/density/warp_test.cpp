@@ -90,7 +90,7 @@ TEST(Camera_Rays, FollowTheirDensity) {
     }
 }
 
-Shape area_light(std::variant<TriangleMesh, Sphere> geometry, bool two_sided) {
+Shape area_light(Geometry geometry, bool two_sided) {
     Shape shape;
     shape.geometry = std::move(geometry);
     shape.material = make_black();

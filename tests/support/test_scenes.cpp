@@ -76,6 +76,11 @@ SceneMaker& SceneMaker::cloud(const Vec3& lower, const Vec3& upper, const std::s
     return *this;
 }
 
+SceneMaker& SceneMaker::shape(Shape s) {
+    d_.shapes.push_back(std::move(s));
+    return *this;
+}
+
 SceneMaker& SceneMaker::emitter(std::unique_ptr<Emitter> e) {
     d_.emitters.push_back(std::move(e));
     return *this;

@@ -30,6 +30,7 @@ class SceneMaker {
     /// A box of `inside` without a surface, in `around`; null: vacuum.
     SceneMaker& cloud(const Vec3& lower, const Vec3& upper, const std::shared_ptr<const Medium>& inside,
                       const std::shared_ptr<const Medium>& around = nullptr);
+    SceneMaker& shape(Shape s);
     SceneMaker& emitter(std::unique_ptr<Emitter> e);
     SceneMaker& camera(const Vec3& from, const Vec3& to, float fov, float lens_radius = 0, float focus = 1);
     /// Makes the camera see along parallels, `size` metres of the film's shorter side.

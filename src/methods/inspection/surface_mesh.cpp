@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
+#include <utility>
 
 namespace keyhole {
 namespace {
@@ -96,7 +98,7 @@ Part clustered(const TriangleMesh& mesh, double cell, const Vec3& origin) {
 }
 
 /// Of as many triangles as that, or nearly.
-Part simplified(const TriangleMesh& mesh, std::size_t most, const Scene& scene) {
+Part simplified(const TriangleMesh& mesh, std::size_t most, const Vec3& origin) {
     Part part{mesh.positions, {}, {}};
     for (const auto& t : mesh.triangles) part.triangles.push_back({t[0], t[1], t[2]});
     if (part.triangles.size() <= most) return part;
@@ -104,15 +106,24 @@ Part simplified(const TriangleMesh& mesh, std::size_t most, const Scene& scene) 
     for (const Vec3& p : mesh.positions) box.extendBy(p);
     const double size = std::max(1e-9f, box.size().length());
     for (double parts = 2 * std::sqrt(static_cast<double>(most)); parts >= 1; parts /= 1.4) {
-        part = clustered(mesh, size / parts, scene.lower());
+        part = clustered(mesh, size / parts, origin);
         if (part.triangles.size() <= most) break;
     }
     return part;
 }
 
+using MeshPtr = std::shared_ptr<const TriangleMesh>;
+
+/// A mesh that has copies, of as many triangles as that, or nearly.
+MeshPtr of_few_triangles(const MeshPtr& mesh, std::size_t most) {
+    if (mesh->triangles.size() <= most) return mesh;
+    Part part = simplified(*mesh, most, Vec3(0, 0, 0));
+    return std::make_shared<TriangleMesh>(TriangleMesh{std::move(part.positions), {}, {}, std::move(part.triangles)});
+}
+
 /// The mesh, with the colour that each position has on one of the triangles that meet there.
 Part coloured(const Shape& shape, const TriangleMesh& mesh, std::size_t most, const Scene& scene) {
-    Part part = simplified(mesh, most, scene);
+    Part part = simplified(mesh, most, scene.lower());
     TriangleMesh all; // triangles of what is left
     all.positions = part.positions;
     for (const Triangle& t : part.triangles) all.triangles.push_back({t[0], t[1], t[2]});
@@ -152,15 +163,22 @@ SurfaceMesh surface_mesh(const Scene& scene, std::size_t most) {
     out.of_scene = scene.triangle_count();
     const double share =
         std::min(1.0, static_cast<double>(most) / static_cast<double>(std::max<std::size_t>(1, out.of_scene)));
+    std::map<MeshPtr, MeshPtr> simple; // those of copies
     for (const Shape& shape : scene.shapes()) {
-        TriangleMesh sphere;
+        TriangleMesh made;
         const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
-        if (mesh == nullptr)
-            mesh = &(sphere = tessellated(std::get<Sphere>(shape.geometry), static_cast<std::uint32_t>(around)));
-        if (mesh->triangles.empty()) continue;
+        if (const auto* sphere = std::get_if<Sphere>(&shape.geometry))
+            mesh = &(made = tessellated(*sphere, static_cast<std::uint32_t>(around)));
         constexpr double kFew = 16; // triangles, which nobody needs to save
-        const double own = share * static_cast<double>(mesh->triangles.size());
-        Part part = coloured(shape, *mesh, static_cast<std::size_t>(std::max(kFew, own)), scene);
+        const double own = share * static_cast<double>((mesh != nullptr ? mesh : held_mesh(shape))->triangles.size());
+        const auto few = static_cast<std::size_t>(std::max(kFew, own));
+        if (const auto* instance = std::get_if<MeshInstance>(&shape.geometry)) {
+            MeshPtr& known = simple[instance->mesh];
+            if (known == nullptr) known = of_few_triangles(instance->mesh, few);
+            mesh = &(made = flattened({known, instance->to_world}));
+        }
+        if (mesh->triangles.empty()) continue;
+        Part part = coloured(shape, *mesh, few, scene);
         if (shape.emission != nullptr) {
             part.colours.assign(part.positions.size(), colour_of(*shape.emission));
             emitters.add(part);

@@ -19,15 +19,15 @@ constexpr float kMostParts = 64;
 /// Whether gather rays ask for places there.
 bool is_asked(const Shape& shape) {
     return !is_interface(shape) && shape.material != nullptr && shape.material->traits().finite &&
-           std::holds_alternative<TriangleMesh>(shape.geometry);
+           !std::holds_alternative<Sphere>(shape.geometry);
 }
 
 /// Whether a search from any of some points of a triangle finds a place.
-bool has_places(const TriangleMesh& mesh, std::uint32_t triangle, bool behind, const SurfaceLookupGrid::Find& find) {
+bool has_places(const Shape& shape, std::uint32_t triangle, bool behind, const SurfaceLookupGrid::Find& find) {
     constexpr int kSteps = 6;
     for (int v = 1; v < kSteps; ++v)
         for (int u = 1; u + v < kSteps; ++u) {
-            const SurfacePoint at = triangle_point(mesh, triangle, static_cast<float>(u) / kSteps,
+            const SurfacePoint at = triangle_point(shape, triangle, static_cast<float>(u) / kSteps,
                                                    static_cast<float>(v) / kSteps, /*parametrised=*/false);
             if (find(at.p, behind ? -at.ng : at.ng).place != SurfaceLookupGrid::kNothing) return true;
         }
@@ -35,14 +35,24 @@ bool has_places(const TriangleMesh& mesh, std::uint32_t triangle, bool behind, c
 }
 
 /// The place for all of a triangle's side, kNothing or kSearch.
-std::uint32_t place_for_all(const TriangleMesh& mesh, std::uint32_t triangle, bool behind,
+std::uint32_t place_for_all(const Shape& shape, std::uint32_t triangle, bool behind,
                             const SurfaceLookupGrid::Find& find) {
-    const SurfacePoint at = triangle_point(mesh, triangle, 1 / 3.0f, 1 / 3.0f, /*parametrised=*/false);
+    const SurfacePoint at = triangle_point(shape, triangle, 1 / 3.0f, 1 / 3.0f, /*parametrised=*/false);
     const SurfaceLookupGrid::Found found = find(at.p, behind ? -at.ng : at.ng);
-    const auto corner = [&](std::size_t i) { return mesh.positions[mesh.triangles[triangle][i]]; };
-    const float longest = std::max(
-        {(corner(1) - corner(0)).length(), (corner(2) - corner(1)).length(), (corner(0) - corner(2)).length()});
+    const auto [a, b, c] = triangle_corners(shape, triangle);
+    const float longest = std::max({(b - a).length(), (c - b).length(), (a - c).length()});
     return longest <= found.size ? found.place : SurfaceLookupGrid::kSearch;
+}
+
+/// Of copies by some of the triangles: there may be more in them than one has time for.
+double mean_triangle_area(const Shape& shape) {
+    constexpr std::size_t kSome = 64;
+    const std::size_t n = triangle_count(shape);
+    if (!std::holds_alternative<MeshInstance>(shape.geometry)) return surface_area(shape) / static_cast<double>(n);
+    const std::size_t some = std::min(n, kSome);
+    double sum = 0;
+    for (std::size_t i = 0; i < some; ++i) sum += triangle_area(shape, static_cast<std::uint32_t>(i * n / some));
+    return sum / static_cast<double>(some);
 }
 
 } // namespace
@@ -84,28 +94,25 @@ SurfaceLookupGrid::SurfaceLookupGrid(const std::vector<Shape>& shapes, std::size
 
 std::vector<SurfaceLookupGrid::Triangle> SurfaceLookupGrid::index(const std::vector<Shape>& shapes, std::size_t most,
                                                                   const Find& find, const RunContext& context) {
-    const auto mesh = [&](std::uint32_t s) -> const TriangleMesh& {
-        return std::get<TriangleMesh>(shapes[s].geometry);
-    };
     std::vector<std::pair<double, std::uint32_t>> by_area;
     for (std::uint32_t s = 0; s < shapes.size(); ++s)
-        if (is_asked(shapes[s]) && !mesh(s).triangles.empty())
-            by_area.emplace_back(surface_area(shapes[s]) / static_cast<double>(mesh(s).triangles.size()), s);
+        if (is_asked(shapes[s]) && triangle_count(shapes[s]) > 0)
+            by_area.emplace_back(mean_triangle_area(shapes[s]), s);
     std::ranges::stable_sort(by_area, std::greater(), &std::pair<double, std::uint32_t>::first);
     std::vector<Triangle> large;
     for (const auto& [area, s] : by_area) {
-        const std::size_t triangles = mesh(s).triangles.size();
+        const std::size_t triangles = triangle_count(shapes[s]);
         if (triangles > most) continue;
         most -= triangles;
         auto& entries = entries_[s];
         entries.resize(2 * triangles);
         parallel_blocks(static_cast<std::int64_t>(entries.size()), kSidesOfBlock, context, [&, s = s](std::int64_t i) {
             entries[static_cast<std::size_t>(i)] =
-                place_for_all(mesh(s), static_cast<std::uint32_t>(i / 2), i % 2 == 1, find);
+                place_for_all(shapes[s], static_cast<std::uint32_t>(i / 2), i % 2 == 1, find);
         });
         for (std::uint32_t t = 0; t < triangles; ++t) {
             const bool whole = entries[entry_of(t, 0)] != kSearch && entries[entry_of(t, 1)] != kSearch;
-            if (const double own = triangle_area(mesh(s), t); !whole && own > 0) large.push_back({s, t, own, {}});
+            if (const double own = triangle_area(shapes[s], t); !whole && own > 0) large.push_back({s, t, own, {}});
         }
     }
     std::ranges::stable_sort(large, std::greater(), &Triangle::area);
@@ -114,15 +121,12 @@ std::vector<SurfaceLookupGrid::Triangle> SurfaceLookupGrid::index(const std::vec
 
 void SurfaceLookupGrid::make_grids(const std::vector<Shape>& shapes, std::vector<Triangle> triangles, std::size_t most,
                                    const Find& find, const RunContext& context) {
-    const auto mesh = [&](const Triangle& t) -> const TriangleMesh& {
-        return std::get<TriangleMesh>(shapes[t.shape].geometry);
-    };
     double area = 0;
     for (Triangle& t : triangles)
         for (const std::size_t side : {0, 1}) {
             check_stop(context);
             if (entries_[t.shape][entry_of(t.triangle, side)] != kSearch ||
-                !has_places(mesh(t), t.triangle, side == 1, find))
+                !has_places(shapes[t.shape], t.triangle, side == 1, find))
                 continue;
             t.sides.push_back(side);
             area += t.area;
@@ -130,7 +134,7 @@ void SurfaceLookupGrid::make_grids(const std::vector<Shape>& shapes, std::vector
     for (const Triangle& t : triangles) {
         if (t.sides.empty()) continue;
         // Half of the cells is for small triangles, which have more than their share.
-        Grid grid = make_grid(mesh(t), t.triangle, 2 * area / static_cast<double>(most));
+        Grid grid = make_grid(triangle_corners(shapes[t.shape], t.triangle), 2 * area / static_cast<double>(most));
         const std::uint32_t cells = grid.before(grid.rows);
         if (cells_.size() + t.sides.size() * cells > most) break;
         for (const std::size_t side : t.sides) {
@@ -144,10 +148,7 @@ void SurfaceLookupGrid::make_grids(const std::vector<Shape>& shapes, std::vector
     cells_.shrink_to_fit();
 }
 
-SurfaceLookupGrid::Grid SurfaceLookupGrid::make_grid(const TriangleMesh& mesh, std::uint32_t triangle,
-                                                     double cell_area) {
-    std::array<Vec3, 3> p;
-    for (std::size_t i = 0; i < 3; ++i) p[i] = mesh.positions[mesh.triangles[triangle][i]];
+SurfaceLookupGrid::Grid SurfaceLookupGrid::make_grid(const std::array<Vec3, 3>& p, double cell_area) {
     // From the corner opposite the longest edge the other two make cells that are least askew.
     std::size_t corner = 0;
     for (std::size_t i = 1; i < 3; ++i)

@@ -74,7 +74,7 @@ class SurfaceLookupGrid {
     /// Gives grids to the largest of these, as many as there is memory for.
     void make_grids(const std::vector<Shape>& shapes, std::vector<Triangle> triangles, std::size_t most,
                     const Find& find, const RunContext& context);
-    static Grid make_grid(const TriangleMesh& mesh, std::uint32_t triangle, double cell_area);
+    static Grid make_grid(const std::array<Vec3, 3>& p, double cell_area);
     static std::size_t entry_of(std::uint32_t triangle, std::size_t side) { return 2 * std::size_t{triangle} + side; }
     /// Searches from the middles of one side's cells.
     void fill(const Grid& grid, std::size_t side, const Find& find);

@@ -3,7 +3,6 @@
 
 #include "photonmap/surface/surface_region.h"
 #include "sampling/paths/gather_coverage.h"
-#include "scene/geometry.h"
 #include "scene/scene.h"
 
 #include <algorithm>
@@ -14,7 +13,7 @@ namespace keyhole {
 /// lower than that doesn't part them.
 inline bool in_sight(const Scene& scene, const SurfaceRegion& region, float lift, const Vec3& p) {
     // Far from the origin positions are no more accurate than that.
-    const Vec3 above = region.normal * std::max(lift, 2 * rounding_along(region.normal, region.position));
+    const Vec3 above = region.normal * std::max(lift, 2 * scene.rounding_along(region.normal, region.position));
     return p == region.position || scene.visible(region.position + above, p + above);
 }
 

@@ -43,12 +43,6 @@ double cap_area(const Sphere& sphere, const SurfaceRegion& region, double r) {
     return 2 * kPi * radius * std::min(depth, radius * (1 - SurfaceRegion::kMinCosine));
 }
 
-Imath::Box3f bounds_of(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& t) {
-    Imath::Box3f box;
-    for (const std::uint32_t i : t) box.extendBy(mesh.positions[i]);
-    return box;
-}
-
 Imath::Box3f bounds_of(const Sphere& sphere) {
     return {sphere.center - Vec3(sphere.radius), sphere.center + Vec3(sphere.radius)};
 }
@@ -106,8 +100,8 @@ SurfacePatches::Index SurfacePatches::index_of(bool (*wanted)(const Shape& shape
     std::vector<Imath::Box3f> boxes;
     for (std::uint32_t s = 0; has_tree_ && s < shapes_.size(); ++s) {
         if (!wanted(shapes_[s])) continue;
-        const auto* mesh = std::get_if<TriangleMesh>(&shapes_[s].geometry);
-        const auto n = static_cast<std::uint32_t>(mesh != nullptr ? mesh->triangles.size() : 1);
+        const bool whole = std::holds_alternative<Sphere>(shapes_[s].geometry);
+        const auto n = static_cast<std::uint32_t>(whole ? 1 : triangle_count(shapes_[s]));
         for (std::uint32_t t = 0; t < n; ++t) boxes.push_back(bounds(patches.emplace_back(Patch{s, t})));
     }
     return {std::move(patches), BoxTree(boxes)};
@@ -116,8 +110,9 @@ SurfacePatches::Index SurfacePatches::index_of(bool (*wanted)(const Shape& shape
 Imath::Box3f SurfacePatches::bounds(const Patch& patch) const {
     const Shape& shape = shapes_[patch.shape];
     if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) return bounds_of(*sphere);
-    const auto& mesh = std::get<TriangleMesh>(shape.geometry);
-    return bounds_of(mesh, mesh.triangles[patch.triangle]);
+    Imath::Box3f box;
+    for (const Vec3& p : triangle_corners(shape, patch.triangle)) box.extendBy(p);
+    return box;
 }
 
 double SurfacePatches::area(const SurfaceRegion& region, double r) const {
@@ -213,7 +208,8 @@ float SurfacePatches::free_height(const SurfaceRegion& region, double r) const {
     from.p = region.position;
     from.ng = region.normal;
     // Far from the origin rounding is the larger one, and the surface itself would be met.
-    from.offset = std::max(kOffSurface * static_cast<float>(r), 2 * rounding_along(region.normal, region.position));
+    from.offset =
+        std::max(kOffSurface * static_cast<float>(r), 2 * scene_->rounding_along(region.normal, region.position));
     for (int layer = 0; layer < kMostLayers; ++layer) {
         const auto hit = scene_->trace(from, region.normal);
         if (!hit || hit->site != Site::surface) return kNone;
@@ -256,11 +252,10 @@ bool SurfacePatches::obstructed_by_rays(const SurfaceRegion& region, double r) c
 /// Stretched along the normal, the ellipsoid becomes a sphere, which cuts the triangle's plane in a disc; areas in that
 /// plane all shrink by one factor on the way back.
 SurfacePatches::Part SurfacePatches::triangle_part(const Patch& patch, const SurfaceRegion& region, double r) const {
-    const auto& mesh = std::get<TriangleMesh>(shapes_[patch.shape].geometry);
-    const auto& t = mesh.triangles[patch.triangle];
+    const auto corners = triangle_corners(shapes_[patch.shape], patch.triangle);
     const V3d n(region.normal);
     std::array<V3d, 3> p;
-    for (std::size_t i = 0; i < 3; ++i) p[i] = V3d(mesh.positions[t[i]]) - V3d(region.position);
+    for (std::size_t i = 0; i < 3; ++i) p[i] = V3d(corners[i]) - V3d(region.position);
     const V3d cross = (p[1] - p[0]).cross(p[2] - p[0]);
     const double facing = cross.dot(n), twice_area = cross.length();
     if (!(std::abs(facing) > SurfaceRegion::kMinCosine * twice_area)) return {};

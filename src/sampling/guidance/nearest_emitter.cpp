@@ -39,7 +39,7 @@ NearestEmitter nearest_on(const Sphere& sphere, const V3& p, const V3& towards) 
     return {sphere_point(sphere, w), std::max(0.0, out.length() - sphere.radius)};
 }
 
-NearestEmitter nearest_on(const TriangleMesh& mesh, const V3& p, const V3& /*towards*/) {
+NearestEmitter nearest_on(const TriangleMesh& mesh, const V3& p) {
     NearestEmitter best{{}, std::numeric_limits<double>::infinity()};
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
         const auto& [a, b, c] = mesh.triangles[i];
@@ -69,8 +69,9 @@ std::optional<NearestEmitter> nearest_emitter_point(const Scene& scene, const V3
         const std::uint32_t emitter = scene.emitter_of_shape(i);
         if (emitter == SurfacePoint::kNone) continue;
         const Shape& shape = scene.shapes()[i];
+        const auto* sphere = std::get_if<Sphere>(&shape.geometry);
         NearestEmitter found =
-            std::visit([&](const auto& geometry) { return nearest_on(geometry, p, towards); }, shape.geometry);
+            sphere != nullptr ? nearest_on(*sphere, p, towards) : nearest_on(std::get<TriangleMesh>(shape.geometry), p);
         found.point.shape = static_cast<std::uint32_t>(i);
         found.point.material = shape.material.get();
         take(found, emitter);

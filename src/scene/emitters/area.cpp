@@ -49,12 +49,15 @@ class AreaEmitter final : public Emitter {
         : shape_(shape), index_(index), invisible_(is_invisible_light(shape)),
           parametrised_(reads_parametrisation(shape)), area_(surface_area(shape)) {
         if (!(area_ > 0)) throw InputError("an emitting shape has no area");
-        if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) {
-            std::vector<double> areas(mesh->triangles.size());
-            for (std::uint32_t i = 0; i < areas.size(); ++i) areas[i] = triangle_area(*mesh, i);
+        if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) {
+            bounds_ = bounds_of(*sphere);
+        } else {
+            const auto& mesh = std::get<TriangleMesh>(shape.geometry);
+            std::vector<double> areas(mesh.triangles.size());
+            for (std::uint32_t i = 0; i < areas.size(); ++i) areas[i] = triangle_area(mesh, i);
             triangles_ = EmitterDistribution(areas);
+            bounds_ = bounds_of(mesh);
         }
-        bounds_ = std::visit([](const auto& geometry) { return bounds_of(geometry); }, shape.geometry);
         luminance_ = mean_luminance();
         bounds_.intensity = luminance_ * area_;
         if (shape.emission->two_sided) bounds_.spread = kPi;

@@ -6,6 +6,7 @@
 #include <Imath/ImathMatrix.h>
 #include <Imath/ImathVec.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,6 @@ namespace keyhole {
 
 /// Row vectors times matrix, as Imath has it: of two transforms the first to act stands on the left.
 using Transform = Imath::M44d;
-using Geometry = decltype(Shape::geometry);
 
 /// More are refused.
 constexpr std::size_t kMaxMeshTriangles = std::size_t{1} << 26;
@@ -35,8 +35,9 @@ TriangleMesh import_mesh(const std::string& path);
 
 /// A part of a file where that places it.
 struct MeshPart {
-    TriangleMesh mesh;
-    std::vector<Imath::V4f> colors; ///< red, green, blue and opacity, linear; one per position, or empty
+    Geometry geometry;              ///< a mesh, or one of several instances of it
+    std::vector<Imath::V4f> colors; ///< red, green, blue and opacity, linear; one per position of a mesh that is no
+                                    ///< instance, or empty
     std::string material;           ///< its name; may be empty
     std::string name;               ///< of the node that places it; may be empty
 };
@@ -92,19 +93,35 @@ void append_grid(TriangleMesh& mesh, std::uint32_t first, std::uint32_t columns,
 /// |det| of the linear part over the product of its rows' lengths: 1 for rotations and scalings, 0 when singular.
 double regularity(const Transform& t);
 
-/// Moves a mesh to where `t` (regular) takes it. A mirrored transform reverses the corners of the triangles.
-void transform_mesh(TriangleMesh& mesh, const Transform& t);
-
-/// As transform_mesh(). A sphere stays one where `t` scales all directions alike, else it becomes a mesh with normals.
+/// Moves it to where `t` (regular) takes it. A sphere stays one where `t` scales all directions alike, else it becomes
+/// a mesh with normals.
 void transform_geometry(Geometry& geometry, const Transform& t);
 
-/// Whether no coordinate is beyond 1e13, a margin around what files may say: cubes of lengths stay within a float.
+/// Whether no coordinate is beyond 1e13, a margin around what files may say: cubes of lengths stay within a float. Not
+/// for instances.
 bool has_bounded_positions(const Geometry& geometry);
 
-/// Exchanges outside and inside.
+/// Exchanges outside and inside, of what is no instance.
 void flip(Geometry& geometry);
 
-/// Triangles; a sphere has none.
-std::size_t triangle_count(const Geometry& geometry);
+// Meshes that stand in several places: mesh/shared_mesh.cpp.
+
+/// Whether a mesh of that many triangles is better held once for all of its copies than moved to each of their places.
+bool is_worth_sharing(std::size_t triangles, std::size_t copies);
+
+/// A mesh for copies of an object.
+class SharedMesh {
+  public:
+    /// `mesh` in the space of the object.
+    explicit SharedMesh(TriangleMesh mesh);
+    const TriangleMesh& mesh() const { return *mesh_; }
+    /// The mesh where it stands in a copy: an instance, or moved there where an instance would be too inexact or too
+    /// far away.
+    Geometry placed(const std::shared_ptr<const ObjectToWorld>& to_world) const;
+
+  private:
+    std::shared_ptr<const TriangleMesh> mesh_;
+    double reach_ = 0; // the largest coordinate
+};
 
 } // namespace keyhole

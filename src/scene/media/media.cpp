@@ -29,9 +29,9 @@ float beyond_boundary(float nearest, float met, float skip) {
 Media::Media(const std::vector<Shape>& shapes, std::shared_ptr<const Medium> outermost)
     : shapes_(shapes), outermost_(std::move(outermost)), scatter_(any_scatters(shapes, outermost_.get())) {
     if (std::ranges::none_of(shapes, bounds_media)) return;
-    accelerator_ = std::make_unique<Accelerator>();
+    accelerator_ = std::make_unique<Accelerator>(shapes);
     for (std::uint32_t i = 0; i < shapes.size(); ++i)
-        if (bounds_media(shapes[i])) accelerator_->attach(shapes[i], i);
+        if (bounds_media(shapes[i])) accelerator_->attach(i);
     accelerator_->commit();
 }
 

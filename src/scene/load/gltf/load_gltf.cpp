@@ -1,6 +1,7 @@
 #include "scene/load/load.h"
 
 #include "scene/emitters/emitters.h"
+#include "scene/geometry.h"
 #include "scene/load/gltf/importable.h"
 #include "scene/load/gltf/materials.h"
 #include "scene/load/gltf/nodes.h"
@@ -14,6 +15,8 @@
 #include <charconv>
 #include <filesystem>
 #include <map>
+#include <memory>
+#include <set>
 
 namespace keyhole {
 namespace {
@@ -25,8 +28,11 @@ using gltf::MaterialData;
 /// Looks at everything from above one corner.
 gltf::View view_of_all(const std::vector<Shape>& shapes) {
     Imath::Box3d box;
-    for (const Shape& shape : shapes)
-        for (const Vec3& p : std::get<TriangleMesh>(shape.geometry).positions) box.extendBy(Imath::V3d(p));
+    for (const Shape& shape : shapes) {
+        const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
+        for (const Vec3& p : held_mesh(shape)->positions)
+            box.extendBy(Imath::V3d(instance != nullptr ? instance->to_world->point(p) : p));
+    }
     gltf::View view;
     view.window.width = 640;
     view.window.height = 480;
@@ -70,12 +76,17 @@ class SceneBuilder {
             const bool own = colors.color != nullptr || colors.opacity != nullptr;
             const MaterialData data = own ? read(material, colors) : material_of(material);
             Shape shape;
-            shape.geometry = std::move(part.mesh);
+            shape.geometry = std::move(part.geometry);
             shape.material = data.material;
             shape.alpha = data.alpha;
             shape.name = std::move(part.name);
             shape.material_name = name_of(material);
-            if (!is_black(data.emission.radiance)) shape.emission = std::make_unique<SurfaceEmission>(data.emission);
+            if (!is_black(data.emission.radiance)) {
+                shape.emission = std::make_unique<SurfaceEmission>(data.emission);
+                emitting_ += triangle_count(shape);
+                if (emitting_ > kMaxTriangles)
+                    document_.fail(fmt::format("found more than {} triangles that emit", kMaxTriangles));
+            }
             fill(shape, data.inside);
             shapes.push_back(std::move(shape));
         }
@@ -83,9 +94,13 @@ class SceneBuilder {
     }
 
     /// A medium ends where its mesh ends: one with holes would let it out everywhere.
-    void fill(Shape& shape, const std::shared_ptr<const Medium>& inside) const {
+    void fill(Shape& shape, const std::shared_ptr<const Medium>& inside) {
         if (inside == nullptr) return;
-        if (is_closed(std::get<TriangleMesh>(shape.geometry)))
+        const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
+        bool closed = instance != nullptr && closed_.contains(instance->mesh);
+        if (!closed) closed = is_closed(*held_mesh(shape));
+        if (closed && instance != nullptr) closed_.insert(instance->mesh);
+        if (closed)
             shape.inside = inside;
         else
             document_.warn(fmt::format("the mesh '{}' isn't closed: nothing in its glass of the material '{}' absorbs",
@@ -130,6 +145,8 @@ class SceneBuilder {
     Warnings warnings_;
     Document document_;
     std::map<std::size_t, MaterialData> materials_;
+    std::size_t emitting_ = 0;                             ///< triangles, of each copy
+    std::set<std::shared_ptr<const TriangleMesh>> closed_; ///< of those that have copies
 };
 
 /// What `read` makes of a file.

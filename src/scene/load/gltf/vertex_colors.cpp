@@ -14,8 +14,9 @@ namespace {
 /// A mesh with a value at each position. Textures outlive the mesh that a file is read into.
 class VertexValues {
   public:
-    explicit VertexValues(const MeshPart& part)
-        : positions_(part.mesh.positions), triangles_(part.mesh.triangles), values_(part.colors) {}
+    explicit VertexValues(const MeshPart& part) : VertexValues(std::get<TriangleMesh>(part.geometry), part.colors) {}
+    VertexValues(const TriangleMesh& mesh, const std::vector<Imath::V4f>& values)
+        : positions_(mesh.positions), triangles_(mesh.triangles), values_(values) {}
 
     /// Red, green, blue and opacity; 1 at points of no triangle.
     Imath::V4d value(const SurfacePoint& point) const {

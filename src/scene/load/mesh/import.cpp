@@ -1,6 +1,7 @@
 #include "scene/load/load_mesh.h"
 
 #include "core/error.h"
+#include "scene/geometry.h"
 #include "scene/load/load.h"
 
 #include <assimp/BaseImporter.h>
@@ -18,7 +19,10 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <memory>
+#include <optional>
 #include <set>
+#include <utility>
 
 namespace keyhole {
 namespace {
@@ -105,7 +109,11 @@ void append(TriangleMesh& all, TriangleMesh part) {
 /// Walks the file's tree of placements.
 class Collector {
   public:
-    Collector(const aiScene& scene, const std::string& path) : scene_(scene), path_(path) {}
+    /// @param instances whether parts may be instances.
+    Collector(const aiScene& scene, const std::string& path, bool instances)
+        : scene_(scene), path_(path), copies_(scene.mNumMeshes, 0), shared_(scene.mNumMeshes) {
+        if (instances) count(*scene.mRootNode, 0);
+    }
 
     std::vector<MeshPart> collect() {
         visit(*scene_.mRootNode, Transform(), 0);
@@ -114,33 +122,85 @@ class Collector {
     }
 
   private:
+    void count(const aiNode& node, int depth) {
+        if (depth > kMostDepth) fail(path_, "found parts nested more than 256 deep, expected fewer levels");
+        for (unsigned i = 0; i < node.mNumMeshes; ++i) ++copies_[node.mMeshes[i]];
+        for (unsigned i = 0; i < node.mNumChildren; ++i) count(*node.mChildren[i], depth + 1);
+    }
+
     void visit(const aiNode& node, const Transform& parent, int depth) {
-        if (depth > 256) fail(path_, "found parts nested more than 256 deep, expected fewer levels");
+        if (depth > kMostDepth) fail(path_, "found parts nested more than 256 deep, expected fewer levels");
         const Transform to_world = to_transform(node.mTransformation) * parent;
-        for (unsigned i = 0; i < node.mNumMeshes; ++i)
-            place(*scene_.mMeshes[node.mMeshes[i]], to_world, node.mName.C_Str());
+        std::shared_ptr<const ObjectToWorld> copy; // of what hangs on the node
+        for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+            const unsigned number = node.mMeshes[i];
+            const aiMesh& source = *scene_.mMeshes[number];
+            // Colours of vertices are known by where the mesh stands.
+            if (source.HasVertexColors(0) || !is_worth_sharing(source.mNumFaces, copies_[number])) {
+                place(source, to_world, node.mName.C_Str());
+                continue;
+            }
+            check_regular(to_world);
+            if (copy == nullptr) copy = std::make_shared<const ObjectToWorld>(to_world);
+            place_copy(number, copy, node.mName.C_Str());
+        }
         for (unsigned i = 0; i < node.mNumChildren; ++i) visit(*node.mChildren[i], to_world, depth + 1);
     }
 
-    void place(const aiMesh& source, const Transform& to_world, const char* name) {
-        triangles_ += source.mNumFaces;
-        positions_ += source.mNumVertices;
-        if (triangles_ > kMaxMeshTriangles || positions_ > 3 * kMaxMeshTriangles)
-            fail(path_, fmt::format("found more than {} triangles, expected fewer", kMaxMeshTriangles));
-        TriangleMesh part = convert(source);
+    void check_regular(const Transform& to_world) const {
         if (!(regularity(to_world) > 1e-12))
             fail(path_, "found a singular placement of a part, expected a regular one");
+    }
+
+    void hold(std::size_t triangles, std::size_t positions) {
+        triangles_ += triangles;
+        positions_ += positions;
+        if (triangles_ > kMaxMeshTriangles || positions_ > 3 * kMaxMeshTriangles)
+            fail(path_, fmt::format("found more than {} triangles, expected fewer", kMaxMeshTriangles));
+    }
+
+    void place(const aiMesh& source, const Transform& to_world, const char* name) {
+        hold(source.mNumFaces, source.mNumVertices);
+        TriangleMesh part = convert(source);
+        check_regular(to_world);
         any_ = any_ || !part.triangles.empty();
         transform_mesh(part, to_world);
         mend_mesh(part, path_);
-        if (part.triangles.empty()) return;
-        const aiString material = scene_.mMaterials[source.mMaterialIndex]->GetName();
-        parts_.push_back({std::move(part), colors_of(source), material.C_Str(), name});
+        if (!part.triangles.empty()) add(source, std::move(part), name);
     }
+
+    void place_copy(unsigned number, const std::shared_ptr<const ObjectToWorld>& copy, const char* name) {
+        const aiMesh& source = *scene_.mMeshes[number];
+        std::optional<SharedMesh>& shared = shared_[number];
+        if (!shared) {
+            hold(source.mNumFaces, source.mNumVertices);
+            TriangleMesh mesh = convert(source);
+            any_ = any_ || !mesh.triangles.empty();
+            mend_mesh(mesh, path_);
+            shared.emplace(std::move(mesh));
+        }
+        if (shared->mesh().triangles.empty()) return;
+        Geometry geometry = shared->placed(copy);
+        if (auto* moved = std::get_if<TriangleMesh>(&geometry)) {
+            hold(moved->triangles.size(), moved->positions.size());
+            mend_mesh(*moved, path_);
+            if (moved->triangles.empty()) return;
+        }
+        add(source, std::move(geometry), name);
+    }
+
+    void add(const aiMesh& source, Geometry geometry, const char* name) {
+        const aiString material = scene_.mMaterials[source.mMaterialIndex]->GetName();
+        parts_.push_back({std::move(geometry), colors_of(source), material.C_Str(), name});
+    }
+
+    static constexpr int kMostDepth = 256;
 
     const aiScene& scene_;
     const std::string& path_;
     std::vector<MeshPart> parts_;
+    std::vector<std::size_t> copies_; ///< by mesh: nodes that have it
+    std::vector<std::optional<SharedMesh>> shared_;
     std::size_t triangles_ = 0, positions_ = 0;
     bool any_ = false; ///< triangles, with an area or without
 };
@@ -186,7 +246,9 @@ std::string with_leading_zeros(const std::string& text) {
     return s;
 }
 
-std::vector<MeshPart> read_parts(const std::string& path, const std::string& extension, const std::string* content) {
+/// @param instances whether parts may be instances.
+std::vector<MeshPart> read_parts(const std::string& path, const std::string& extension, const std::string* content,
+                                 bool instances) {
     std::string text;
     if (extension == ".obj" && content == nullptr) {
         std::ifstream file(path, std::ios::binary);
@@ -206,13 +268,13 @@ std::vector<MeshPart> read_parts(const std::string& path, const std::string& ext
     const aiScene* scene = checked(
         importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType));
     if (scene->mRootNode == nullptr) fail(path, "found no triangles, expected at least one");
-    return Collector(*scene, path).collect();
+    return Collector(*scene, path, instances).collect();
 }
 
 } // namespace
 
 std::vector<MeshPart> import_parts(const std::string& path, const std::string* content) {
-    return read_parts(path, check_file(path), content);
+    return read_parts(path, check_file(path), content, true);
 }
 
 TriangleMesh import_mesh(const std::string& path) {
@@ -221,7 +283,8 @@ TriangleMesh import_mesh(const std::string& path) {
     const bool gltf = extension == ".gltf" || extension == ".glb";
     const std::string content = gltf ? importable_gltf(path) : "";
     TriangleMesh all;
-    for (MeshPart& part : read_parts(path, extension, gltf ? &content : nullptr)) append(all, std::move(part.mesh));
+    for (MeshPart& part : read_parts(path, extension, gltf ? &content : nullptr, false))
+        append(all, std::move(std::get<TriangleMesh>(part.geometry)));
     return all;
 }
 

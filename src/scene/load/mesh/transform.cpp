@@ -1,5 +1,7 @@
+#include "scene/geometry.h"
 #include "scene/load/load_mesh.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -29,20 +31,6 @@ double regularity(const Transform& t) {
     return product > 0 ? std::abs(determinant3(t)) / product : 0.0;
 }
 
-void transform_mesh(TriangleMesh& mesh, const Transform& t) {
-    for (Vec3& p : mesh.positions) p = Vec3(Imath::V3d(p) * t);
-    if (!mesh.normals.empty()) {
-        // Normals are covectors; without the sign of the determinant they keep pointing outside.
-        const Transform covector = t.inverse().transposed();
-        for (Vec3& n : mesh.normals) {
-            Imath::V3d moved;
-            covector.multDirMatrix(Imath::V3d(n), moved);
-            n = Vec3(moved.normalized());
-        }
-    }
-    if (determinant3(t) < 0) reverse_winding(mesh);
-}
-
 void transform_geometry(Geometry& geometry, const Transform& t) {
     if (const auto* sphere = std::get_if<Sphere>(&geometry)) {
         if (is_uniform(t)) {
@@ -63,14 +51,7 @@ bool has_bounded_positions(const Geometry& geometry) {
         return std::abs(p.x) <= kMost && std::abs(p.y) <= kMost && std::abs(p.z) <= kMost;
     };
     if (const auto* s = std::get_if<Sphere>(&geometry)) return bounded(s->center) && bounded(Vec3(s->radius));
-    for (const Vec3& p : std::get<TriangleMesh>(geometry).positions)
-        if (!bounded(p)) return false;
-    return true;
-}
-
-std::size_t triangle_count(const Geometry& geometry) {
-    const auto* mesh = std::get_if<TriangleMesh>(&geometry);
-    return mesh != nullptr ? mesh->triangles.size() : 0;
+    return std::ranges::all_of(std::get<TriangleMesh>(geometry).positions, bounded);
 }
 
 void flip(Geometry& geometry) {

@@ -8,7 +8,9 @@
 
 #include <exception>
 #include <map>
+#include <memory>
 #include <numeric>
+#include <utility>
 
 namespace keyhole::pbrt {
 namespace {
@@ -102,8 +104,9 @@ class Builder {
 
     std::vector<Shape> place() {
         check_limits();
+        share_meshes();
         std::vector<std::vector<Shape>> made(placements_.size());
-        parallel_attempt(placements_.size(), mistakes_, [&](std::size_t i) { made[i] = place(placements_[i]); });
+        parallel_attempt(placements_.size(), mistakes_, [&](std::size_t i) { made[i] = place(i); });
         if (!mistakes_.empty()) return {};
         for (std::size_t i = 0; i < made.size(); ++i)
             if (made[i].empty()) warn_of_flat(records_[placements_[i].record]);
@@ -118,28 +121,71 @@ class Builder {
   private:
     void check_limits() const {
         std::size_t triangles = 0, shapes = 0;
+        std::vector<bool> held(records_.size(), false);
         for (const Placement& p : placements_) {
             const ShapeRecord& r = records_[p.record];
-            triangles += triangle_count(r.source.geometry);
+            if (!held[p.record]) triangles += triangles_of(r);
+            held[p.record] = is_shared(p.record);
             if (++shapes > kMaxShapes || triangles > kMaxTriangles)
                 r.directive.fail(fmt::format("found more than {} shapes or {} triangles, expected fewer", kMaxShapes,
                                              kMaxTriangles));
         }
     }
 
-    std::vector<Shape> place(const Placement& placement) {
-        ShapeRecord& record = records_[placement.record];
-        Geometry geometry = uses_[placement.record] == 1 ? std::move(record.source.geometry) : record.source.geometry;
-        const Transform to_world = record.to_world * placement.to_world;
-        if (!(regularity(to_world) > 1e-12))
+    static std::size_t triangles_of(const ShapeRecord& record) {
+        const auto* mesh = std::get_if<TriangleMesh>(&record.source.geometry);
+        return mesh != nullptr ? mesh->triangles.size() : 0;
+    }
+
+    /// Whether there are copies of an object that hold the mesh of a record in common. There are no lights among them.
+    bool is_shared(std::size_t record) const { return is_worth_sharing(triangles_of(records_[record]), uses_[record]); }
+
+    void share_meshes() {
+        shared_.resize(records_.size());
+        parallel_attempt(records_.size(), mistakes_, [&](std::size_t i) {
+            ShapeRecord& record = records_[i];
+            if (!is_shared(i)) return;
+            const Transform to_object = record.to_world;
+            check_regular(record, to_object);
+            Geometry geometry = put(record, std::move(record.source.geometry), to_object);
+            shared_[i].emplace(std::move(std::get<TriangleMesh>(geometry)));
+        });
+        for (const Placement& p : placements_) {
+            const bool known = p.copy > 0 && !copies_.empty() && p.copy == placements_[copies_.size() - 1].copy;
+            copies_.push_back(known        ? copies_.back()
+                              : p.copy > 0 ? std::make_shared<const ObjectToWorld>(p.to_world)
+                                           : nullptr);
+        }
+    }
+
+    static void check_regular(const ShapeRecord& record, const Transform& t) {
+        if (!(regularity(t) > 1e-12))
             record.directive.fail("found a transform that flattens the shape, expected a regular one");
+    }
+
+    static Geometry put(const ShapeRecord& record, Geometry geometry, const Transform& to) {
         if (is_textured(record)) parametrise(geometry);
-        transform_geometry(geometry, to_world);
+        transform_geometry(geometry, to);
         if (auto* mesh = std::get_if<TriangleMesh>(&geometry)) turn_triangles_to_normals(*mesh);
         if (record.reversed) flip(geometry);
         if (!has_bounded_positions(geometry))
             record.directive.fail("found a shape too large or too far, expected it within 1e13");
-        return finish(record, std::move(geometry));
+        return geometry;
+    }
+
+    std::vector<Shape> place(std::size_t i) {
+        const Placement& placement = placements_[i];
+        ShapeRecord& record = records_[placement.record];
+        const Transform to_world = record.to_world * placement.to_world;
+        check_regular(record, to_world);
+        if (const std::optional<SharedMesh>& shared = shared_[placement.record]) {
+            Geometry geometry = shared->placed(copies_[i]);
+            if (std::holds_alternative<TriangleMesh>(geometry) && !has_bounded_positions(geometry))
+                record.directive.fail("found a shape too large or too far, expected it within 1e13");
+            return finish(record, std::move(geometry));
+        }
+        const bool once = uses_[placement.record] == 1;
+        return finish(record, put(record, once ? std::move(record.source.geometry) : record.source.geometry, to_world));
     }
 
     void warn_of_flat(const ShapeRecord& record) const {
@@ -193,6 +239,8 @@ class Builder {
     Warnings& warnings_;
     Mistakes& mistakes_;
     std::vector<std::size_t> uses_;
+    std::vector<std::optional<SharedMesh>> shared_;            ///< by record
+    std::vector<std::shared_ptr<const ObjectToWorld>> copies_; ///< by placement: the same one within a copy
 };
 
 bool same_opacity(const FloatTexture& a, const FloatTexture& b) {

@@ -33,7 +33,8 @@ bool look_alike(const ShapeRecord& a, const ShapeRecord& b);
 /// A record where it stands in the world.
 struct Placement {
     std::size_t record;
-    Transform to_world; ///< after the record's own
+    Transform to_world;   ///< after the record's own
+    std::size_t copy = 0; ///< of an object, from 1 in the order of placements; 0: none
 };
 
 /// Reads the mesh files, each once and several at a time, and puts all shapes into world space. `records` are used up.

@@ -19,7 +19,7 @@ void Importer::place_object(const Directive& d) {
     if (placements_.size() + records.size() > kMaxShapes)
         d.stop(fmt::format("found more than {} shapes, expected fewer", kMaxShapes));
     ++instances_;
-    for (const std::size_t record : records) placements_.push_back({record, state_.to_world});
+    for (const std::size_t record : records) placements_.push_back({record, state_.to_world, instances_});
 }
 
 void Importer::define_texture(const Directive& d) {

@@ -100,10 +100,8 @@ void ShapeReader::read_shapes(const YamlNode& section) {
 }
 
 void ShapeReader::append(std::vector<Shape> shapes) {
-    for (Shape& shape : shapes) {
-        triangles_ += triangle_count(shape.geometry);
-        shapes_.push_back(std::move(shape));
-    }
+    for (const TriangleMesh* mesh : held_meshes(shapes)) triangles_ += mesh->triangles.size();
+    for (Shape& shape : shapes) shapes_.push_back(std::move(shape));
 }
 
 void ShapeReader::check_unused_groups() {
@@ -131,13 +129,22 @@ void ShapeReader::read_shape(const YamlNode& node, const Placement& placement) {
     ++leaves_;
     check_limits(node);
     Shape shape;
-    shape.geometry = kPrimitives.at(type)(node, meshes_);
+    const auto known = group_meshes_.find(&node);
+    const bool held = known != group_meshes_.end() && known->second.shared;
+    if (!held) shape.geometry = kPrimitives.at(type)(node, meshes_);
     const MapReader map(node, "a shape");
     Placement own = inherit(map, placement);
-    transform_geometry(shape.geometry, own.to_world);
-    if (map.boolean("flip", false)) flip(shape.geometry);
-    const double area = surface_area(shape);
-    if (!has_bounded_positions(shape.geometry))
+    GroupMesh* group = type == "mesh" ? group_mesh(node, own) : nullptr;
+    if (group != nullptr && group->shared) {
+        shape.geometry = group->shared->placed(own.copy);
+    } else {
+        if (held) shape.geometry = kPrimitives.at(type)(node, meshes_);
+        transform_geometry(shape.geometry, own.to_world);
+        if (map.boolean("flip", false)) flip(shape.geometry);
+    }
+    const bool is_copy = std::holds_alternative<MeshInstance>(shape.geometry); // which has an area, and emits nothing
+    const double area = is_copy ? 1 : surface_area(shape);
+    if (!is_copy && !has_bounded_positions(shape.geometry))
         fail(node, "found a shape too large or too far, expected it within 1e13");
     if (type == "mesh" && !has_area(shape.geometry))
         return warnings_.add_flat_mesh(node.position(), fmt::format("mesh '{}'", map.at("file").text));
@@ -159,9 +166,34 @@ void ShapeReader::read_shape(const YamlNode& node, const Placement& placement) {
     shape.alpha = alpha != nullptr ? read_float_texture(*alpha, kOpacity) : surface.alpha;
     if (const YamlNode* inside = map.find("inside")) shape.inside = media_.resolve(*inside);
     if (const YamlNode* outside = map.find("outside")) shape.outside = media_.resolve(*outside);
-    triangles_ += triangle_count(shape.geometry);
+    if (!is_copy) triangles_ += triangle_count(shape);
     shapes_.push_back(std::move(shape));
+    if (group != nullptr && !group->shared) add_copy(*group, node, own);
     check_limits(node);
+}
+
+/// What instances may share of a mesh in a group. Null: nothing, for another mesh has the name, or what emits is not
+/// shared.
+ShapeReader::GroupMesh* ShapeReader::group_mesh(const YamlNode& node, const Placement& own) {
+    const bool emits = MapReader(node, "a shape").find("emission") != nullptr ||
+                       (own.material && !is_black(own.material->surface().emission));
+    if (own.copy == nullptr || emits) return nullptr;
+    const auto known = group_meshes_.try_emplace(&node, GroupMesh{own.to_object, {}, {}}).first;
+    return known->second.to_object == own.to_object ? &known->second : nullptr;
+}
+
+/// The last shape is a copy; with enough of them all become instances.
+void ShapeReader::add_copy(GroupMesh& mesh, const YamlNode& node, const Placement& own) {
+    mesh.copies.push_back({shapes_.size() - 1, own.copy});
+    const std::size_t triangles = triangle_count(shapes_.back()), copies = mesh.copies.size();
+    if (!is_worth_sharing(triangles, copies)) return;
+    Geometry geometry = kPrimitives.at("mesh")(node, meshes_);
+    transform_geometry(geometry, mesh.to_object);
+    if (MapReader(node, "a shape").boolean("flip", false)) flip(geometry);
+    mesh.shared.emplace(std::move(std::get<TriangleMesh>(geometry)));
+    for (const GroupMesh::Copy& copy : mesh.copies) shapes_[copy.shape].geometry = mesh.shared->placed(copy.to_world);
+    triangles_ -= (copies - 1) * triangles;
+    mesh.copies.clear();
 }
 
 void ShapeReader::read_group(const YamlNode& node, const Placement& placement) {
@@ -177,7 +209,10 @@ void ShapeReader::read_instance(const YamlNode& node, const Placement& placement
     if (found == groups_.end())
         throw UnknownName(reference.position(), fmt::format("group '{}'", name), unknown_name("group", name, groups_));
     ++instances_;
-    read_named_group(found->second, reference, inherit(map, placement));
+    Placement own = inherit(map, placement);
+    own.copy = std::make_shared<const ObjectToWorld>(own.to_world);
+    own.to_object = Transform();
+    read_named_group(found->second, reference, own);
 }
 
 void ShapeReader::read_named_group(Group& group, const YamlNode& user, const Placement& placement) {
@@ -198,7 +233,9 @@ ShapeReader::Placement ShapeReader::inherit(const MapReader& map, const Placemen
     Placement own = placement;
     ++own.depth;
     if (const YamlNode* transform = map.find("transform")) {
-        own.to_world = read_transform(*transform) * placement.to_world;
+        const Transform t = read_transform(*transform);
+        own.to_world = t * placement.to_world;
+        own.to_object = t * placement.to_object;
         if (!(regularity(own.to_world) > 1e-12))
             fail(*transform,
                  "found a transform that is singular with those around it, expected one that can be inverted");

@@ -8,6 +8,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,15 +50,27 @@ class ShapeReader {
     /// What the shapes in a group inherit.
     struct Placement {
         Transform to_world;
-        std::shared_ptr<const Material> material; ///< for those without one; may be null
-        std::string name, material_name;          ///< of those without one; may be empty
-        int depth = 0;                            ///< groups around
+        Transform to_object;                       ///< from there: the space of the innermost instance
+        std::shared_ptr<const ObjectToWorld> copy; ///< from that to the world; null: not in an instance
+        std::shared_ptr<const Material> material;  ///< for those without one; may be null
+        std::string name, material_name;           ///< of those without one; may be empty
+        int depth = 0;                             ///< groups around
     };
     struct Group {
         YamlPtr key, shapes;
         bool used = false;
         bool open = false;  ///< being read, so that an instance of it would be within itself
         bool empty = false; ///< holds no shape
+    };
+    /// A mesh of a group: held once for all of its instances as soon as there are enough of them.
+    struct GroupMesh {
+        Transform to_object; ///< an alias of the same map may have another one
+        struct Copy {
+            std::size_t shape;
+            std::shared_ptr<const ObjectToWorld> to_world;
+        };
+        std::vector<Copy> copies; ///< with meshes of their own, until it is shared
+        std::optional<SharedMesh> shared;
     };
 
     void add_group(const YamlNode::Entry& entry);
@@ -67,6 +80,8 @@ class ShapeReader {
     void read_group(const YamlNode& node, const Placement& placement);
     Placement inherit(const MapReader& map, const Placement& placement) const;
     void read_named_group(Group& group, const YamlNode& user, const Placement& placement);
+    GroupMesh* group_mesh(const YamlNode& node, const Placement& own);
+    void add_copy(GroupMesh& mesh, const YamlNode& node, const Placement& own);
     void check_limits(const YamlNode& node) const;
 
     const MaterialTable& materials_;
@@ -75,6 +90,7 @@ class ShapeReader {
     Mistakes& mistakes_;
     std::map<std::string, Group> groups_;
     MeshCache meshes_;
+    std::map<const YamlNode*, GroupMesh> group_meshes_;
     std::vector<Shape> shapes_;
     std::size_t triangles_ = 0, instances_ = 0;
     std::size_t leaves_ = 0; ///< shapes that were read, those without an area and parts of one file as one

@@ -1,0 +1,45 @@
+#include "scene/geometry.h"
+#include "scene/load/load_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace keyhole {
+namespace {
+
+/// Of a mesh: with fewer, rays would find boxes of copies more often than triangles, and a copy takes as much memory as
+/// two or three.
+constexpr std::size_t kLeastTriangles = 64;
+/// Fewer triangles are built in tenths of a second and take some 10 MB, and rays that meet overlapping copies of fine
+/// meshes take up to a fifth longer.
+constexpr std::size_t kLeastSaved = 100'000;
+
+} // namespace
+
+bool is_worth_sharing(std::size_t triangles, std::size_t copies) {
+    return triangles >= kLeastTriangles && copies > 1 && (copies - 1) * triangles >= kLeastSaved;
+}
+
+SharedMesh::SharedMesh(TriangleMesh mesh) {
+    // As a Scene does with other meshes.
+    std::erase_if(mesh.triangles, [&](const auto& t) { return !has_area(mesh, t); });
+    drop_needless_normals(mesh);
+    for (const Vec3& p : mesh.positions)
+        reach_ = std::max<double>({reach_, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    mesh_ = std::make_shared<const TriangleMesh>(std::move(mesh));
+}
+
+Geometry SharedMesh::placed(const std::shared_ptr<const ObjectToWorld>& to_world) const {
+    MeshInstance instance{mesh_, to_world};
+    double farthest = 0;
+    for (int k = 0; k < 3; ++k) {
+        const Transform& m = to_world->matrix();
+        const double linear = std::abs(m[0][k]) + std::abs(m[1][k]) + std::abs(m[2][k]);
+        farthest = std::max(farthest, reach_ * linear + std::abs(m[3][k]));
+    }
+    if (to_world->rounds_little() && farthest <= kMaxMeshCoordinate) return instance;
+    return flattened(instance);
+}
+
+} // namespace keyhole
