@@ -1,4 +1,5 @@
 // keyhole merge: several pictures of one scene made into one.
+#include "cli/pictures/files_apart.h"
 #include "cli/pictures/outputs.h"
 #include "cli/program.h"
 #include "cli/words/tell.h"
@@ -27,6 +28,9 @@ Picture unfiltered(Picture picture) {
 int merge(MergeOptions o) {
     if (!o.no_png && o.outputs.png.empty()) o.outputs.png = default_png(o.outputs.exr);
     o.outputs.check();
+    std::vector<NamedFile> inputs;
+    for (const std::string& path : o.inputs) inputs.push_back({"a picture to merge", path});
+    check_apart(o.outputs.files(), inputs);
     std::vector<NamedPicture> pictures;
     for (const std::string& path : o.inputs) pictures.push_back({path, unfiltered(read_exr(path))});
     Picture joined = join_pictures(pictures);

@@ -1,5 +1,6 @@
 // keyhole render: from a scene file to pictures.
 #include "cli/checkpoints.h"
+#include "cli/pictures/files_apart.h"
 #include "cli/pictures/outputs.h"
 #include "cli/process_group.h"
 #include "cli/program.h"
@@ -225,13 +226,19 @@ int run(RenderOptions options) {
         options.outputs.png.clear();
     else if (options.outputs.png.empty())
         options.outputs.png = default_png(options.outputs.exr);
+    const std::string checkpoint = options.checkpoints.file(options.outputs.exr);
     if (options.writes()) options.outputs.check();
-    for (const std::string& file : {options.checkpoints.file(options.outputs.exr), options.save_map})
+    for (const std::string& file : {checkpoint, options.save_map})
         if (!file.empty()) check_writable(file);
+    std::vector<NamedFile> outputs = options.outputs.files();
+    outputs.insert(outputs.end(), {{"--save-map", options.save_map}, {"the checkpoint", checkpoint}});
+    check_apart(outputs,
+                {{"the scene", options.scene}, {"--user-paths", options.user_paths}, {"--load-map", options.load_map}});
 
     const InterruptHandler interrupts(stop);
     std::vector<std::string> load_warnings;
     LoadedScene loaded = load_for(options, load_warnings);
+    check_apart(outputs, files_of(loaded));
     options.outputs.exposure = loaded.settings.exposure.value;
     options.outputs.noise_layers = loaded.settings.noise_layers;
     options.outputs.denoise = loaded.settings.denoise;
