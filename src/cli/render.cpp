@@ -234,6 +234,7 @@ int run(RenderOptions options) {
     outputs.insert(outputs.end(), {{"--save-map", options.save_map}, {"the checkpoint", checkpoint}});
     check_apart(outputs,
                 {{"the scene", options.scene}, {"--user-paths", options.user_paths}, {"--load-map", options.load_map}});
+    if (options.writes()) options.checkpoints.keep_others(options.outputs.exr);
 
     const InterruptHandler interrupts(stop);
     std::vector<std::string> load_warnings;
