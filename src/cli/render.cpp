@@ -146,7 +146,8 @@ RenderResult render_scene(LoadedScene& loaded, RenderOptions& options, std::vect
                              options.threads};
         start_clock(options, stop);
         const std::uint64_t hash = scene_hash(scene);
-        const Picture expected{window.width, window.height, {}, render_identity(loaded.settings, hash), {}};
+        const Picture expected{
+            window.width, window.height, {}, render_identity(loaded.settings, hash, loaded.user_paths), {}};
         WorkPartition share = options.checkpoints.share(options.outputs.exr, expected, loaded.settings, options.group);
         const auto progress = make_progress(options.quiet, stop);
         if (options.writes()) view.watch(share);
@@ -161,7 +162,7 @@ RenderResult render_scene(LoadedScene& loaded, RenderOptions& options, std::vect
                      : render(scene, loaded.settings, context, loaded.user_paths, share);
         if (!result.picture.layers.empty()) add_masks(result.picture, scene, loaded.settings, stop);
         result.stats.stages.insert(result.stats.stages.begin(), loading);
-        const auto identity = render_identity(result.settings, hash);
+        const auto identity = render_identity(result.settings, hash, loaded.user_paths);
         result.picture.metadata.insert(identity.begin(), identity.end());
         if (options.checkpoints.resume && share.done == nullptr)
             result.stats.remarks.emplace_back("found no checkpoint to go on from: started from the beginning");
