@@ -12,7 +12,9 @@
 #include "cli/words/tell.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/percent.h"
 #include "film/files/atomic_file.h"
+#include "film/files/exr.h"
 #include "film/image_error.h"
 #include "methods/choice/effort.h"
 #include "methods/choice/first_look.h"
@@ -28,11 +30,13 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <filesystem>
 #include <optional>
 #include <set>
 #include <sstream>
 #include <string_view>
 #include <sys/ioctl.h>
+#include <thread>
 #include <unistd.h>
 
 namespace keyhole {
@@ -172,21 +176,52 @@ RenderResult render_scene(LoadedScene& loaded, RenderOptions& options, std::vect
     return result;
 }
 
+/// CPU time of a unit of effort [s], about, and passes that should fit into a time where a checkpoint keeps whole ones
+/// alone: several, because scenes may be as many times slower than others.
+constexpr double kSecondsOfEffort = 5, kPassesInTime = 8;
+/// From this effort on a pass takes no less than by the settings' defaults.
+constexpr double kEffortOfDefaults = 3;
+
+/// Settings whose passes are short enough for the time, or as long as those of the checkpoint to go on from.
+Settings with_short_passes(const Settings& settings, const ImageWindow& window, const RenderOptions& options,
+                           const std::set<std::string>& named) {
+    if (settings.method->samples_pixels) return settings; // whose units are rounds
+    const std::string file = options.checkpoints.file(options.outputs.exr);
+    std::error_code error;
+    if (!options.checkpoints.resume || !std::filesystem::exists(file, error)) {
+        const double cores = options.threads > 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
+        const double seconds = options.cpu_time ? *options.cpu_time : options.timeout.value_or(0) * cores;
+        const double effort = seconds / (kSecondsOfEffort * kPassesInTime);
+        return effort < kEffortOfDefaults
+                   ? with_effort(settings, effort, static_cast<std::int64_t>(window.size()), named)
+                   : settings;
+    }
+    Settings s = settings;
+    const auto words = settings_of({file, read_exr(file)});
+    for (const std::string_view key : kSettingsOfEffort)
+        if (const auto word = words.find(std::string(key)); word != words.end() && !named.contains(word->first))
+            apply_override(s, word->second);
+    return s;
+}
+
 /// The scene with the settings that the options ask for.
 /// @throws InputError for a scene, settings and options that don't go together.
 LoadedScene load_for(const RenderOptions& options, std::vector<std::string>& warnings) {
     std::set<std::string> named = named_settings(options.overrides);
-    // An error to reach asks for as many passes as that takes, unless somebody says how many.
-    std::vector<std::string> overrides = options.overrides;
-    const bool in_passes = options.in_time() && (options.group != nullptr || options.checkpoints.asked());
-    if (named.contains("target_error") || in_passes) {
-        overrides.insert(overrides.begin(), "passes=0");
-        named.insert("passes"); // an effort has no say in it
-    }
     const auto quality = choice_of<Quality>(options.quality);
     if (!quality && !options.quality.empty())
         throw InputError("found quality '" + options.quality + "', expected draft, good or final");
-    LoadedScene loaded = load(options.scene, overrides, &warnings);
+    LoadedScene loaded = load(options.scene, options.overrides, &warnings);
+    if (!options.resolution.empty()) set_resolution(loaded.description.window, options.resolution);
+    // An error to reach asks for as many passes as that takes, unless somebody says how many.
+    const bool in_passes = options.in_time() && options.checkpoints.asked();
+    const bool to_error =
+        loaded.settings.target_error > 0 && (named.contains("target_error") || loaded.settings.passes == 1);
+    if ((to_error || in_passes) && !named.contains("passes")) {
+        loaded.settings.passes = 0;
+        named.insert("passes"); // an effort has no say in it
+    }
+    if (in_passes) loaded.settings = with_short_passes(loaded.settings, loaded.description.window, options, named);
     if (quality) loaded.settings = with_quality(loaded.settings, *quality, named);
     for (const auto& [option, file] : {std::pair{"--save-map", &options.save_map}, {"--load-map", &options.load_map}})
         if (!file->empty() && !loaded.settings.method->keeps_photons)
@@ -198,7 +233,6 @@ LoadedScene load_for(const RenderOptions& options, std::vector<std::string>& war
     loaded.settings.save_map = options.save_map;
     loaded.settings.load_map = options.load_map;
     if (!options.user_paths.empty()) loaded.user_paths = load_user_paths(options.user_paths);
-    if (!options.resolution.empty()) set_resolution(loaded.description.window, options.resolution);
     return loaded;
 }
 
@@ -214,8 +248,12 @@ void write(RenderResult& result, const RenderOptions& options, const StopToken& 
         [&](const Picture& picture) { return options.denoising.apply(picture, stop, result.stats); },
         [&] { return json_text(stats_json(result.stats)) + "\n"; });
     if (options.verbose) print_report(result.stats);
+    const auto& values = result.stats.values;
+    const auto error = values.find("relative error");
     if (!options.quiet)
-        tell("{}: {} x {} pixels{}\n", options.outputs.exr, width, height,
+        tell("{}: {} x {} pixels{}{}\n", options.outputs.exr, width, height,
+             result.settings.target_error > 0 && error != values.end() ? ", relative error " + percent(error->second)
+                                                                       : "",
              result.stats.complete ? "" : ", stopped early");
 }
 
@@ -249,6 +287,10 @@ int run(RenderOptions options) {
     result.stats.warnings.insert(result.stats.warnings.begin(), load_warnings.begin(), load_warnings.end());
     if (!options.quiet) print_warnings(result.stats);
     if (!has_picture(result)) {
+        if (!stop.requested() && options.checkpoints.asked())
+            throw InputError("the time was up before the first unit of work was whole: nothing was written; expected "
+                             "more time, or shorter units (-D light_paths=..., mutations=..., "
+                             "brightness_samples=..., importons=...)");
         if (!stop.requested()) throw InputError("the time was up before the first pixel: nothing was written");
         tell("keyhole: stopped before there was a unit of work to keep: nothing was written\n");
         return kInterrupted;
@@ -257,6 +299,13 @@ int run(RenderOptions options) {
     if (result.stats.unsaved) throw InputError(*result.stats.unsaved);
     if (stop.requested()) return kInterrupted;
     return options.strict && !result.stats.warnings.empty() ? kNotTrusted : kSuccess;
+}
+
+/// Of --target-error, which 0 would let go on for ever. @returns what is wrong; empty: nothing
+std::string check_target(const std::string& text) {
+    double error = 0;
+    const bool good = CLI::detail::lexical_cast(text, error) && error > 0 && error <= 1;
+    return good ? "" : fmt::format("found '{}', expected a relative error above 0, at most 1", text);
 }
 
 /// The words that a setting may be, in brackets; empty: it is no choice.
@@ -309,6 +358,7 @@ void add_render_command(CLI::App& app, Action& action, const std::string& comman
             option,
             [o, key = key](const std::string& value) { o->overrides.push_back(std::string(key) + "=" + value); },
             std::string("the setting ") + key);
+    command->get_option("--target-error")->check(CLI::Validator(check_target, ""));
     command
         ->add_option_function<std::vector<std::string>>(
             "-D",

@@ -122,9 +122,10 @@ void check_same_render(const NamedPicture& a, const NamedPicture& b, SameRender 
         refuse(b, fmt::format("found {} x {} pixels, expected {} x {} as in {}", b.picture.width, b.picture.height,
                               a.picture.width, a.picture.height, a.name));
     std::set<std::string_view> free{"denoise", "noise_layers"}; // what is done with the picture afterwards
-    if (same != SameRender::seed) // and what follows from an effort, as that does from a time
-        free.insert({"seed", "passes", "spp", "photons", "light_paths", "mutations", "brightness_samples", "importons",
-                     "cache_error", "cache_min_reach", "cache_rays"});
+    if (same != SameRender::seed) {
+        free.insert("seed");
+        free.insert(kSettingsOfEffort.begin(), kSettingsOfEffort.end());
+    }
     const auto of_a = settings_of(a), of_b = settings_of(b);
     for (const auto& [key, word] : of_a) {
         if (free.contains(key)) continue;

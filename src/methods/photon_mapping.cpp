@@ -35,7 +35,10 @@ class FileSampler final : public PhotonSampler {
     /// @throws InputError if more than one pass is asked for.
     explicit FileSampler(const SamplerContext& context) : c_(context) {
         if (context.settings.passes != 1)
-            throw InputError("a saved photon map is one pass: expected passes=1 with --load-map");
+            throw InputError(
+                fmt::format("found passes={} and target_error={} with --load-map, expected one pass and no "
+                            "target: the photons of a file are the same in every pass",
+                            context.settings.passes, context.settings.target_error));
     }
 
     Photons sample(std::uint64_t /*seed*/, RenderStats& stats, const RunContext& /*context*/) override {

@@ -1,5 +1,6 @@
 // Long renders, from outside: killed and gone on with, done in shares, and not to be trusted.
 #include "film/files/exr.h"
+#include "film/join.h"
 #include "support/program.h"
 
 #include <gmock/gmock.h>
@@ -161,6 +162,49 @@ TEST_F(LongRender, KeepsACheckpointUntilThereIsABetterOne) {
     EXPECT_EQ(units(), "0:2");
     run(render + "--resume --timeout 0.001");
     EXPECT_EQ(units().substr(0, 2), "0:") << "there was no time for anything";
+}
+
+/// Without an effort a pass of photons takes longer than that.
+TEST_F(LongRender, FitsPassesIntoATimeThatIsGoneOnWith) {
+    const std::string render = "render scene.yaml -q --no-png -t 1 --method ipm -o a.exr --checkpoint 0 --resume ";
+    std::int64_t before = 0;
+    for (const char* time : {"1.5", "2"}) {
+        ASSERT_EQ(run(render + "--cpu-time " + time), 0) << read("err");
+        const std::int64_t units = units_of({"", read_exr(scratch.path("a.checkpoint.exr"))}).size();
+        EXPECT_GT(units, before);
+        before = units;
+    }
+    EXPECT_EQ(run("render scene.yaml -q --no-png -t 1 --method ipm -o b.exr --checkpoint 0 --cpu-time 0.2 -D "
+                  "light_paths=100M"),
+              2);
+    EXPECT_THAT(read("err"), HasSubstr("shorter units (-D light_paths="));
+}
+
+TEST_F(LongRender, ATargetInTheSceneIsThatOfTheOption) {
+    std::string text = kScene;
+    text.replace(text.find("spp: 2"), 6, "spp: 2, target_error: 0.2");
+    scratch.write("target.yaml", text);
+    ASSERT_EQ(run("render target.yaml --no-png -o a.exr"), 0) << read("err");
+    EXPECT_THAT(read("err"), HasSubstr("24 x 16 pixels, relative error "));
+    ASSERT_EQ(run("render scene.yaml -q --no-png -o b.exr --target-error 0.2"), 0) << read("err");
+    expect_same("a.exr", "b.exr");
+    EXPECT_EQ(read_exr(scratch.path("a.exr")).metadata.at("complete"), "yes");
+}
+
+TEST_F(LongRender, ATargetThatIsMissedIsAWarning) {
+    for (const char* end : {"--cpu-time 0.3", "--passes 5"}) {
+        const std::string render = "render scene.yaml --no-png -o a.exr --target-error 1e-5 " + std::string(end);
+        EXPECT_EQ(run(render), 0);
+        EXPECT_THAT(read("err"), HasSubstr("not 0.001 % as was asked for"));
+        EXPECT_THAT(read("err"), testing::Not(HasSubstr("100 %")));
+        EXPECT_EQ(read_exr(scratch.path("a.exr")).metadata.at("complete"), "no");
+        EXPECT_EQ(run(render + " --strict"), 3);
+    }
+    for (const char* error : {"0", "-1", "nan", "2", "x"}) {
+        EXPECT_EQ(run("render scene.yaml -o b.exr --target-error " + std::string(error)), 2) << error;
+        EXPECT_THAT(read("err"), HasSubstr("expected a relative error above 0")) << error;
+    }
+    EXPECT_EQ(run("render scene.yaml -q --no-png -o b.exr -D target_error=0"), 0) << "none";
 }
 
 TEST_F(LongRender, ReachesAnErrorByWhateverEffort) {
