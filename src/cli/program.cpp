@@ -116,7 +116,8 @@ int run_program(int argc, char** argv, ProcessGroup* group) {
         if (e.code().value() == EPIPE) return kInternalError;
         return fail(kInternalError, fmt::format("internal error: {}", e.what()));
     } catch (const std::bad_alloc&) {
-        return fail(kBadInput, "not enough memory for what is asked: try fewer pixels, samples or threads");
+        return fail(kBadInput, "not enough memory for what is asked: try fewer pixels, samples or threads, or "
+                               "less photon_memory");
     } catch (const std::exception& e) {
         return fail(kInternalError, fmt::format("internal error: {}", e.what()));
     }
