@@ -16,6 +16,9 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <system_error>
+
 namespace keyhole {
 namespace {
 
@@ -112,7 +115,7 @@ class Passes {
         RunContext early = context;
         early.reserve += for_gather_;
         Photons photons = sampler_.sample(seed, stats_, early);
-        if (pass == 0) save(photons, context);
+        if (pass == 0) save(photons, early);
         // The photons of a pass that was cut short are good for a first picture, not for one that is there.
         if (early.stopped() && (context.communicator != nullptr || !work_.is_first())) return false;
         report_photons(photons, stats_);
@@ -134,6 +137,14 @@ class Passes {
         if (c_.settings.save_map.empty()) return;
         saved_ = true;
         if (context.communicator != nullptr && context.communicator->rank() > 0) return;
+        if (context.stopped()) {
+            std::error_code error;
+            const bool there = std::filesystem::exists(c_.settings.save_map, error);
+            stats_.warn(Doubt::photons,
+                        fmt::format("{}: the pass was stopped before it had all photons: {}", c_.settings.save_map,
+                                    there ? "the older file stays" : "the file has a part of them"));
+            if (there) return;
+        }
         try {
             save_photons(c_.settings.save_map, photon_file_key(c_.scene, c_.settings, c_.coverage), photons);
         } catch (const InputError& e) { // the picture must not be lost with them
