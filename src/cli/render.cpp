@@ -7,6 +7,7 @@
 #include "cli/progress/interrupt.h"
 #include "cli/progress/live_view.h"
 #include "cli/progress/terminal_progress.h"
+#include "cli/setting_options.h"
 #include "cli/words/metadata.h"
 #include "cli/words/report.h"
 #include "cli/words/tell.h"
@@ -36,7 +37,6 @@
 #include <sstream>
 #include <string_view>
 #include <sys/ioctl.h>
-#include <thread>
 #include <unistd.h>
 
 namespace keyhole {
@@ -69,13 +69,6 @@ std::unique_ptr<TerminalProgress> make_progress(bool quiet, const StopToken& sto
     const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
     return std::make_unique<TerminalProgress>(stderr, terminal, known ? size.ws_col : 80, &TerminalProgress::Clock::now,
                                               [&stop] { return stop.seconds_left(); });
-}
-
-/// Settings that the command line names.
-std::set<std::string> named_settings(const std::vector<std::string>& overrides) {
-    std::set<std::string> keys;
-    for (const std::string& o : overrides) keys.insert(o.substr(0, o.find('=')));
-    return keys;
 }
 
 /// Shares of one render, of which either may hold no unit at all, as one.
@@ -189,8 +182,8 @@ Settings with_short_passes(const Settings& settings, const ImageWindow& window, 
     const std::string file = options.checkpoints.file(options.outputs.exr);
     std::error_code error;
     if (!options.checkpoints.resume || !std::filesystem::exists(file, error)) {
-        const double cores = options.threads > 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
-        const double seconds = options.cpu_time ? *options.cpu_time : options.timeout.value_or(0) * cores;
+        const double seconds =
+            options.cpu_time ? *options.cpu_time : cpu_time_of(options.timeout.value_or(0), options.threads);
         const double effort = seconds / (kSecondsOfEffort * kPassesInTime);
         return effort < kEffortOfDefaults
                    ? with_effort(settings, effort, static_cast<std::int64_t>(window.size()), named)
@@ -208,9 +201,7 @@ Settings with_short_passes(const Settings& settings, const ImageWindow& window, 
 /// @throws InputError for a scene, settings and options that don't go together.
 LoadedScene load_for(const RenderOptions& options, std::vector<std::string>& warnings) {
     std::set<std::string> named = named_settings(options.overrides);
-    const auto quality = choice_of<Quality>(options.quality);
-    if (!quality && !options.quality.empty())
-        throw InputError("found quality '" + options.quality + "', expected draft, good or final");
+    with_quality_of({}, options.quality, {}); // a word that is none, before the scene is read
     LoadedScene loaded = load(options.scene, options.overrides, &warnings);
     if (!options.resolution.empty()) set_resolution(loaded.description.window, options.resolution);
     // An error to reach asks for as many passes as that takes, unless somebody says how many.
@@ -222,7 +213,7 @@ LoadedScene load_for(const RenderOptions& options, std::vector<std::string>& war
         named.insert("passes"); // an effort has no say in it
     }
     if (in_passes) loaded.settings = with_short_passes(loaded.settings, loaded.description.window, options, named);
-    if (quality) loaded.settings = with_quality(loaded.settings, *quality, named);
+    loaded.settings = with_quality_of(loaded.settings, options.quality, named);
     for (const auto& [option, file] : {std::pair{"--save-map", &options.save_map}, {"--load-map", &options.load_map}})
         if (!file->empty() && !loaded.settings.method->keeps_photons)
             throw InputError(fmt::format("{}: found method {}, expected one that keeps photons: {}", option,
@@ -301,13 +292,6 @@ int run(RenderOptions options) {
     return options.strict && !result.stats.warnings.empty() ? kNotTrusted : kSuccess;
 }
 
-/// Of --target-error, which 0 would let go on for ever. @returns what is wrong; empty: nothing
-std::string check_target(const std::string& text) {
-    double error = 0;
-    const bool good = CLI::detail::lexical_cast(text, error) && error > 0 && error <= 1;
-    return good ? "" : fmt::format("found '{}', expected a relative error above 0, at most 1", text);
-}
-
 /// The words that a setting may be, in brackets; empty: it is no choice.
 template <class T> std::string choices_of(const T& /*setting*/) {
     if constexpr (Choice<T>)
@@ -347,26 +331,7 @@ void add_render_command(CLI::App& app, Action& action, const std::string& comman
                         "user paths, instead of the scene's, for " + names_of(&Method::follows_user_paths));
     command->add_flag("--skip-bad-paths", o->skip_bad_paths,
                       "leave out user paths that don't work in the scene, with a warning");
-    for (const char* key : {"method", "spp", "mutations", "photons", "passes", "seed", "denoise"})
-        command->add_option_function<std::string>(
-            std::string("--") + key,
-            [o, key](const std::string& value) { o->overrides.push_back(std::string(key) + "=" + value); },
-            std::string("the setting ") + key);
-    for (const auto& [option, key] :
-         {std::pair("--photon-memory", "photon_memory"), {"--target-error", "target_error"}})
-        command->add_option_function<std::string>(
-            option,
-            [o, key = key](const std::string& value) { o->overrides.push_back(std::string(key) + "=" + value); },
-            std::string("the setting ") + key);
-    command->get_option("--target-error")->check(CLI::Validator(check_target, ""));
-    command
-        ->add_option_function<std::vector<std::string>>(
-            "-D",
-            [o](const std::vector<std::string>& pairs) {
-                o->overrides.insert(o->overrides.end(), pairs.begin(), pairs.end());
-            },
-            "any setting, KEY=VALUE; may be repeated, and overrules the options above")
-        ->allow_extra_args(false);
+    add_setting_options(*command, o->overrides);
     command->add_option("--save-map", o->save_map, "write the photons of the first pass to this file");
     command->add_option("--load-map", o->load_map, "take photons from this file instead of sampling any");
     o->checkpoints.add_options(*command);
@@ -377,9 +342,7 @@ void add_render_command(CLI::App& app, Action& action, const std::string& comman
         command->add_option("--cpu-time", o->cpu_time, "the same in SECONDS of CPU time, of all threads together")
             ->check(real_range(1e-3, 1e9))
             ->excludes(timeout);
-    command->add_option("--quality", o->quality, "draft, good or final: how much work, in one word")
-        ->excludes(timeout)
-        ->excludes(cpu_time);
+    add_quality_option(*command, o->quality)->excludes(timeout)->excludes(cpu_time);
     command->add_flag("--strict", o->strict, "exit with 3 where there is a warning: the picture can't be trusted");
     command->add_option("--display-server", o->display_server, "HOST:PORT of tev, to which the picture so far is sent");
     auto* quiet = command->add_flag("-q,--quiet", o->quiet, "say nothing but errors");
