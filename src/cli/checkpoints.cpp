@@ -78,6 +78,9 @@ void Checkpoints::read(const std::string& exr, const NamedPicture& render) {
     if (files.empty()) return;
     for (const std::string& path : files) {
         NamedPicture next{path, read_exr(path)};
+        if (!next.picture.metadata.contains("units"))
+            throw InputError(path +
+                             ": found no checkpoint, expected a picture with the sums that a render goes on from");
         check_same_render(render, next, SameRender::seed);
         if (next.picture.metadata["units"].empty()) continue; // written before the first unit was whole
         if (done_.name.empty()) {
@@ -104,9 +107,10 @@ WorkPartition Checkpoints::share(const std::string& exr, const Picture& render, 
     }
     share.keep_sums = !pass_range.empty() || group != nullptr;
     if (share.keep_sums && (settings.passes < share.end_pass.value_or(1) || settings.target_error > 0))
-        throw InputError(fmt::format("found passes={} and target_error={}, expected a number of passes that is known "
-                                     "beforehand and not below what is to be shared out",
-                                     settings.passes, settings.target_error));
+        throw InputError(
+            fmt::format("found passes={} and target_error={}, expected {} passes or more, a number that is "
+                        "known beforehand, for what is to be shared out",
+                        settings.passes, settings.target_error, share.end_pass.value_or(1)));
     if (settings.adaptive && (asked() || group != nullptr))
         throw InputError("found adaptive=true, expected false of a render that is made in parts, or may be: none of "
                          "them knows how noisy the others' samples are");

@@ -307,8 +307,11 @@ std::string settings_help() {
     text += "\nSettings (-D KEY=VALUE, or under `render:` in the scene file) and their defaults:\n";
     const Settings defaults;
     visit_settings(defaults, [&](const char* key, const auto& value, const auto&... rest) {
+        const auto row = std::tie(rest...); // help, and before it what numbers lie between
+        std::string range = choices_of(value);
+        if constexpr (sizeof...(rest) == 3) range = fmt::format("; {} to {}", std::get<0>(row), std::get<1>(row));
         text += fmt::format("  {:<42}{}{}\n", fmt::format("{}={}", key, printable(value)),
-                            std::get<sizeof...(rest) - 1>(std::tie(rest...)), choices_of(value));
+                            std::get<sizeof...(rest) - 1>(row), range);
     });
     return text;
 }

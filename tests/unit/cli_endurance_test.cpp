@@ -96,6 +96,10 @@ TEST_F(LongRender, GoesOnOnlyFromItsOwnCheckpoint) {
     EXPECT_EQ(run("render other.yaml --no-png --passes 3 -o a.exr --resume"), 2);
     EXPECT_THAT(read("err"), HasSubstr("found another value of 'scene hash'"));
 
+    ASSERT_EQ(run("render scene.yaml -q --no-png --passes 3 -o plain.exr"), 0);
+    scratch.write("a.checkpoint.exr", read("plain.exr"));
+    EXPECT_EQ(run(render), 2);
+    EXPECT_THAT(read("err"), HasSubstr("found no checkpoint"));
     for (const std::size_t size :
          {std::size_t{0}, std::size_t{10}, std::size_t{300}, good.size() / 2, good.size() - 1}) {
         scratch.write("a.checkpoint.exr", good.substr(0, size));

@@ -134,6 +134,12 @@ TEST_F(Program, MistakesInCommandsSayWhatWasMeant) {
     EXPECT_THAT(read("err"), HasSubstr("did you mean 'render'?"));
     EXPECT_EQ(run("scene.yaml"), 2);
     EXPECT_THAT(read("err"), HasSubstr("found the command 'scene.yaml'"));
+    EXPECT_EQ(run("render scene.yaml --sppp 3"), 2);
+    EXPECT_THAT(read("err"), HasSubstr("found --sppp 3, which render doesn't take; did you mean '--spp'?"));
+    EXPECT_EQ(run("info scene.yaml -D spp=3"), 2);
+    EXPECT_THAT(read("err"), HasSubstr("found -D spp=3, which info doesn't take (see --help)"));
+    EXPECT_EQ(run("render scene.yaml --photon-memory 1m"), 2);
+    EXPECT_THAT(read("err"), HasSubstr("expected a whole number from 256KiB to 16384GiB"));
     EXPECT_EQ(run("render scene.yaml -D spp 4"), 2);
     EXPECT_THAT(read("err"), HasSubstr("-D KEY=VALUE"));
 }

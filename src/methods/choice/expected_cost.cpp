@@ -71,8 +71,8 @@ ExpectedCost expect_cost(Scene& scene, const Settings& settings, const UserPathF
     const auto cost = cost_of(c, *s.method);
     if (cost && time) s = settings_in_time(*cost, s, given, pixels, *time);
     if (cost)
-        for (const auto& [stage, time] : cost->cost.stages)
-            expected.stages.emplace_back(stage->name, cost->cost.predict(*stage, time, s, pixels));
+        for (const auto& [stage, taken] : cost->cost.stages)
+            expected.stages.emplace_back(stage->name, cost->cost.predict(*stage, taken, s, pixels));
     if (s.method->keeps_photons && findings.plan && findings.plan->photons)
         expected.photon_bytes = static_cast<std::uint64_t>(s.photon_memory);
     return expected;
