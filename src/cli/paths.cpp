@@ -274,6 +274,7 @@ int trace(const TraceOptions& o) {
     std::string text = "  - points:\n" + line(start.p, on_light ? "the light" : "no light is near");
     for (const Vertex& v : found) text += line(v.point.p, describe(v));
     fmt::print("{}", text);
+    if (!on_light) tell("keyhole: no light is near --from: a user path begins at one\n");
     return kSuccess;
 }
 

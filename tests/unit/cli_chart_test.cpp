@@ -82,6 +82,16 @@ TEST_F(Program, QualityIsEffortInOneWord) {
     }
 }
 
+/// Of the candidates for a reference mlt has too little time here.
+TEST_F(Program, AChartMakesItsReferenceByWhatHasTheTime) {
+    EXPECT_EQ(
+        run("chart scene.yaml --times 0.3 --methods path --repeats 1 --reference-time 3 --resolution 16x12 -o rep "
+            "-D brightness_samples=1G"),
+        0)
+        << read("err");
+    EXPECT_TRUE(exists("rep/index.html"));
+}
+
 TEST_F(Program, PlanTellsWhatIsLeftOutAndWhy) {
     ASSERT_EQ(run("plan scene.yaml --json -D method=ipm -D light_paths=20k"), 0) << read("err");
     const auto plan = nlohmann::json::parse(read("out"));

@@ -144,6 +144,14 @@ TEST_F(Program, MistakesInCommandsSayWhatWasMeant) {
     EXPECT_THAT(read("err"), HasSubstr("-D KEY=VALUE"));
 }
 
+TEST_F(Program, UserPathsWithoutEffectAreTold) {
+    scratch.write("paths.yaml", "paths: [{points: [[0, 3, 0], [0, 1, 0]]}]\n");
+    ASSERT_EQ(run("render scene.yaml --no-png -o a.exr --user-paths paths.yaml"), 0) << read("err");
+    EXPECT_THAT(read("err"), HasSubstr("user paths have no effect on method path"));
+    ASSERT_EQ(run("render scene.yaml --no-png -o a.exr --user-paths paths.yaml --method ipm -D light_paths=2k"), 0);
+    EXPECT_THAT(read("err"), testing::Not(HasSubstr("no effect")));
+}
+
 TEST_F(Program, ARenderInTimeCanBeMadeAgainAndMerged) {
     const std::string paths = "render scene.yaml -q --no-png --method path -D adaptive=false --spp 4 ";
     ASSERT_EQ(run(paths + "--cpu-time 2 -o a.exr"), 0) << read("err");

@@ -1,7 +1,7 @@
 // Scenes that look otherwise have other hashes, also where no light comes; the same scene has the same.
 #include "sampling/scene_hash.h"
 
-#include "scene/load/load_yaml.h"
+#include "scene/load/load.h"
 #include "support/scratch_directory.h"
 
 #include <gtest/gtest.h>
