@@ -123,7 +123,8 @@ class Passes {
         const PassGather gather(c_, plan_, pass, seed, std::move(photons), stats_, context);
         if (observer_ != nullptr) observer_->ready(gather);
         if (context.communicator != nullptr && context.stopped()) return false;
-        const bool whole = sample_rounds(gather, pass, context.alone());
+        const bool for_show = work_.keeps_units() && context.stopped(); // what was made for it may lack something
+        const bool whole = sample_rounds(gather, pass, for_show, context.alone());
         {
             const StageClock clock(stats_, kReport);
             gather.report(stats_, checks_photons_);
@@ -152,14 +153,16 @@ class Passes {
         }
     }
 
-    /// Samples pixels, round by round of a pass. Returns whether the last round came to its end.
-    bool sample_rounds(const PassGather& gather, std::int64_t pass, const RunContext& context) {
+    /// Samples pixels, round by round of a pass; `for_show`: one that is no unit. Returns whether the last round came
+    /// to its end.
+    bool sample_rounds(const PassGather& gather, std::int64_t pass, bool for_show, const RunContext& context) {
         const StageClock clock(stats_, stages::gather);
         const SamplingStage stage(c_.scene, c_.settings.spp, "gather", context);
         while (next_ && work_.pass_of(*next_) == pass) {
-            if (!pixels_.take_round(
-                    *work_.unit().film, *next_, *next_ == 0 ? context.first_round() : context,
-                    [&](const Vec2& image, SampleSource& source) { return gather.sample(image, source); })) {
+            const bool whole = pixels_.take_round(
+                *work_.unit().film, *next_, *next_ == 0 ? context.first_round() : context,
+                [&](const Vec2& image, SampleSource& source) { return gather.sample(image, source); });
+            if (!whole || for_show) {
                 next_.reset();
                 return false;
             }

@@ -73,6 +73,8 @@ class Work {
     std::int64_t left() const;
     /// Whether no unit is whole yet: one that is cut short is better than nothing then.
     bool is_first() const { return done_.empty(); }
+    /// Whether units are kept for who goes on, or for who joins them: those that are cut short must not be among them.
+    bool keeps_units() const { return pending_.has_value(); }
     /// Whole ones that are done.
     std::int64_t passes() const { return done_.size() / per_pass_; }
 
