@@ -54,15 +54,33 @@ std::string Checkpoints::file(const std::string& exr, int rank) const {
     return fs::path(exr).replace_extension(ending).string();
 }
 
+std::vector<std::string> Checkpoints::found(const std::string& exr) const {
+    std::vector<std::string> files;
+    std::error_code error; // of a name that is too long: that it can't be written is said elsewhere
+    for (int rank = 0; rank < kMostRanks; ++rank)
+        if (std::string path = file(exr, rank); fs::exists(path, error)) files.push_back(std::move(path));
+    return files;
+}
+
+void Checkpoints::keep_others(const std::string& exr) const {
+    if (!checkpoint || resume) return;
+    const std::vector<std::string> files = found(exr);
+    if (files.empty()) return;
+    throw InputError(fmt::format("{}: found a checkpoint, which --checkpoint would replace; expected --resume to go on "
+                                 "from it, or another --output, or that it is removed",
+                                 files.front()));
+}
+
 /// Several processes leave a file each. They become one, whatever the number of processes now.
 void Checkpoints::read(const std::string& exr, const NamedPicture& render) {
     const std::string own = file(exr); // of the first process, which the others go on from, too
-    std::vector<std::string> files;
-    for (int rank = 0; rank < kMostRanks; ++rank)
-        if (const std::string path = file(exr, rank); fs::exists(path)) files.push_back(path);
+    const std::vector<std::string> files = found(exr);
     if (files.empty()) return;
     for (const std::string& path : files) {
         NamedPicture next{path, read_exr(path)};
+        if (!next.picture.metadata.contains("units"))
+            throw InputError(path +
+                             ": found no checkpoint, expected a picture with the sums that a render goes on from");
         check_same_render(render, next, SameRender::seed);
         if (next.picture.metadata["units"].empty()) continue; // written before the first unit was whole
         if (done_.name.empty()) {
@@ -89,9 +107,10 @@ WorkPartition Checkpoints::share(const std::string& exr, const Picture& render, 
     }
     share.keep_sums = !pass_range.empty() || group != nullptr;
     if (share.keep_sums && (settings.passes < share.end_pass.value_or(1) || settings.target_error > 0))
-        throw InputError(fmt::format("found passes={} and target_error={}, expected a number of passes that is known "
-                                     "beforehand and not below what is to be shared out",
-                                     settings.passes, settings.target_error));
+        throw InputError(
+            fmt::format("found passes={} and target_error={}, expected {} passes or more, a number that is "
+                        "known beforehand, for what is to be shared out",
+                        settings.passes, settings.target_error, share.end_pass.value_or(1)));
     if (settings.adaptive && (asked() || group != nullptr))
         throw InputError("found adaptive=true, expected false of a render that is made in parts, or may be: none of "
                          "them knows how noisy the others' samples are");
@@ -115,17 +134,10 @@ WorkPartition Checkpoints::share(const std::string& exr, const Picture& render, 
         if (!done_.name.empty()) share.done = &done_.picture;
     }
     share.save_every = checkpoint.value_or(kSeconds);
-    // What more processes left of an earlier render would stand in the way of going on from this one.
-    std::vector<std::string> left_over;
-    if (!resume && rank == 0)
-        for (int r = group != nullptr ? group->size() : 1; r < kMostRanks; ++r)
-            if (const std::string path = file(exr, r); fs::exists(path)) left_over.push_back(path);
-    share.save = [path = file(exr, rank), identity = render.metadata, left_over](Picture picture) mutable {
+    share.save = [path = file(exr, rank), identity = render.metadata](Picture picture) {
         picture.metadata.insert(identity.begin(), identity.end());
         try {
             write_exr(path, picture);
-            for (const std::string& old : left_over) fs::remove(old);
-            left_over.clear();
         } catch (const InputError& e) {
             // A full disk is no reason to lose the render as well: there may be room again.
             tell("keyhole: warning: no checkpoint: {}\n", e.what());

@@ -10,6 +10,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace keyhole {
 
@@ -33,7 +34,12 @@ struct Checkpoints {
     /// The file of checkpoints for an output, of process `rank`; empty: none is written.
     std::string file(const std::string& exr, int rank = 0) const;
 
+    /// @throws InputError where there are files of checkpoints that nobody asks to go on from: they may be the work of
+    /// days.
+    void keep_others(const std::string& exr) const;
+
   private:
+    std::vector<std::string> found(const std::string& exr) const;
     void read(const std::string& exr, const NamedPicture& render);
 
     NamedPicture done_; // without a name: there is nothing to go on from

@@ -1,6 +1,7 @@
 // keyhole inspect: a page that shows where the light goes.
 #include "cli/inspect/page_data.h"
 #include "cli/page/page_parts.h"
+#include "cli/pictures/files_apart.h"
 #include "cli/program.h"
 #include "cli/progress/interrupt.h"
 #include "cli/words/report.h"
@@ -69,8 +70,11 @@ int run(InspectOptions o) {
     const std::string name = name_of(o.scene);
     if (o.output.empty()) o.output = name + ".html";
     check_writable(o.output);
+    const std::vector<NamedFile> outputs{{"--output", o.output}, {"--save-map", o.save_map}};
+    check_apart(outputs, {{"the scene", o.scene}, {"--user-paths", o.user_paths}});
     std::vector<std::string> load_warnings;
     LoadedScene loaded = load(o.scene, o.overrides, &load_warnings);
+    check_apart(outputs, files_of(loaded));
     if (!o.user_paths.empty()) loaded.user_paths = load_user_paths(o.user_paths);
     choose_resolution(loaded.description.window, o.resolution);
     Settings settings = preview_settings(loaded.settings, o.overrides);

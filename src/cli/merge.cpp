@@ -1,4 +1,5 @@
 // keyhole merge: several pictures of one scene made into one.
+#include "cli/pictures/files_apart.h"
 #include "cli/pictures/outputs.h"
 #include "cli/program.h"
 #include "cli/words/tell.h"
@@ -27,6 +28,9 @@ Picture unfiltered(Picture picture) {
 int merge(MergeOptions o) {
     if (!o.no_png && o.outputs.png.empty()) o.outputs.png = default_png(o.outputs.exr);
     o.outputs.check();
+    std::vector<NamedFile> inputs;
+    for (const std::string& path : o.inputs) inputs.push_back({"a picture to merge", path});
+    check_apart(o.outputs.files(), inputs);
     std::vector<NamedPicture> pictures;
     for (const std::string& path : o.inputs) pictures.push_back({path, unfiltered(read_exr(path))});
     Picture joined = join_pictures(pictures);
@@ -37,14 +41,16 @@ int merge(MergeOptions o) {
     o.outputs.noise_layers = noise != settings.end() && noise->second == "noise_layers=true";
     joined.metadata["command"] = o.command_line;
     const bool share = !joined.sums.empty();
-    const auto pixels = static_cast<std::size_t>(joined.width) * static_cast<std::size_t>(joined.height);
+    const int width = joined.width, height = joined.height;
+    const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     const Denoising denoising(o.outputs.denoise, !o.outputs.png.empty(), pixels, 0);
     const std::string whole = joined.metadata["units"], all = joined.metadata["units of all"];
     RenderStats stats;
     o.outputs.write(
         std::move(joined), [&](const Picture& picture) { return denoising.apply(picture, StopToken(), stats); },
         [] { return std::string(); });
-    if (share) tell("{}: a share, {} of {}\n", o.outputs.exr, whole, all);
+    tell("{}: {} x {} pixels{}\n", o.outputs.exr, width, height,
+         share ? fmt::format(", a share, units {} of {}", whole, all) : "");
     return kSuccess;
 }
 
@@ -56,7 +62,8 @@ void add_merge_command(CLI::App& app, Action& action, const std::string& command
     o->command_line = command_line;
     command->add_option("PICTURES", o->inputs, "pictures of one scene with the same settings (EXR)")
         ->required()
-        ->expected(2, 1 << 20);
+        ->expected(2, 1 << 20)
+        ->type_name("EXR EXR ...");
     command->add_option("-o,--output", o->outputs.exr, "picture to write (.exr)")->required();
     auto* png = command->add_option("--png", o->outputs.png, "tone-mapped picture; default: beside the EXR");
     command->add_flag("--no-png", o->no_png, "write no tone-mapped picture")->excludes(png);

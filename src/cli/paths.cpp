@@ -1,4 +1,5 @@
 // keyhole paths: tools for user paths.
+#include "cli/pictures/files_apart.h"
 #include "cli/pictures/outputs.h"
 #include "cli/program.h"
 #include "cli/words/tell.h"
@@ -156,6 +157,7 @@ void draw(const Scene& scene, const UserPath& path, const Rgb8& color, Canvas& c
 int show(ShowOptions o) {
     if (o.output.empty()) o.output = default_png(default_exr(o.scene));
     check_writable(o.output);
+    check_apart({{"--output", o.output}}, {{"the scene", o.scene}, {"user paths", o.paths}});
     std::vector<std::string> overrides{"method=path", "spp=24"};
     overrides.insert(overrides.end(), o.overrides.begin(), o.overrides.end());
     SceneWithPaths all = load_with_paths(o.scene, o.paths, overrides, o.resolution);
@@ -192,6 +194,7 @@ struct SuggestCommand {
 };
 
 int suggest(const SuggestCommand& o) {
+    check_apart({{"--output", o.output}}, {{"the scene", o.scene}});
     LoadedScene loaded = load(o.scene, o.overrides);
     const Scene scene(std::move(loaded.description));
     const StageOneSettings first{.max_scatterings = static_cast<int>(loaded.settings.max_depth),
@@ -271,6 +274,7 @@ int trace(const TraceOptions& o) {
     std::string text = "  - points:\n" + line(start.p, on_light ? "the light" : "no light is near");
     for (const Vertex& v : found) text += line(v.point.p, describe(v));
     fmt::print("{}", text);
+    if (!on_light) tell("keyhole: no light is near --from: a user path begins at one\n");
     return kSuccess;
 }
 

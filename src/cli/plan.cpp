@@ -2,8 +2,10 @@
 #include "methods/photons/plan.h"
 
 #include "cli/program.h"
+#include "cli/setting_options.h"
 #include "cli/words/report.h"
 #include "cli/words/units.h"
+#include "core/parallel.h"
 #include "core/percent.h"
 #include "methods/choice/expected_cost.h"
 #include "methods/method.h"
@@ -14,6 +16,8 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <optional>
+#include <set>
 
 namespace keyhole {
 namespace {
@@ -23,10 +27,29 @@ using Json = nlohmann::ordered_json;
 constexpr std::int64_t kImportons = 32'768;
 
 struct PlanCommand {
-    std::string scene, resolution;
+    std::string scene, resolution, user_paths, quality;
     std::vector<std::string> settings;
+    std::optional<double> timeout, cpu_time; ///< [s]
+    int threads = 0;
     bool json = false;
 };
+
+/// CPU time that a render is to take [s]; none: what its settings take.
+std::optional<double> time_asked_for(const PlanCommand& o) {
+    return o.timeout ? cpu_time_of(*o.timeout, o.threads) : o.cpu_time;
+}
+
+/// What is on and off. A method without photons asks none of it.
+Json choices_json(const RenderPlan& plan, const Method& method) {
+    Json choices = Json::array();
+    for (const PlanItem& item : plan.items)
+        choices.push_back(
+            {{"name", item.name},
+             {"on", item.on && method.keeps_photons},
+             {"why",
+              method.keeps_photons ? item.why : fmt::format("method {} keeps no photons to ask for", method.name)}});
+    return choices;
+}
 
 Json share(double part, double whole) { return whole > 0 ? Json(part / whole) : Json(); }
 
@@ -57,6 +80,9 @@ Json found_json(const Scene& scene, const SceneSurvey& survey) {
 
 Json plan_json(const PlanCommand& o) {
     LoadedScene loaded = load(o.scene, o.settings);
+    const std::set<std::string> named = named_settings(o.settings);
+    loaded.settings = with_quality_of(loaded.settings, o.quality, named);
+    if (!o.user_paths.empty()) loaded.user_paths = load_user_paths(o.user_paths);
     if (!o.resolution.empty()) set_resolution(loaded.description.window, o.resolution);
     Scene scene(std::move(loaded.description));
     set_window_margin(scene, loaded.settings);
@@ -67,14 +93,13 @@ Json plan_json(const PlanCommand& o) {
     Findings findings;
     plan_photons(scene, quick, paths, {}, findings);
     const RenderPlan& plan = *findings.plan;
-    const ExpectedCost cost = expect_cost(scene, loaded.settings, loaded.user_paths, findings);
-    Json choices = Json::array(), stages = Json::object();
-    for (const PlanItem& item : plan.items)
-        choices.push_back({{"name", item.name}, {"on", item.on}, {"why", item.why}});
+    const ExpectedCost cost =
+        expect_cost(scene, loaded.settings, loaded.user_paths, findings, time_asked_for(o), named);
+    Json stages = Json::object();
     for (const auto& [name, seconds] : cost.stages) stages[name] = seconds;
     return {{"scene", o.scene},
             {"found", found_json(scene, plan.survey)},
-            {"choices", choices},
+            {"choices", choices_json(plan, method_named(cost.method))},
             {"method", cost.method},
             {"remarks", cost.remarks},
             {"photon_bytes", cost.photon_bytes},
@@ -117,7 +142,8 @@ void print_plan(const Json& plan) {
     std::string stages;
     for (const auto& [name, seconds] : plan["stages"].items())
         stages += fmt::format("{}{} {}", stages.empty() ? "" : ", ", name, duration(seconds.get<double>()));
-    fmt::print("{:<12}about {} of CPU time: {}\n", "time", duration(plan["cpu_seconds"].get<double>()), stages);
+    fmt::print("{:<12}about {} of CPU time, besides trials and the search for openings: {}\n", "time",
+               duration(plan["cpu_seconds"].get<double>()), stages);
 }
 
 } // namespace
@@ -127,12 +153,20 @@ void add_plan_command(CLI::App& app, Action& action) {
     auto o = std::make_shared<PlanCommand>();
     command->add_option("SCENE", o->scene, "scene file (YAML, .pbrt, .gltf or .glb)")->required();
     command->add_option("--resolution", o->resolution, "WIDTHxHEIGHT in pixels");
-    command->add_option("-D", o->settings, "any setting of render, KEY=VALUE; may be repeated")
-        ->allow_extra_args(false);
+    command->add_option("--user-paths", o->user_paths, "user paths, instead of the scene's");
+    add_setting_options(*command, o->settings);
+    auto* timeout =
+        command->add_option("--timeout", o->timeout, "of a render in SECONDS")->check(real_range(1e-3, 1e9));
+    auto* cpu_time = command->add_option("--cpu-time", o->cpu_time, "of one in SECONDS of CPU time")
+                         ->check(real_range(1e-3, 1e9))
+                         ->excludes(timeout);
+    add_quality_option(*command, o->quality)->excludes(timeout)->excludes(cpu_time);
+    command->add_option("-t,--threads", o->threads, "threads; 0: one for each core")->check(CLI::Range(0, 4096));
     command->add_flag("--json", o->json, "print one JSON object");
     command->callback([&action, o] {
         action = [o] {
-            const Json plan = plan_json(*o);
+            Json plan;
+            with_threads(o->threads, [&] { plan = plan_json(*o); });
             if (o->json)
                 fmt::print("{}\n", json_text(plan));
             else

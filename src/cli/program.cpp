@@ -6,6 +6,7 @@
 #include "scene/load/input.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -20,6 +21,7 @@
 #include <string_view>
 #include <system_error>
 #include <unistd.h>
+#include <vector>
 
 namespace keyhole {
 namespace {
@@ -55,6 +57,21 @@ void check_command(const CLI::App& app, std::string_view word) {
                                  expected_one_of(word, {names.begin(), names.end()})));
 }
 
+/// What is wrong with arguments that nothing takes.
+std::string unexpected(const CLI::App& app) {
+    const CLI::App* command = &app;
+    while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
+    const std::vector<std::string> rest = app.remaining(true);
+    std::vector<std::string> names;
+    for (const CLI::Option* option : command->get_options())
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    const auto word = std::ranges::find_if(rest, [](const std::string& r) { return r.starts_with("--"); });
+    const bool has_settings = command->get_option_no_throw("-D") != nullptr;
+    return fmt::format("found {}, which {} doesn't take{}{} (see --help)", fmt::join(rest, " "), command->get_name(),
+                       word != rest.end() ? did_you_mean(*word, {names.begin(), names.end()}) : "",
+                       has_settings ? "; settings are given as -D KEY=VALUE" : "");
+}
+
 /// Makes the standard streams safe to write to: those that are closed become empty ones, for else a picture could get
 /// their number and messages would go into it. And where nobody reads a stream any more, or a file may not grow,
 /// writing is to fail, and not to end the program.
@@ -85,8 +102,8 @@ int run(int argc, char** argv, ProcessGroup* group) {
     if (argc > 1) check_command(app, argv[1]);
     try {
         app.parse(argc, argv);
-    } catch (const CLI::ExtrasError& e) {
-        return fail(kBadInput, std::string(e.what()) + " (settings are given as -D KEY=VALUE; see --help)");
+    } catch (const CLI::ExtrasError&) {
+        return fail(kBadInput, unexpected(app));
     } catch (const CLI::ParseError& e) {
         if (e.get_exit_code() == 0) return app.exit(e); // help and version
         return fail(kBadInput, std::string(e.what()) + " (see --help)");
@@ -116,7 +133,8 @@ int run_program(int argc, char** argv, ProcessGroup* group) {
         if (e.code().value() == EPIPE) return kInternalError;
         return fail(kInternalError, fmt::format("internal error: {}", e.what()));
     } catch (const std::bad_alloc&) {
-        return fail(kBadInput, "not enough memory for what is asked: try fewer pixels, samples or threads");
+        return fail(kBadInput, "not enough memory for what is asked: try fewer pixels, samples or threads, or "
+                               "less photon_memory");
     } catch (const std::exception& e) {
         return fail(kInternalError, fmt::format("internal error: {}", e.what()));
     }

@@ -1,17 +1,21 @@
 // keyhole render: from a scene file to pictures.
 #include "cli/checkpoints.h"
+#include "cli/pictures/files_apart.h"
 #include "cli/pictures/outputs.h"
 #include "cli/process_group.h"
 #include "cli/program.h"
 #include "cli/progress/interrupt.h"
 #include "cli/progress/live_view.h"
 #include "cli/progress/terminal_progress.h"
+#include "cli/setting_options.h"
 #include "cli/words/metadata.h"
 #include "cli/words/report.h"
 #include "cli/words/tell.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/percent.h"
 #include "film/files/atomic_file.h"
+#include "film/files/exr.h"
 #include "film/image_error.h"
 #include "methods/choice/effort.h"
 #include "methods/choice/first_look.h"
@@ -27,6 +31,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <filesystem>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -64,13 +69,6 @@ std::unique_ptr<TerminalProgress> make_progress(bool quiet, const StopToken& sto
     const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
     return std::make_unique<TerminalProgress>(stderr, terminal, known ? size.ws_col : 80, &TerminalProgress::Clock::now,
                                               [&stop] { return stop.seconds_left(); });
-}
-
-/// Settings that the command line names.
-std::set<std::string> named_settings(const std::vector<std::string>& overrides) {
-    std::set<std::string> keys;
-    for (const std::string& o : overrides) keys.insert(o.substr(0, o.find('=')));
-    return keys;
 }
 
 /// Shares of one render, of which either may hold no unit at all, as one.
@@ -145,7 +143,8 @@ RenderResult render_scene(LoadedScene& loaded, RenderOptions& options, std::vect
                              options.threads};
         start_clock(options, stop);
         const std::uint64_t hash = scene_hash(scene);
-        const Picture expected{window.width, window.height, {}, render_identity(loaded.settings, hash), {}};
+        const Picture expected{
+            window.width, window.height, {}, render_identity(loaded.settings, hash, loaded.user_paths), {}};
         WorkPartition share = options.checkpoints.share(options.outputs.exr, expected, loaded.settings, options.group);
         const auto progress = make_progress(options.quiet, stop);
         if (options.writes()) view.watch(share);
@@ -160,7 +159,7 @@ RenderResult render_scene(LoadedScene& loaded, RenderOptions& options, std::vect
                      : render(scene, loaded.settings, context, loaded.user_paths, share);
         if (!result.picture.layers.empty()) add_masks(result.picture, scene, loaded.settings, stop);
         result.stats.stages.insert(result.stats.stages.begin(), loading);
-        const auto identity = render_identity(result.settings, hash);
+        const auto identity = render_identity(result.settings, hash, loaded.user_paths);
         result.picture.metadata.insert(identity.begin(), identity.end());
         if (options.checkpoints.resume && share.done == nullptr)
             result.stats.remarks.emplace_back("found no checkpoint to go on from: started from the beginning");
@@ -170,22 +169,51 @@ RenderResult render_scene(LoadedScene& loaded, RenderOptions& options, std::vect
     return result;
 }
 
+/// CPU time of a unit of effort [s], about, and passes that should fit into a time where a checkpoint keeps whole ones
+/// alone: several, because scenes may be as many times slower than others.
+constexpr double kSecondsOfEffort = 5, kPassesInTime = 8;
+/// From this effort on a pass takes no less than by the settings' defaults.
+constexpr double kEffortOfDefaults = 3;
+
+/// Settings whose passes are short enough for the time, or as long as those of the checkpoint to go on from.
+Settings with_short_passes(const Settings& settings, const ImageWindow& window, const RenderOptions& options,
+                           const std::set<std::string>& named) {
+    if (settings.method->samples_pixels) return settings; // whose units are rounds
+    const std::string file = options.checkpoints.file(options.outputs.exr);
+    std::error_code error;
+    if (!options.checkpoints.resume || !std::filesystem::exists(file, error)) {
+        const double seconds =
+            options.cpu_time ? *options.cpu_time : cpu_time_of(options.timeout.value_or(0), options.threads);
+        const double effort = seconds / (kSecondsOfEffort * kPassesInTime);
+        return effort < kEffortOfDefaults
+                   ? with_effort(settings, effort, static_cast<std::int64_t>(window.size()), named)
+                   : settings;
+    }
+    Settings s = settings;
+    const auto words = settings_of({file, read_exr(file)});
+    for (const std::string_view key : kSettingsOfEffort)
+        if (const auto word = words.find(std::string(key)); word != words.end() && !named.contains(word->first))
+            apply_override(s, word->second);
+    return s;
+}
+
 /// The scene with the settings that the options ask for.
 /// @throws InputError for a scene, settings and options that don't go together.
 LoadedScene load_for(const RenderOptions& options, std::vector<std::string>& warnings) {
     std::set<std::string> named = named_settings(options.overrides);
+    with_quality_of({}, options.quality, {}); // a word that is none, before the scene is read
+    LoadedScene loaded = load(options.scene, options.overrides, &warnings);
+    if (!options.resolution.empty()) set_resolution(loaded.description.window, options.resolution);
     // An error to reach asks for as many passes as that takes, unless somebody says how many.
-    std::vector<std::string> overrides = options.overrides;
-    const bool in_passes = options.in_time() && (options.group != nullptr || options.checkpoints.asked());
-    if (named.contains("target_error") || in_passes) {
-        overrides.insert(overrides.begin(), "passes=0");
+    const bool in_passes = options.in_time() && options.checkpoints.asked();
+    const bool to_error =
+        loaded.settings.target_error > 0 && (named.contains("target_error") || loaded.settings.passes == 1);
+    if ((to_error || in_passes) && !named.contains("passes")) {
+        loaded.settings.passes = 0;
         named.insert("passes"); // an effort has no say in it
     }
-    const auto quality = choice_of<Quality>(options.quality);
-    if (!quality && !options.quality.empty())
-        throw InputError("found quality '" + options.quality + "', expected draft, good or final");
-    LoadedScene loaded = load(options.scene, overrides, &warnings);
-    if (quality) loaded.settings = with_quality(loaded.settings, *quality, named);
+    if (in_passes) loaded.settings = with_short_passes(loaded.settings, loaded.description.window, options, named);
+    loaded.settings = with_quality_of(loaded.settings, options.quality, named);
     for (const auto& [option, file] : {std::pair{"--save-map", &options.save_map}, {"--load-map", &options.load_map}})
         if (!file->empty() && !loaded.settings.method->keeps_photons)
             throw InputError(fmt::format("{}: found method {}, expected one that keeps photons: {}", option,
@@ -196,7 +224,6 @@ LoadedScene load_for(const RenderOptions& options, std::vector<std::string>& war
     loaded.settings.save_map = options.save_map;
     loaded.settings.load_map = options.load_map;
     if (!options.user_paths.empty()) loaded.user_paths = load_user_paths(options.user_paths);
-    if (!options.resolution.empty()) set_resolution(loaded.description.window, options.resolution);
     return loaded;
 }
 
@@ -212,8 +239,12 @@ void write(RenderResult& result, const RenderOptions& options, const StopToken& 
         [&](const Picture& picture) { return options.denoising.apply(picture, stop, result.stats); },
         [&] { return json_text(stats_json(result.stats)) + "\n"; });
     if (options.verbose) print_report(result.stats);
+    const auto& values = result.stats.values;
+    const auto error = values.find("relative error");
     if (!options.quiet)
-        tell("{}: {} x {} pixels{}\n", options.outputs.exr, width, height,
+        tell("{}: {} x {} pixels{}{}\n", options.outputs.exr, width, height,
+             result.settings.target_error > 0 && error != values.end() ? ", relative error " + percent(error->second)
+                                                                       : "",
              result.stats.complete ? "" : ", stopped early");
 }
 
@@ -225,13 +256,20 @@ int run(RenderOptions options) {
         options.outputs.png.clear();
     else if (options.outputs.png.empty())
         options.outputs.png = default_png(options.outputs.exr);
+    const std::string checkpoint = options.checkpoints.file(options.outputs.exr);
     if (options.writes()) options.outputs.check();
-    for (const std::string& file : {options.checkpoints.file(options.outputs.exr), options.save_map})
+    for (const std::string& file : {checkpoint, options.save_map})
         if (!file.empty()) check_writable(file);
+    std::vector<NamedFile> outputs = options.outputs.files();
+    outputs.insert(outputs.end(), {{"--save-map", options.save_map}, {"the checkpoint", checkpoint}});
+    check_apart(outputs,
+                {{"the scene", options.scene}, {"--user-paths", options.user_paths}, {"--load-map", options.load_map}});
+    if (options.writes()) options.checkpoints.keep_others(options.outputs.exr);
 
     const InterruptHandler interrupts(stop);
     std::vector<std::string> load_warnings;
     LoadedScene loaded = load_for(options, load_warnings);
+    check_apart(outputs, files_of(loaded));
     options.outputs.exposure = loaded.settings.exposure.value;
     options.outputs.noise_layers = loaded.settings.noise_layers;
     options.outputs.denoise = loaded.settings.denoise;
@@ -240,6 +278,10 @@ int run(RenderOptions options) {
     result.stats.warnings.insert(result.stats.warnings.begin(), load_warnings.begin(), load_warnings.end());
     if (!options.quiet) print_warnings(result.stats);
     if (!has_picture(result)) {
+        if (!stop.requested() && options.checkpoints.asked())
+            throw InputError("the time was up before the first unit of work was whole: nothing was written; expected "
+                             "more time, or shorter units (-D light_paths=..., mutations=..., "
+                             "brightness_samples=..., importons=...)");
         if (!stop.requested()) throw InputError("the time was up before the first pixel: nothing was written");
         tell("keyhole: stopped before there was a unit of work to keep: nothing was written\n");
         return kInterrupted;
@@ -265,8 +307,11 @@ std::string settings_help() {
     text += "\nSettings (-D KEY=VALUE, or under `render:` in the scene file) and their defaults:\n";
     const Settings defaults;
     visit_settings(defaults, [&](const char* key, const auto& value, const auto&... rest) {
+        const auto row = std::tie(rest...); // help, and before it what numbers lie between
+        std::string range = choices_of(value);
+        if constexpr (sizeof...(rest) == 3) range = fmt::format("; {} to {}", std::get<0>(row), std::get<1>(row));
         text += fmt::format("  {:<42}{}{}\n", fmt::format("{}={}", key, printable(value)),
-                            std::get<sizeof...(rest) - 1>(std::tie(rest...)), choices_of(value));
+                            std::get<sizeof...(rest) - 1>(row), range);
     });
     return text;
 }
@@ -289,25 +334,7 @@ void add_render_command(CLI::App& app, Action& action, const std::string& comman
                         "user paths, instead of the scene's, for " + names_of(&Method::follows_user_paths));
     command->add_flag("--skip-bad-paths", o->skip_bad_paths,
                       "leave out user paths that don't work in the scene, with a warning");
-    for (const char* key : {"method", "spp", "mutations", "photons", "passes", "seed", "denoise"})
-        command->add_option_function<std::string>(
-            std::string("--") + key,
-            [o, key](const std::string& value) { o->overrides.push_back(std::string(key) + "=" + value); },
-            std::string("the setting ") + key);
-    for (const auto& [option, key] :
-         {std::pair("--photon-memory", "photon_memory"), {"--target-error", "target_error"}})
-        command->add_option_function<std::string>(
-            option,
-            [o, key = key](const std::string& value) { o->overrides.push_back(std::string(key) + "=" + value); },
-            std::string("the setting ") + key);
-    command
-        ->add_option_function<std::vector<std::string>>(
-            "-D",
-            [o](const std::vector<std::string>& pairs) {
-                o->overrides.insert(o->overrides.end(), pairs.begin(), pairs.end());
-            },
-            "any setting, KEY=VALUE; may be repeated, and overrules the options above")
-        ->allow_extra_args(false);
+    add_setting_options(*command, o->overrides);
     command->add_option("--save-map", o->save_map, "write the photons of the first pass to this file");
     command->add_option("--load-map", o->load_map, "take photons from this file instead of sampling any");
     o->checkpoints.add_options(*command);
@@ -318,9 +345,7 @@ void add_render_command(CLI::App& app, Action& action, const std::string& comman
         command->add_option("--cpu-time", o->cpu_time, "the same in SECONDS of CPU time, of all threads together")
             ->check(real_range(1e-3, 1e9))
             ->excludes(timeout);
-    command->add_option("--quality", o->quality, "draft, good or final: how much work, in one word")
-        ->excludes(timeout)
-        ->excludes(cpu_time);
+    add_quality_option(*command, o->quality)->excludes(timeout)->excludes(cpu_time);
     command->add_flag("--strict", o->strict, "exit with 3 where there is a warning: the picture can't be trusted");
     command->add_option("--display-server", o->display_server, "HOST:PORT of tev, to which the picture so far is sent");
     auto* quiet = command->add_flag("-q,--quiet", o->quiet, "say nothing but errors");

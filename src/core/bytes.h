@@ -3,6 +3,7 @@
 
 #include "core/error.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -141,7 +142,7 @@ class ByteReader {
     std::span<const char> bytes_;
 };
 
-/// FNV-1a (Fowler, Noll, Vo) on 64 bits. For values without padding.
+/// FNV-1a (Fowler, Noll, Vo) on 64 bits, by words of 8 bytes. For values without padding.
 class Hash {
   public:
     template <class T> void add(const T& value) { add_bytes(std::as_bytes(std::span(&value, 1))); }
@@ -150,7 +151,12 @@ class Hash {
 
   private:
     void add_bytes(std::span<const std::byte> bytes) {
-        for (const std::byte b : bytes) value_ = (value_ ^ static_cast<std::uint64_t>(b)) * 0x100000001B3ULL;
+        for (; !bytes.empty(); bytes = bytes.subspan(std::min(bytes.size(), sizeof(std::uint64_t)))) {
+            std::uint64_t word = 0;
+            std::memcpy(&word, bytes.data(), std::min(bytes.size(), sizeof word));
+            value_ = (value_ ^ word) * 0x100000001B3ULL;
+            value_ ^= value_ >> 32; // a product moves bits upwards alone
+        }
     }
     std::uint64_t value_ = 0xCBF29CE484222325ULL;
 };

@@ -67,6 +67,7 @@ enum class StreamPurpose : std::uint64_t {
     lobe_techniques,
     each_emitter,
     emission_trial,
+    scene_hash,
 };
 
 /// PCG32 (O'Neill 2014). One for each chain and each pixel, never for each thread, so that a picture does not

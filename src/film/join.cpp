@@ -12,6 +12,7 @@
 #include <cmath>
 #include <set>
 #include <sstream>
+#include <vector>
 
 namespace keyhole {
 namespace {
@@ -23,7 +24,9 @@ namespace {
 const std::string& attribute(const NamedPicture& p, const std::string& key) {
     const auto found = p.picture.metadata.find(key);
     if (found == p.picture.metadata.end())
-        refuse(p, fmt::format("found no attribute '{}', expected a picture that this program wrote", key));
+        refuse(p, fmt::format("found no attribute '{}', expected a picture that this version of the "
+                              "program wrote",
+                              key));
     return found->second;
 }
 
@@ -109,17 +112,20 @@ WorkItemSet units_of(const NamedPicture& p) {
 }
 
 void check_same_render(const NamedPicture& a, const NamedPicture& b, SameRender same) {
-    for (const char* key : {"scene hash", "program"})
+    std::vector<const char*> keys{"scene hash", "program"};
+    if (same == SameRender::seed) keys.push_back("user paths"); // which change no expectation
+    for (const char* key : keys)
         if (attribute(a, key) != attribute(b, key))
-            refuse(b, fmt::format("found another {} than that of {}: {} and {}", key, a.name, attribute(b, key),
-                                  attribute(a, key)));
+            refuse(b, fmt::format("found another value of '{}' than that of {}: {} and {}", key, a.name,
+                                  attribute(b, key), attribute(a, key)));
     if (a.picture.width != b.picture.width || a.picture.height != b.picture.height)
         refuse(b, fmt::format("found {} x {} pixels, expected {} x {} as in {}", b.picture.width, b.picture.height,
                               a.picture.width, a.picture.height, a.name));
     std::set<std::string_view> free{"denoise", "noise_layers"}; // what is done with the picture afterwards
-    if (same != SameRender::seed) // and what follows from an effort, as that does from a time
-        free.insert({"seed", "passes", "spp", "photons", "light_paths", "mutations", "brightness_samples", "importons",
-                     "cache_error", "cache_min_reach", "cache_rays"});
+    if (same != SameRender::seed) {
+        free.insert("seed");
+        free.insert(kSettingsOfEffort.begin(), kSettingsOfEffort.end());
+    }
     const auto of_a = settings_of(a), of_b = settings_of(b);
     for (const auto& [key, word] : of_a) {
         if (free.contains(key)) continue;

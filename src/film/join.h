@@ -4,9 +4,11 @@
 #include "core/work_item_set.h"
 #include "film/picture.h"
 
+#include <array>
 #include <map>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace keyhole {
 
@@ -20,6 +22,11 @@ struct NamedPicture {
     std::string name;
     Picture picture;
 };
+
+/// What follows from an effort: settings by which renders that end by time differ.
+inline constexpr std::array<std::string_view, 10> kSettingsOfEffort{
+    "passes",    "spp",         "photons",         "light_paths", "mutations", "brightness_samples",
+    "importons", "cache_error", "cache_min_reach", "cache_rays"};
 
 /// How alike two renders have to be: in all settings; in all but the seed and how many samples were taken.
 enum class SameRender { seed, method };

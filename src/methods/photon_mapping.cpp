@@ -16,6 +16,9 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <system_error>
+
 namespace keyhole {
 namespace {
 
@@ -35,7 +38,10 @@ class FileSampler final : public PhotonSampler {
     /// @throws InputError if more than one pass is asked for.
     explicit FileSampler(const SamplerContext& context) : c_(context) {
         if (context.settings.passes != 1)
-            throw InputError("a saved photon map is one pass: expected passes=1 with --load-map");
+            throw InputError(
+                fmt::format("found passes={} and target_error={} with --load-map, expected one pass and no "
+                            "target: the photons of a file are the same in every pass",
+                            context.settings.passes, context.settings.target_error));
     }
 
     Photons sample(std::uint64_t /*seed*/, RenderStats& stats, const RunContext& /*context*/) override {
@@ -109,7 +115,7 @@ class Passes {
         RunContext early = context;
         early.reserve += for_gather_;
         Photons photons = sampler_.sample(seed, stats_, early);
-        if (pass == 0) save(photons, context);
+        if (pass == 0) save(photons, early);
         // The photons of a pass that was cut short are good for a first picture, not for one that is there.
         if (early.stopped() && (context.communicator != nullptr || !work_.is_first())) return false;
         report_photons(photons, stats_);
@@ -117,7 +123,8 @@ class Passes {
         const PassGather gather(c_, plan_, pass, seed, std::move(photons), stats_, context);
         if (observer_ != nullptr) observer_->ready(gather);
         if (context.communicator != nullptr && context.stopped()) return false;
-        const bool whole = sample_rounds(gather, pass, context.alone());
+        const bool for_show = work_.keeps_units() && context.stopped(); // what was made for it may lack something
+        const bool whole = sample_rounds(gather, pass, for_show, context.alone());
         {
             const StageClock clock(stats_, kReport);
             gather.report(stats_, checks_photons_);
@@ -131,6 +138,14 @@ class Passes {
         if (c_.settings.save_map.empty()) return;
         saved_ = true;
         if (context.communicator != nullptr && context.communicator->rank() > 0) return;
+        if (context.stopped()) {
+            std::error_code error;
+            const bool there = std::filesystem::exists(c_.settings.save_map, error);
+            stats_.warn(Doubt::photons,
+                        fmt::format("{}: the pass was stopped before it had all photons: {}", c_.settings.save_map,
+                                    there ? "the older file stays" : "the file has a part of them"));
+            if (there) return;
+        }
         try {
             save_photons(c_.settings.save_map, photon_file_key(c_.scene, c_.settings, c_.coverage), photons);
         } catch (const InputError& e) { // the picture must not be lost with them
@@ -138,14 +153,16 @@ class Passes {
         }
     }
 
-    /// Samples pixels, round by round of a pass. Returns whether the last round came to its end.
-    bool sample_rounds(const PassGather& gather, std::int64_t pass, const RunContext& context) {
+    /// Samples pixels, round by round of a pass; `for_show`: one that is no unit. Returns whether the last round came
+    /// to its end.
+    bool sample_rounds(const PassGather& gather, std::int64_t pass, bool for_show, const RunContext& context) {
         const StageClock clock(stats_, stages::gather);
         const SamplingStage stage(c_.scene, c_.settings.spp, "gather", context);
         while (next_ && work_.pass_of(*next_) == pass) {
-            if (!pixels_.take_round(
-                    *work_.unit().film, *next_, *next_ == 0 ? context.first_round() : context,
-                    [&](const Vec2& image, SampleSource& source) { return gather.sample(image, source); })) {
+            const bool whole = pixels_.take_round(
+                *work_.unit().film, *next_, *next_ == 0 ? context.first_round() : context,
+                [&](const Vec2& image, SampleSource& source) { return gather.sample(image, source); });
+            if (!whole || for_show) {
                 next_.reset();
                 return false;
             }

@@ -63,6 +63,9 @@ std::optional<LearnedEmission> emission_without_openings(const Scene& scene, con
 RenderPaths::RenderPaths(const Scene& scene, const Settings& settings, const UserPathFile& given,
                          const RunContext& context)
     : paths_(bind_user_paths(scene, given)) {
+    if (!paths_.empty() && !settings.method->follows_user_paths)
+        own_.remarks.push_back(fmt::format("user paths have no effect on method {}; expected one of {}",
+                                           settings.method->name, names_of(&Method::follows_user_paths)));
     if (!settings.find_openings || !settings.method->follows_user_paths || !settings.load_map.empty() ||
         scene.has_scattering_media() || !has_emitters_with_a_place(scene) || (!paths_.empty() && !has_openings(paths_)))
         return;
@@ -76,6 +79,8 @@ RenderPaths::RenderPaths(const Scene& scene, const Settings& settings, const Use
         const LightGuides guides(scene, paths_);
         own_.values["gain by openings"] = gain_ =
             std::max(1.0, gain_by_guides(scene, guides, ends.eye, search.seed, context, search.learned));
+        own_.remarks.push_back(
+            fmt::format("light is led along user paths: {:.2g} times fewer light paths do as well", gain_));
         return;
     }
     const OpeningsFound found = find_openings(scene, ends, search, context);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <utility>
 
 namespace keyhole {
@@ -9,8 +10,12 @@ namespace keyhole {
 PhotonStore::PhotonStore(std::size_t capacity, double initial_threshold, const Rng& rng)
     : capacity_(capacity), threshold_(initial_threshold), rng_(rng) {
     assert(initial_threshold >= 0);
-    photons_.reserve(capacity);
-    weights_.reserve(capacity);
+    try {
+        photons_.reserve(capacity);
+        weights_.reserve(capacity);
+    } catch (const std::exception&) { // more than there is: the photons may be fewer
+        photons_.shrink_to_fit();
+    }
 }
 
 void PhotonStore::absorb(PhotonBuffer& buffer) {

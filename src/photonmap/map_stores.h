@@ -35,7 +35,8 @@ struct PhotonBuffer {
 /// on nothing but the deposits, their order and its own random stream.
 class PhotonStore {
   public:
-    /// Memory for `capacity` photons is taken at once. With a capacity of 0 everything is dropped.
+    /// Memory for `capacity` photons is taken at once, or, where there isn't so much, as they come. With a capacity of
+    /// 0 everything is dropped.
     PhotonStore(std::size_t capacity, double initial_threshold, const Rng& rng);
 
     /// Adds the photons of a buffer, power times weight, and empties it.

@@ -56,6 +56,8 @@ class Scene {
 
     /// Whether any medium scatters light.
     bool has_scattering_media() const { return media_.scatter(); }
+    /// What no shape encloses; null: vacuum.
+    const Medium* outermost_medium() const { return media_.outermost(); }
     Attenuation attenuation(const SurfacePoint& a, const SurfacePoint& b) const { return media_.attenuation(a, b); }
     /// Media::fly().
     FreeFlight fly(const SurfacePoint& from, const Vec3& w, const SurfacePoint* to, int primary, double u) const {

@@ -7,6 +7,7 @@
 #include <Imath/ImathMatrix.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -107,6 +108,7 @@ struct LoadedImage {
     std::string path;
     int width = 0, height = 0, channels = 0;
     std::size_t bytes = 0;
+    std::uint64_t hash = 0; ///< of what it shows
 };
 
 /// The images that textures hold at the moment, by path.

@@ -1,6 +1,7 @@
 #include "session/work.h"
 
 #include "core/error.h"
+#include "core/percent.h"
 #include "film/image_error.h"
 
 #include <fmt/format.h>
@@ -104,7 +105,7 @@ void Work::load(const Picture& done) {
 }
 
 std::int64_t Work::left() const {
-    if (settings_.passes == 0 && !share_.end_pass) return per_pass_;
+    if (settings_.passes == 0 && !share_.end_pass) return 0;
     std::int64_t done = 0;
     for (const WorkItemSet::Range& r : done_.ranges())
         done += std::max<std::int64_t>(0, std::min(r.end, end_) - std::max(r.begin, begin_));
@@ -170,10 +171,15 @@ Picture Work::finish(RenderStats& stats) {
     old_warnings_.clear();
     // With a time or an error to go for, there is no number of passes that would be all of them.
     const bool open = settings_.passes == 0 || settings_.target_error > 0;
-    stats.complete = open ? passes() > 0 : done_.missing(0, begin_) >= end_;
+    const bool missed = settings_.target_error > 0 && !enough();
+    stats.complete = open ? passes() > 0 && !missed : done_.missing(0, begin_) >= end_;
     stats.passes = passes();
     if (passes() > 1 && settings_.passes != 1 && knows_error_) stats.values["relative error"] = error_.relative();
     if (share_.save && done_.size() > 0) share_.save(snapshot(stats)); // nothing is not worth an older checkpoint
+    if (missed) // not in the checkpoint: who goes on may reach it
+        stats.warnings.push_back(fmt::format("the relative error is {} after {} pass{}, not {} as was asked for",
+                                             passes() > 1 && knows_error_ ? percent(error_.relative()) : "unknown",
+                                             passes(), passes() == 1 ? "" : "es", percent(settings_.target_error)));
     if (pending_ && !share_.keep_sums) total_.merge(*pending_);
     if (total_.film) total_.film->report(stats);
     stats.samples = samples();

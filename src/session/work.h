@@ -69,10 +69,12 @@ class Work {
     Half half() const { return half_of(under_way_); }
     /// The unit is whole. What of one is in unit() when work ends counts for the picture, but isn't saved.
     void end_unit(const RenderStats& stats);
-    /// Units of the share that are left, for a display of progress; those of a pass where there is no end.
+    /// Units of the share that are left, for a display of progress; 0 where there is no end.
     std::int64_t left() const;
     /// Whether no unit is whole yet: one that is cut short is better than nothing then.
     bool is_first() const { return done_.empty(); }
+    /// Whether units are kept for who goes on, or for who joins them: those that are cut short must not be among them.
+    bool keeps_units() const { return pending_.has_value(); }
     /// Whole ones that are done.
     std::int64_t passes() const { return done_.size() / per_pass_; }
 

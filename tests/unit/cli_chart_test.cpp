@@ -82,6 +82,16 @@ TEST_F(Program, QualityIsEffortInOneWord) {
     }
 }
 
+/// Of the candidates for a reference mlt has too little time here.
+TEST_F(Program, AChartMakesItsReferenceByWhatHasTheTime) {
+    EXPECT_EQ(
+        run("chart scene.yaml --times 0.3 --methods path --repeats 1 --reference-time 3 --resolution 16x12 -o rep "
+            "-D brightness_samples=1G"),
+        0)
+        << read("err");
+    EXPECT_TRUE(exists("rep/index.html"));
+}
+
 TEST_F(Program, PlanTellsWhatIsLeftOutAndWhy) {
     ASSERT_EQ(run("plan scene.yaml --json -D method=ipm -D light_paths=20k"), 0) << read("err");
     const auto plan = nlohmann::json::parse(read("out"));
@@ -95,6 +105,15 @@ TEST_F(Program, PlanTellsWhatIsLeftOutAndWhy) {
     EXPECT_EQ(plan["found"]["emitters"].size(), 1u);
     EXPECT_GT(plan["found"]["light"]["direct"], 0.1);
     EXPECT_GT(plan["cpu_seconds"], 0);
+    scratch.write("paths.yaml", "paths: [{points: [[0, 3, 0], [0, 1, 0]]}]\n");
+    for (const char* option :
+         {"--cpu-time 2", "--timeout 2 -t 1", "--spp 4", "--quality draft -t 1", "--user-paths paths.yaml"})
+        EXPECT_EQ(run("plan scene.yaml --json " + std::string(option)), 0) << option << ": " << read("err");
+    ASSERT_EQ(run("plan scene.yaml --json --method path --cpu-time 3"), 0) << read("err");
+    const auto paths = nlohmann::json::parse(read("out"));
+    EXPECT_EQ(paths["method"], "path");
+    EXPECT_NEAR(paths["cpu_seconds"], 3, 1.5);
+    for (const auto& choice : paths["choices"]) EXPECT_EQ(choice["on"], false) << choice["name"];
     ASSERT_EQ(run("plan scene.yaml -D light_paths=20k"), 0);
     EXPECT_THAT(read("out"), HasSubstr("off         caustic map and proposals: "));
 }

@@ -1,5 +1,6 @@
 // Long renders, from outside: killed and gone on with, done in shares, and not to be trusted.
 #include "film/files/exr.h"
+#include "film/join.h"
 #include "support/program.h"
 
 #include <gmock/gmock.h>
@@ -93,8 +94,12 @@ TEST_F(LongRender, GoesOnOnlyFromItsOwnCheckpoint) {
     other.replace(other.find("power: 60"), 9, "power: 61");
     scratch.write("other.yaml", other);
     EXPECT_EQ(run("render other.yaml --no-png --passes 3 -o a.exr --resume"), 2);
-    EXPECT_THAT(read("err"), HasSubstr("found another scene hash"));
+    EXPECT_THAT(read("err"), HasSubstr("found another value of 'scene hash'"));
 
+    ASSERT_EQ(run("render scene.yaml -q --no-png --passes 3 -o plain.exr"), 0);
+    scratch.write("a.checkpoint.exr", read("plain.exr"));
+    EXPECT_EQ(run(render), 2);
+    EXPECT_THAT(read("err"), HasSubstr("found no checkpoint"));
     for (const std::size_t size :
          {std::size_t{0}, std::size_t{10}, std::size_t{300}, good.size() / 2, good.size() - 1}) {
         scratch.write("a.checkpoint.exr", good.substr(0, size));
@@ -114,6 +119,22 @@ TEST_F(LongRender, GoesOnOnlyFromItsOwnCheckpoint) {
     EXPECT_EQ(run(render), 0) << read("err");
 }
 
+TEST_F(LongRender, GoesOnOnlyWithTheSameUserPaths) {
+    scratch.write("narrow.yaml", "paths: [{points: [[0, 3, 0], [0, 1, 0]], beta: 2}]\n");
+    scratch.write("wide.yaml", "paths: [{points: [[0, 3, 0], [0, 1, 0]], beta: 9}]\n");
+    const std::string render = "render scene.yaml -q --no-png --method ipm -D light_paths=2k --passes 2 ";
+    ASSERT_EQ(run(render + "-o a.exr --checkpoint 0 --user-paths narrow.yaml --pass-range 0:1"), 0) << read("err");
+    for (const char* other : {"", "--user-paths wide.yaml "}) {
+        EXPECT_EQ(run(render + "-o a.exr --resume " + other), 2);
+        EXPECT_THAT(read("err"), HasSubstr("found another value of 'user paths' than that of the render"));
+        ASSERT_EQ(run(render + "-o b.exr --pass-range 1:2 " + other), 0) << read("err");
+        EXPECT_EQ(run("merge a.exr b.exr -o c.exr"), 2);
+    }
+    EXPECT_EQ(run(render + "-o a.exr --resume --user-paths narrow.yaml"), 0) << read("err");
+    ASSERT_EQ(run(render + "-o b.exr --seed 2"), 0) << read("err");
+    EXPECT_EQ(run("merge a.exr b.exr -o c.exr"), 0) << "of another seed: both are unbiased; " << read("err");
+}
+
 TEST_F(LongRender, InterruptedLeavesACheckpoint) {
     const pid_t pid = start("render scene.yaml --no-png -o a.exr --spp 4 --passes 100k --checkpoint 1000");
     while (read("err").find("path tracing") == std::string::npos && waitpid(pid, nullptr, WNOHANG) == 0) usleep(20'000);
@@ -124,14 +145,14 @@ TEST_F(LongRender, InterruptedLeavesACheckpoint) {
 }
 
 TEST_F(LongRender, GoesOnFromWhatAnyProcessLeft) {
-    const std::string render = "render scene.yaml -q --no-png -o a.exr --checkpoint 1000 --passes ";
+    const std::string render = "render scene.yaml -q --no-png --checkpoint 1000 --passes 3 ";
     ASSERT_EQ(run("render scene.yaml -q --no-png -o whole.exr --passes 3"), 0) << read("err");
-    ASSERT_EQ(run(render + "3 --pass-range 0:1"), 0) << read("err");
-    std::filesystem::rename(scratch.path("a.checkpoint.exr"), scratch.path("a.checkpoint.1.exr"));
-    ASSERT_EQ(run(render + "3 --pass-range 1:2"), 0) << read("err");
-    std::filesystem::rename(scratch.path("a.checkpoint.exr"), scratch.path("a.checkpoint.2.exr"));
+    for (const std::string part : {"1", "2"}) {
+        ASSERT_EQ(run(render + "-o b.exr --pass-range " + part + ":" + std::to_string(std::stoi(part) + 1)), 0);
+        std::filesystem::rename(scratch.path("b.checkpoint.exr"), scratch.path("a.checkpoint." + part + ".exr"));
+    }
     for (const char* again : {"what is missing", "nothing is missing"}) {
-        ASSERT_EQ(run(render + "3 --resume"), 0) << again << ": " << read("err");
+        ASSERT_EQ(run(render + "-o a.exr --resume"), 0) << again << ": " << read("err");
         EXPECT_TRUE(exists("a.checkpoint.exr")) << again;
         EXPECT_FALSE(exists("a.checkpoint.1.exr") || exists("a.checkpoint.2.exr")) << again;
         expect_same("a.exr", "whole.exr");
@@ -139,15 +160,53 @@ TEST_F(LongRender, GoesOnFromWhatAnyProcessLeft) {
 }
 
 TEST_F(LongRender, KeepsACheckpointUntilThereIsABetterOne) {
-    const std::string render = "render scene.yaml -q --no-png -o a.exr --checkpoint 1000 --passes 2";
-    ASSERT_EQ(run(render), 0) << read("err");
-    const std::string kept = read("a.checkpoint.exr");
-    scratch.write("a.checkpoint.5.exr", kept);
-    EXPECT_EQ(run("render scene.yaml -q --no-png -o a.exr --checkpoint 1000 --timeout 0.001"), 2);
-    EXPECT_EQ(read("a.checkpoint.exr"), kept) << "there was no time for anything";
-    EXPECT_TRUE(exists("a.checkpoint.5.exr"));
-    ASSERT_EQ(run(render), 0) << read("err");
-    EXPECT_FALSE(exists("a.checkpoint.5.exr")) << "of an earlier render";
+    const std::string render = "render scene.yaml -q --no-png -o a.exr --checkpoint 1000 --passes 2 ";
+    const auto units = [this] { return read_exr(scratch.path("a.checkpoint.exr")).metadata.at("units"); };
+    ASSERT_EQ(run(render + "--pass-range 0:1"), 0) << read("err");
+    EXPECT_EQ(units(), "0:2");
+    run(render + "--resume --timeout 0.001");
+    EXPECT_EQ(units().substr(0, 2), "0:") << "there was no time for anything";
+}
+
+/// Without an effort a pass of photons takes longer than that.
+TEST_F(LongRender, FitsPassesIntoATimeThatIsGoneOnWith) {
+    const std::string render = "render scene.yaml -q --no-png -t 1 --method ipm -o a.exr --checkpoint 0 --resume ";
+    std::int64_t before = 0;
+    for (const char* time : {"1.5", "2"}) {
+        ASSERT_EQ(run(render + "--cpu-time " + time), 0) << read("err");
+        const std::int64_t units = units_of({"", read_exr(scratch.path("a.checkpoint.exr"))}).size();
+        EXPECT_GT(units, before);
+        before = units;
+    }
+    run("render scene.yaml -q --no-png -t 1 --method ipm -o b.exr --checkpoint 0 --cpu-time 0.5 -D light_paths=1G");
+    EXPECT_FALSE(exists("b.checkpoint.exr")) << "no unit has all its photons";
+}
+
+TEST_F(LongRender, ATargetInTheSceneIsThatOfTheOption) {
+    std::string text = kScene;
+    text.replace(text.find("spp: 2"), 6, "spp: 2, target_error: 0.2");
+    scratch.write("target.yaml", text);
+    ASSERT_EQ(run("render target.yaml --no-png -o a.exr"), 0) << read("err");
+    EXPECT_THAT(read("err"), HasSubstr("24 x 16 pixels, relative error "));
+    ASSERT_EQ(run("render scene.yaml -q --no-png -o b.exr --target-error 0.2"), 0) << read("err");
+    expect_same("a.exr", "b.exr");
+    EXPECT_EQ(read_exr(scratch.path("a.exr")).metadata.at("complete"), "yes");
+}
+
+TEST_F(LongRender, ATargetThatIsMissedIsAWarning) {
+    for (const char* end : {"--cpu-time 0.3", "--passes 5"}) {
+        const std::string render = "render scene.yaml --no-png -o a.exr --target-error 1e-5 " + std::string(end);
+        EXPECT_EQ(run(render), 0);
+        EXPECT_THAT(read("err"), HasSubstr("not 0.001 % as was asked for"));
+        EXPECT_THAT(read("err"), testing::Not(HasSubstr("100 %")));
+        EXPECT_EQ(read_exr(scratch.path("a.exr")).metadata.at("complete"), "no");
+        EXPECT_EQ(run(render + " --strict"), 3);
+    }
+    for (const char* error : {"0", "-1", "nan", "2", "x"}) {
+        EXPECT_EQ(run("render scene.yaml -o b.exr --target-error " + std::string(error)), 2) << error;
+        EXPECT_THAT(read("err"), HasSubstr("expected a relative error above 0")) << error;
+    }
+    EXPECT_EQ(run("render scene.yaml -q --no-png -o b.exr -D target_error=0"), 0) << "none";
 }
 
 TEST_F(LongRender, ReachesAnErrorByWhateverEffort) {
@@ -184,7 +243,7 @@ TEST_F(LongRender, MergesSharesAndSeeds) {
     for (const auto& [inputs, message] : std::initializer_list<std::pair<const char*, const char*>>{
              {"a.exr overlap.exr", "found work that is in another of the pictures too"},
              {"whole.exr whole.exr", "found the seed 1 again"},
-             {"whole.exr other.exr", "found another scene hash"},
+             {"whole.exr other.exr", "found another value of 'scene hash'"},
              {"whole.exr depth.exr", "found max_depth=3, expected max_depth=24"},
              {"whole.exr none.exr", "cannot read"}}) {
         EXPECT_EQ(run(std::string("merge -o m.exr ") + inputs), 2) << inputs;

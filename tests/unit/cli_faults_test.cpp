@@ -106,6 +106,14 @@ TEST_F(Faults, TooLittleMemoryIsAnErrorThatSaysSo) {
     expect_no_temporary_files();
 }
 
+TEST_F(Faults, MemoryThatPhotonsMayTakeNeedntBeThere) {
+    if (test::kSanitized) GTEST_SKIP() << "sanitizers take all addresses that there are";
+    EXPECT_EQ(run("render scene.yaml -q --no-png --method ipm -D light_paths=3k -D importons=1k -D plan=all "
+                  "--photon-memory 8000GiB -o a.exr"),
+              0)
+        << read("err");
+}
+
 TEST_F(Faults, ReadersOfTheOutputMayGo) {
     EXPECT_EQ(shell("{ $K info scene.yaml; echo $? >code; } | true"), 0);
     EXPECT_EQ(read("code"), "1\n");

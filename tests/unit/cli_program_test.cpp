@@ -134,8 +134,22 @@ TEST_F(Program, MistakesInCommandsSayWhatWasMeant) {
     EXPECT_THAT(read("err"), HasSubstr("did you mean 'render'?"));
     EXPECT_EQ(run("scene.yaml"), 2);
     EXPECT_THAT(read("err"), HasSubstr("found the command 'scene.yaml'"));
+    EXPECT_EQ(run("render scene.yaml --sppp 3"), 2);
+    EXPECT_THAT(read("err"), HasSubstr("found --sppp 3, which render doesn't take; did you mean '--spp'?"));
+    EXPECT_EQ(run("info scene.yaml -D spp=3"), 2);
+    EXPECT_THAT(read("err"), HasSubstr("found -D spp=3, which info doesn't take (see --help)"));
+    EXPECT_EQ(run("render scene.yaml --photon-memory 1m"), 2);
+    EXPECT_THAT(read("err"), HasSubstr("expected a whole number from 256KiB to 16384GiB"));
     EXPECT_EQ(run("render scene.yaml -D spp 4"), 2);
     EXPECT_THAT(read("err"), HasSubstr("-D KEY=VALUE"));
+}
+
+TEST_F(Program, UserPathsWithoutEffectAreTold) {
+    scratch.write("paths.yaml", "paths: [{points: [[0, 3, 0], [0, 1, 0]]}]\n");
+    ASSERT_EQ(run("render scene.yaml --no-png -o a.exr --user-paths paths.yaml"), 0) << read("err");
+    EXPECT_THAT(read("err"), HasSubstr("user paths have no effect on method path"));
+    ASSERT_EQ(run("render scene.yaml --no-png -o a.exr --user-paths paths.yaml --method ipm -D light_paths=2k"), 0);
+    EXPECT_THAT(read("err"), testing::Not(HasSubstr("no effect")));
 }
 
 TEST_F(Program, ARenderInTimeCanBeMadeAgainAndMerged) {

@@ -40,6 +40,18 @@ std::ptrdiff_t count(const std::string& text, char c) { return std::ranges::coun
 
 } // namespace
 
+TEST(TerminalProgress, PromisesNoEndWhereThereIsNone) {
+    for (const bool terminal : {true, false}) {
+        Screen screen;
+        TerminalProgress progress(screen.file, terminal, 100, [&] { return screen.time; });
+        progress.begin("path tracing", 0, "samples");
+        screen.time += 2s;
+        progress.advance(4000);
+        EXPECT_THAT(screen.text(), HasSubstr("path tracing: 4.00 ksamples  2.00 ksamples/s"));
+        EXPECT_THAT(screen.text(), testing::Not(testing::AnyOf(HasSubstr("%"), HasSubstr("left"))));
+    }
+}
+
 TEST(TerminalProgress, RedrawsALineAtMostTenTimesASecond) {
     Screen screen;
     TerminalProgress progress(screen.file, true, 100, [&] { return screen.time; });

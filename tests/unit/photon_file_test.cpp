@@ -60,6 +60,29 @@ TEST_F(SavedMap, MakesTheSamePicture) {
     for (const auto& [name, image] : picture_.layers) EXPECT_EQ(image.data, again.layers.at(name).data) << name;
 }
 
+TEST_F(SavedMap, IsReplacedByNoPartOfAnother) {
+    const auto content = [this] {
+        std::ifstream stream(file_, std::ios::binary);
+        return std::string(std::istreambuf_iterator<char>(stream), {});
+    };
+    const auto stopped = [this] {
+        Settings s = small_settings();
+        s.light_paths = 1'000'000'000;
+        s.save_map = file_;
+        StopToken stop;
+        stop.set_cpu_limit(cpu_seconds() + 0.2);
+        RunContext context;
+        context.stop = &stop;
+        return render(*scene_, s, context).stats.warnings;
+    };
+    const std::string good = content();
+    EXPECT_THAT(stopped(), testing::Contains(HasSubstr("the older file stays")));
+    EXPECT_EQ(content(), good);
+    std::filesystem::remove(file_);
+    EXPECT_THAT(stopped(), testing::Contains(HasSubstr("the file has a part of them")));
+    EXPECT_TRUE(std::filesystem::exists(file_));
+}
+
 /// Rough metal asks the map in another way where its photons lie wherever light comes.
 TEST(SavedMapOfAll, MakesTheSamePictureOfRoughMetal) {
     const auto value = [](double x) { return constant_texture(x); };

@@ -116,6 +116,7 @@ std::vector<Mistake> unusable() {
                  "point 3: found that the segment from point 2 "),
         in_scene(light + "[1, 0.5, 0.2], " + kOpening + ", [-1, 1, 0.5]]",
                  "point 3: found an opening behind the specular"),
+        in_scene(light + "{bounces: [1, 3]}, " + kOpening + ", [0.6, 0.5, -0.7]]", "1 bounce', point 2: found"),
         in_scene("tolerance: 1e-4, points: [[0, 1.951, 0], [0.6, 0, -0.7]]", "expected one within 0.0001 m"),
         in_scene(light + "[0.6, 0, -0.5], [0, 1.95, 0], [0.6, 0, 0]]", "point 3: found a surface that scatters no"),
     };
@@ -186,7 +187,7 @@ TEST(UserPathFile, WhatIsWrittenOfStrangeNamesAndOpeningsIsReadAgain) {
                       "  - {name: flat, points: [[0, 0, 0], {through: {corner: [0, 0, 0], u: [1.00000001, 1, 0], "
                       "v: [1, 1.00000001, 0]}}, [1, 0, 0]]}\n"
                       // Two entries that look like two numbers of bounces of one.
-                      "  - {name: \"x, 1 bounces\", weight: 2, " +
+                      "  - {name: \"x, 1 bounce\", weight: 2, " +
                       bounces +
                       "}\n"
                       "  - {name: \"x, 2 bounces\", weight: 3, points: [[0, 1.95, 0], {bounces: 2, " +
@@ -249,7 +250,7 @@ TEST(UserPathFile, ARangeOfBouncesBecomesAPathForEachNumber) {
     ASSERT_EQ(file.paths.size(), 3u);
     double weight = 0;
     for (std::size_t i = 0; i < 3; ++i) {
-        EXPECT_EQ(file.paths[i].name, "door, " + std::to_string(i + 1) + " bounces");
+        EXPECT_EQ(file.paths[i].name, "door, " + std::to_string(i + 1) + (i == 0 ? " bounce" : " bounces"));
         EXPECT_EQ(file.paths[i].points.size(), i + 3);
         weight += file.paths[i].weight;
     }

@@ -90,17 +90,25 @@ class ReferenceMaker {
     Pair best_candidate() {
         std::array<Pair, kCandidates.size()> pairs;
         double brightest = 0;
+        std::string failure;
         for (std::size_t i = 0; i < pairs.size(); ++i) {
             pairs[i].method = kCandidates[i];
-            extend(pairs[i], trial_seconds());
+            try {
+                extend(pairs[i], trial_seconds());
+            } catch (const InputError& e) { // too little time for it: the others may do
+                failure = e.what();
+                continue;
+            }
             if (renderer_.stopped()) return pairs[0];
             brightest = std::max(brightest, pairs[i].brightness() - 3 * pairs[i].brightness_error());
         }
         const Pair* best = nullptr;
         for (const Pair& pair : pairs) {
+            if (pair.parts == 0) continue;
             const bool misses_light = pair.brightness() < 0.97 * brightest;
             if (!misses_light && (best == nullptr || pair.standard_error() < best->standard_error())) best = &pair;
         }
+        if (best == nullptr) throw InputError(failure);
         return *best;
     }
 

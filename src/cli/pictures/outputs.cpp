@@ -70,10 +70,10 @@ void Outputs::check() const {
     if (fs::path(exr).extension() != ".exr") throw InputError(exr + ": expected a name that ends in .exr");
     if (!png.empty()) check_writable(png);
     if (!stats.empty()) check_writable(stats);
-    const auto place = [](const std::string& path) { return fs::weakly_canonical(path); };
-    if ((!png.empty() && place(png) == place(exr)) || (!stats.empty() && place(stats) == place(exr)) ||
-        (!png.empty() && !stats.empty() && place(png) == place(stats)))
-        throw InputError(exr + ": found one name for two outputs, expected different ones");
+}
+
+std::vector<NamedFile> Outputs::files() const {
+    return {{"the picture", exr}, {"the tone-mapped picture", png}, {"--stats", stats}};
 }
 
 void Outputs::write(Picture picture, const Filter& filter, const std::function<std::string()>& stats_json) const {

@@ -1,6 +1,7 @@
 // The files that a render makes, and the filter at its end.
 #pragma once
 
+#include "cli/pictures/files_apart.h"
 #include "core/choices.h"
 #include "core/progress.h"
 #include "core/render_stats.h"
@@ -11,6 +12,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace keyhole {
 
@@ -43,8 +45,10 @@ struct Outputs {
     Denoise denoise = Denoise::png;   ///< which of them show the picture filtered
 
     /// Finds out before the render whether all of them can be written.
-    /// @throws InputError for names that are no EXR's, that coincide, or that can't be written.
+    /// @throws InputError for names that are no EXR's, or that can't be written.
     void check() const;
+    /// For check_apart().
+    std::vector<NamedFile> files() const;
 
     /// The picture without grain, with its layers and their noise; none if there is no time for that.
     using Filter = std::function<std::optional<Image>(const Picture&)>;

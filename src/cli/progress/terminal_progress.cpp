@@ -93,18 +93,20 @@ double TerminalProgress::share_of(std::uint64_t done) const {
 
 std::string TerminalProgress::line(double seconds, std::uint64_t done) const {
     const double share = share_of(done);
+    const bool has_end = total_ > 0 || share > 0;
     std::string text = stage_;
-    if (terminal_) {
+    if (terminal_ && has_end) {
         constexpr std::size_t kBar = 24;
         const auto filled = static_cast<std::size_t>(share * static_cast<double>(kBar));
         text += " [" + std::string(filled, '#') + std::string(kBar - filled, '.') + "]";
     } else {
         text += ":";
     }
-    text += fmt::format(" {:3.0f} %", std::floor(100 * share));
+    text += has_end ? fmt::format(" {:3.0f} %", std::floor(100 * share))
+                    : fmt::format(" {}{}", with_prefix(static_cast<double>(done)), unit_);
     if (done > 0 && seconds > 0) {
         text += fmt::format("  {}{}/s", with_prefix(static_cast<double>(done) / seconds), unit_);
-        text += fmt::format("  {} left", duration(seconds * (1 - share) / share));
+        if (has_end) text += fmt::format("  {} left", duration(seconds * (1 - share) / share));
     }
     return text;
 }

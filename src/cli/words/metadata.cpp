@@ -1,5 +1,7 @@
 #include "cli/words/metadata.h"
 
+#include "core/bytes.h"
+
 #include <fmt/format.h>
 
 #include <sys/resource.h>
@@ -14,8 +16,13 @@ std::string settings_text(const Settings& settings) {
     return text;
 }
 
-std::map<std::string, std::string> render_identity(const Settings& settings, std::uint64_t scene_hash) {
-    return {{"program", "keyhole " KEYHOLE_VERSION},
+std::map<std::string, std::string> render_identity(const Settings& settings, std::uint64_t scene_hash,
+                                                   const UserPathFile& user_paths) {
+    Hash paths;
+    const std::string text = user_paths_text(user_paths, "");
+    paths.add(std::vector<char>(text.begin(), text.end()));
+    return {{"user paths", user_paths.paths.empty() ? "none" : fmt::format("{:016x}", paths.value())},
+            {"program", "keyhole " KEYHOLE_VERSION},
             {"settings", settings_text(settings)},
             {"seed", std::to_string(settings.seed)},
             {"scene hash", fmt::format("{:016x}", scene_hash)}};

@@ -3,6 +3,7 @@
 
 #include "core/render_stats.h"
 #include "core/settings.h"
+#include "scene/load/yaml/user_path_file.h"
 
 #include <map>
 #include <string>
@@ -12,8 +13,9 @@ namespace keyhole {
 /// Every setting as "key=value", in the order of the table, separated by spaces.
 std::string settings_text(const Settings& settings);
 
-/// What tells renders apart: program, settings, seed and the hash of the scene.
-std::map<std::string, std::string> render_identity(const Settings& settings, std::uint64_t scene_hash);
+/// What tells renders apart: program, settings, seed, and hashes of the scene and of user paths.
+std::map<std::string, std::string> render_identity(const Settings& settings, std::uint64_t scene_hash,
+                                                   const UserPathFile& user_paths);
 
 /// Further string attributes for the EXR: command, scene, samples, warnings, complete, seconds and rays of each stage
 /// and of all, peak memory.

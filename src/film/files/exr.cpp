@@ -114,7 +114,7 @@ Imf::Slice slice(Image& image, std::size_t c, int x0, int y0) {
     return {Imf::FLOAT, base, stride, row};
 }
 
-constexpr const char* kSumsHash = "sums hash";
+constexpr const char* kSumsHash = "hash of sums";
 
 std::string hash_of(const std::map<std::string, AccumulatorState>& sums) {
     Hash hash;
@@ -205,6 +205,8 @@ Picture decode(Imf::InputFile& file) {
             picture.metadata[a.name()] = text->value();
     file.setFrameBuffer(buffer);
     file.readPixels(window.min.y, window.max.y);
+    if (!picture.sums.empty() && !picture.metadata.contains(kSumsHash))
+        throw InputError("found sums that another version of the program wrote, expected those of this version");
     if (!picture.sums.empty() && picture.metadata[kSumsHash] != hash_of(picture.sums))
         throw InputError("found sums that are not those that were written: the file is damaged");
     picture.metadata.erase(kSumsHash);

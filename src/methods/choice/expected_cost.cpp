@@ -22,6 +22,15 @@ template <class Body> auto with_time(const TrialContext& c, double seconds, cons
     return body(TrialContext{c.scene, c.settings, c.given, context, c.user_paths, c.findings});
 }
 
+Settings settings_in_time(const TrialCost& cost, Settings s, const std::set<std::string>& given, double pixels,
+                          double seconds) {
+    double effort = 0;
+    if (!s.method->samples_pixels) return cost.settings_for(s, given, pixels, seconds, effort);
+    if (!given.contains("spp"))
+        s.spp = std::max<std::int64_t>(1, static_cast<std::int64_t>(seconds / cost.per_sample(pixels)));
+    return s;
+}
+
 std::optional<TrialCost> cost_of(const TrialContext& c, const Method& method) {
     return with_time(c, kEver, [&](const TrialContext& t) { return try_cost(t, method, kTrialOfCost, kLongest); });
 }
@@ -34,28 +43,36 @@ double ExpectedCost::cpu_seconds() const {
     return sum;
 }
 
-ExpectedCost expect_cost(Scene& scene, const Settings& settings, const UserPathFile& user_paths, Findings& findings) {
+ExpectedCost expect_cost(Scene& scene, const Settings& settings, const UserPathFile& user_paths, Findings& findings,
+                         std::optional<double> time, const std::set<std::string>& given) {
     const UserPaths paths = bind_user_paths(scene, user_paths);
-    const std::set<std::string> given;
     const RunContext none;
     Settings s = settings;
     const TrialContext c{scene, s, given, none, paths, findings};
     const double pixels = scene.camera().window().size();
     ExpectedCost expected;
     if (settings.method == &methods::automatic) {
-        s.method = &methods::ipm;
-        const auto ipm = can_show(scene, *s.method) ? cost_of(c, *s.method) : std::nullopt;
-        const double seconds = ipm ? ipm->cost.predict(s, pixels) : kEver;
+        double seconds = time.value_or(kEver);
+        if (!time) {
+            s.method = &methods::ipm;
+            const auto ipm = can_show(scene, *s.method) ? cost_of(c, *s.method) : std::nullopt;
+            if (ipm) seconds = ipm->cost.predict(s, pixels);
+        }
         const auto tried = with_time(c, seconds, [](const TrialContext& t) { return try_methods(t, kAll); });
         if (!tried.empty()) {
             expected.remarks.push_back(describe_choice(tried));
-            s = settings_of_same_work(c, tried);
+            if (time)
+                s.method = tried.front().method;
+            else
+                s = settings_of_same_work(c, tried);
         }
     }
     expected.method = s.method->name;
-    if (const auto cost = cost_of(c, *s.method))
-        for (const auto& [stage, time] : cost->cost.stages)
-            expected.stages.emplace_back(stage->name, cost->cost.predict(*stage, time, s, pixels));
+    const auto cost = cost_of(c, *s.method);
+    if (cost && time) s = settings_in_time(*cost, s, given, pixels, *time);
+    if (cost)
+        for (const auto& [stage, taken] : cost->cost.stages)
+            expected.stages.emplace_back(stage->name, cost->cost.predict(*stage, taken, s, pixels));
     if (s.method->keeps_photons && findings.plan && findings.plan->photons)
         expected.photon_bytes = static_cast<std::uint64_t>(s.photon_memory);
     return expected;

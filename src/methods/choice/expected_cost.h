@@ -4,6 +4,12 @@
 #include "methods/findings.h"
 #include "methods/render.h"
 
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
 namespace keyhole {
 
 struct ExpectedCost {
@@ -15,8 +21,10 @@ struct ExpectedCost {
     double cpu_seconds() const;
 };
 
-/// Expects the passes that the settings name, one if they name none. Takes about a second of CPU time, whatever the
+/// Expects the passes that the settings name, one if they name none. With a time [s of CPU] settings follow from it,
+/// but for those in `given`, as in render_in_time(). Takes about a second of CPU time, whatever the
 /// scene. The scene's window margin has to be set. @throws as render().
-ExpectedCost expect_cost(Scene& scene, const Settings& settings, const UserPathFile& user_paths, Findings& findings);
+ExpectedCost expect_cost(Scene& scene, const Settings& settings, const UserPathFile& user_paths, Findings& findings,
+                         std::optional<double> time = std::nullopt, const std::set<std::string>& given = {});
 
 } // namespace keyhole

@@ -374,8 +374,9 @@ Settings settings_of_same_work(const TrialContext& c, std::span<const TriedMetho
 }
 
 std::string describe_choice(std::span<const TriedMethod> tried) {
-    std::string text = fmt::format("method {} chosen by trial: squared relative errors in this time would be about",
-                                   tried.front().method->name);
+    std::string text =
+        fmt::format("method {} chosen by trial: squared relative errors for this time or work would be about",
+                    tried.front().method->name);
     for (const TriedMethod& t : tried)
         text += fmt::format("{} {} {:.2g}", &t == tried.data() ? "" : ",", t.method->name, t.predicted);
     return text;

@@ -150,9 +150,11 @@ void warn_of_photons(RenderStats& stats, std::int64_t passes, std::int64_t max_d
                                                "Try more light_paths or time, or more passes, which cut nothing off",
                                                100 * cut));
     if (lookups.share < kLeastFound && asked)
-        stats.warn(Doubt::lookups, fmt::format("the photon map is too sparse where it is asked: {:.1f} photons within "
-                                               "reach of a lookup, {:.0f} % of those asked for. Try more photons",
-                                               lookups.found, 100 * lookups.share));
+        stats.warn(Doubt::lookups,
+                   fmt::format("the photon map is too sparse where it is asked: {:.1f} photons within "
+                               "reach of a lookup, {:.0f} % of those asked for. Try more light_paths, mutations or "
+                               "time, or more photon_memory where that is full",
+                               lookups.found, 100 * lookups.share));
     // Each pass has spots of its own, and shows them less the more passes there are.
     if (const double share = q.unconfirmed.value_or(0) / all_passes; share > kMostFalse)
         stats.warn(Doubt::caustics,

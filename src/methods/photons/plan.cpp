@@ -148,10 +148,9 @@ PlanItem plan_coverage(const Settings& settings, bool photons, const CoverageFou
     if (!settings.gather_coverage) return {name, false, "the setting gather_coverage is off"};
     if (!photons) return {name, false, "no photon maps"};
     if (settings.method->stores_everywhere()) return {name, false, "standard photon mapping gathers all light"};
-    return {
-        name, found.coverage.has_value(),
-        percent(found.beyond) + " of the light arrives where few gather rays do" +
-            (found.coverage ? ": it is stored where it is seen" : ": enough of them to gather it without much noise")};
+    return {name, found.coverage.has_value(),
+            percent(found.beyond) + " of all light arrives where few gather rays do" +
+                (found.coverage ? ": what is seen of it is stored" : ", but of what is seen gather rays find enough")};
 }
 
 PlanItem plan_gather(const Scene& scene, bool photons, const SceneSurvey& survey) {

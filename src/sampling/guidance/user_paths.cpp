@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 namespace keyhole {
 namespace {
@@ -45,7 +46,12 @@ class Binder {
     double miss(std::size_t i, const Vec3& p) const { return (Imath::V3d(p) - spec_.points[i].p).length(); }
 
     [[noreturn]] void fail(std::size_t i, const std::string& message) const {
-        throw InputError(spec_.points[i].where, fmt::format("path '{}', point {}: {}", spec_.name, i + 1, message));
+        throw InputError(spec_.points[i].where, fmt::format("path '{}', point {}: {}", spec_.name, number(i), message));
+    }
+    /// Of a point in the file, from 1: bounces are none. Of a bounce that of the point before it.
+    std::ptrdiff_t number(std::size_t i) const {
+        return std::count_if(spec_.points.begin(), spec_.points.begin() + static_cast<std::ptrdiff_t>(i) + 1,
+                             [](const UserPathPoint& p) { return !p.bounce; });
     }
 
     SurfacePoint find_light();
@@ -95,27 +101,29 @@ SurfacePoint Binder::find_light() {
 void Binder::aim(std::size_t i) {
     const Vertex& from = found_.back();
     if (miss(i, from.point.p) <= 1e-6 * (scene_.upper() - scene_.lower()).length())
-        fail(i, fmt::format("found the same place as point {}, expected another one", i));
+        fail(i, fmt::format("found the same place as point {}, expected another one", number(i - 1)));
     const auto opening = portal(i);
     if (!opening && !(spec_.beta[i - 1] > 0))
-        fail(i, fmt::format("found a cone of no width for the segment from point {}, expected beta above 0", i));
+        fail(i, fmt::format("found a cone of no width for the segment from point {}, expected beta above 0",
+                            number(i - 1)));
     const Vec3 w = (given(i) - from.point.p).normalized();
     const bool anywhere = spec_.points[i - 1].bounce;
     if (opening && !anywhere && !(opening->density(from.point.p, w) > 0))
-        fail(i, fmt::format("found that the segment from point {} passes beside its opening", i));
+        fail(i, fmt::format("found that the segment from point {} passes beside its opening", number(i - 1)));
     if (i == 1 && is_black(scene_.emitter(from.point.emitter).radiance(from.point, w)))
         fail(0, "found an emitter that sends no light towards point 2");
     const auto hit = next_vertex(scene_, from, w);
-    if (!hit || hit->point.site != Site::surface) fail(i, fmt::format("found no surface on the way from point {}", i));
+    if (!hit || hit->point.site != Site::surface)
+        fail(i, fmt::format("found no surface on the way from point {}", number(i - 1)));
     const double off = miss(i, hit->point.p);
     if (off > tolerance_) {
         const bool before = Vec3(hit->point.p - from.point.p).length() < Vec3(given(i) - from.point.p).length();
         if (before)
-            fail(i, fmt::format("found the segment from point {} blocked at {}, {} before this point", i,
+            fail(i, fmt::format("found the segment from point {} blocked at {}, {} before this point", number(i - 1),
                                 text(hit->point.p), text(off)));
         fail(i, fmt::format("found it in the air: the surface on the way from point {} is {} behind it, at {}; "
                             "expected one within {}",
-                            i, text(off), text(hit->point.p), text(tolerance_)));
+                            number(i - 1), text(off), text(hit->point.p), text(tolerance_)));
     }
     add(i, *hit);
 }
@@ -124,8 +132,8 @@ void Binder::aim(std::size_t i) {
 void Binder::follow(std::size_t i) {
     Vertex& from = found_.back();
     if (portal(i))
-        fail(i,
-             fmt::format("found an opening behind the specular vertex at point {}, where light is not free to aim", i));
+        fail(i, fmt::format("found an opening behind the specular vertex at point {}, where light is not free to aim",
+                            number(i - 1)));
     const Vec3 back = direction(from.point, found_[found_.size() - 2].point);
     std::optional<Vertex> best;
     Event event = from.event;
@@ -138,11 +146,12 @@ void Binder::follow(std::size_t i) {
         best = *hit;
         event = e;
     }
-    if (!best) fail(i, fmt::format("found that light leaves the scene from the specular vertex at point {}", i));
+    if (!best)
+        fail(i, fmt::format("found that light leaves the scene from the specular vertex at point {}", number(i - 1)));
     if (const double off = miss(i, best->point.p); off > tolerance_)
         fail(i, fmt::format("found that the specular vertex at point {} sends light to {}, {} away; expected it within "
                             "{} (keyhole paths trace finds such points)",
-                            i, text(best->point.p), text(off), text(tolerance_)));
+                            number(i - 1), text(best->point.p), text(off), text(tolerance_)));
     from.event = event;
     add(i, *best);
 }
@@ -163,7 +172,8 @@ void Binder::check_scattering(std::size_t i, const Vec3& to_eye) const {
     if (v.specular()) return;
     const Vec3 to_light = direction(v.point, found_[i - 1].point);
     if (is_black(scatter(v.point, v.bsdf, Event::finite, to_light, to_eye).value))
-        fail(i, fmt::format("found a surface that scatters no light from point {} to point {}", i, i + 2));
+        fail(i, fmt::format("found a surface that scatters no light from point {} to point {}", number(i - 1),
+                            number(i + 1)));
 }
 
 bool Binder::is_seen() const {
@@ -200,12 +210,14 @@ UserPaths bind_user_paths(const Scene& scene, const UserPathFile& file) {
 }
 
 UserPathFile usable_paths(const Scene& scene, UserPathFile file, std::vector<std::string>& warnings) {
+    std::set<std::string> told; // entries: of their paths, which differ in bounces, the first says enough
     std::erase_if(file.paths, [&](const UserPathSpec& spec) {
         try {
             bind_user_path(scene, spec);
             return false;
         } catch (const InputError& e) {
-            warnings.push_back(fmt::format("{}: the path is left out", e.what()));
+            if (told.insert(spec.where.to_string()).second || spec.where.line == 0)
+                warnings.push_back(fmt::format("{}: the path is left out", e.what()));
             return true;
         }
     });

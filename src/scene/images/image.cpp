@@ -1,5 +1,6 @@
 #include "scene/images/image.h"
 
+#include "core/bytes.h"
 #include "core/error.h"
 #include "scene/texture.h"
 
@@ -37,6 +38,13 @@ TextureImage read_image(const std::string& path, ImagePart part) {
     return read_other_image(path, part);
 }
 
+std::uint64_t content_hash(const TextureImage& image) {
+    Hash hash;
+    for (const int n : {image.width, image.height, image.channels}) hash.add(n);
+    std::visit([&](const auto& texels) { hash.add(texels); }, image.texels);
+    return hash.value();
+}
+
 } // namespace
 
 std::size_t TextureImage::bytes() const {
@@ -69,7 +77,8 @@ std::vector<LoadedImage> loaded_images() {
     const std::lock_guard lock(cache().mutex);
     for (const auto& [key, entry] : cache().images)
         if (const auto image = entry.lock())
-            list.push_back({key.first, image->width, image->height, image->channels, image->bytes()});
+            list.push_back(
+                {key.first, image->width, image->height, image->channels, image->bytes(), content_hash(*image)});
     return list;
 }
 

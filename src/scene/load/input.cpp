@@ -109,14 +109,14 @@ void Mistakes::report() const {
     throw InputErrors(std::move(lines));
 }
 
-std::string read_text_file(const std::string& path, std::size_t most_bytes) {
-    const auto fail = [&](const std::string& what) -> std::string { throw InputError({path, 0, 0}, what); };
+std::string read_text_file(const std::string& path, std::string_view what, std::size_t most_bytes) {
+    const auto fail = [&](const std::string& why) -> std::string { throw InputError({path, 0, 0}, why); };
     std::error_code error;
     const auto status = std::filesystem::status(path, error);
-    if (!std::filesystem::exists(status)) return fail("found no such file, expected a scene file");
-    if (std::filesystem::is_directory(status)) return fail("found a directory, expected a scene file");
+    if (!std::filesystem::exists(status)) return fail(fmt::format("found no such file, expected {}", what));
+    if (std::filesystem::is_directory(status)) return fail(fmt::format("found a directory, expected {}", what));
     if (!std::filesystem::is_regular_file(status))
-        return fail("found something that is not a file, expected a scene file");
+        return fail(fmt::format("found something that is not a file, expected {}", what));
     if (const auto bytes = std::filesystem::file_size(path, error); !error && bytes > most_bytes)
         return fail(fmt::format("found {} bytes, expected at most {}", bytes, most_bytes));
     std::ifstream stream(path, std::ios::binary);

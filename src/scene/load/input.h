@@ -11,9 +11,10 @@
 
 namespace keyhole {
 
-/// The text of a file.
+/// The text of a file, which should be `what`.
 /// @throws InputError "path: what is wrong" for anything but a readable regular file within `most_bytes`.
-std::string read_text_file(const std::string& path, std::size_t most_bytes = std::size_t{1} << 26);
+std::string read_text_file(const std::string& path, std::string_view what = "a scene file",
+                           std::size_t most_bytes = std::size_t{1} << 26);
 
 /// The bytes of a file; where it is packed with gzip (RFC 1952) what was packed, of several parts one after the other.
 /// @throws InputError, without a position, for a file that can't be read, for packed data that are broken or end too

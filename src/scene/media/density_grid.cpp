@@ -72,6 +72,12 @@ double DensityGrid::density(const Vec3& p) const {
     return interpolated(at);
 }
 
+void DensityGrid::add_to(Hash& hash) const {
+    hash.add(values_.size);
+    hash.add(values_.density);
+    hash.add(to_grid_);
+}
+
 DensityGrid::Ray DensityGrid::local(const Vec3& origin, const Vec3& w) const {
     Ray ray;
     to_grid_.multVecMatrix(Imath::V3d(origin), ray.origin);

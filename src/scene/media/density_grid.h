@@ -1,6 +1,7 @@
 // How dense a medium is from place to place: values on a grid, and trilinear between them.
 #pragma once
 
+#include "core/bytes.h"
 #include "core/vec.h"
 
 #include <Imath/ImathBox.h>
@@ -32,6 +33,7 @@ class DensityGrid {
     double integral(const Vec3& origin, const Vec3& w, double t0, double t1) const;
     /// The t at which integral() from `t0` on comes to `amount`; none if it doesn't before `t1`.
     std::optional<double> reach(const Vec3& origin, const Vec3& w, double t0, double t1, double amount) const;
+    void add_to(Hash& hash) const;
 
   private:
     using Place = Imath::V3d; // in which values lie at whole numbers

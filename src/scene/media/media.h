@@ -55,6 +55,8 @@ class Media {
     bool empty() const { return accelerator_ == nullptr && outermost_ == nullptr; }
     /// Whether any of them does.
     bool scatter() const { return scatter_; }
+    /// What no shape encloses; null: vacuum.
+    const Medium* outermost() const { return outermost_.get(); }
     std::size_t accelerator_bytes() const { return accelerator_ ? accelerator_->bytes() : 0; }
 
     /// Share of light that an edge between two points lets through. At most one of them is infinite.

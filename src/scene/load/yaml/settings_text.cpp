@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <concepts>
@@ -44,6 +45,16 @@ std::optional<std::int64_t> parse_whole(std::string_view text) {
     return static_cast<std::int64_t>(rounded);
 }
 
+/// Bounds of settings from here on are of memory [bytes].
+constexpr std::int64_t kLeastMemory = 1 << 16;
+
+/// A bound on a whole number as one would write it: those of memory in KiB, and so on.
+std::string bound_text(std::int64_t bound, bool of_memory) {
+    std::size_t unit = 0;
+    for (; of_memory && unit < 3 && bound >= 1024 && bound % 1024 == 0; ++unit) bound /= 1024;
+    return fmt::format("{}{}", bound, std::array{"", "KiB", "MiB", "GiB"}[unit]);
+}
+
 /// Visits the table of settings and parses the value of the one whose key matches.
 struct Setter {
     const std::string& key;
@@ -67,7 +78,9 @@ struct Setter {
         if (!matches(name)) return;
         const auto x = parse_whole(value);
         if (!x || *x < minimum || *x > maximum)
-            return refuse(fmt::format("expected a whole number from {} to {}", minimum, maximum));
+            return refuse(fmt::format("expected a whole number from {} to {}",
+                                      bound_text(minimum, minimum >= kLeastMemory),
+                                      bound_text(maximum, minimum >= kLeastMemory)));
         member = static_cast<T>(*x);
     }
     void operator()(const char* name, double& member, double minimum, double maximum, const char*) {

@@ -166,7 +166,7 @@ std::string hint_at_line(const std::string& text, int line) {
 
 } // namespace
 
-YamlPtr parse_yaml(const std::string& text, const std::string& file) {
+YamlPtr parse_yaml(const std::string& text, const std::string& file, std::string_view what) {
     reject_binary(text, file);
     std::istringstream stream(text);
     TreeBuilder builder(file);
@@ -178,7 +178,7 @@ YamlPtr parse_yaml(const std::string& text, const std::string& file) {
         throw InputError({file, e.mark.line + 1, e.mark.column + 1},
                          fmt::format("found broken YAML ({}), expected {}", e.msg, hint_at_line(text, e.mark.line)));
     }
-    if (!builder.root()) throw InputError({file, 1, 1}, "found an empty file, expected a scene");
+    if (!builder.root()) throw InputError({file, 1, 1}, fmt::format("found an empty file, expected {}", what));
     return builder.root();
 }
 

@@ -38,9 +38,9 @@ constexpr std::size_t kMaxYamlNodes = std::size_t{1} << 22;
 constexpr int kMaxYamlHeight = 64;
 
 /// Parses one document.
-/// @param file name used in messages.
+/// @param file name used in messages, and `what` it should hold.
 /// @throws InputError with its position for broken syntax, binary data, a duplicate key, a key that is not a scalar,
 /// several documents, an alias within its own anchor, and documents past the limits above.
-YamlPtr parse_yaml(const std::string& text, const std::string& file);
+YamlPtr parse_yaml(const std::string& text, const std::string& file, std::string_view what = "a scene");
 
 } // namespace keyhole

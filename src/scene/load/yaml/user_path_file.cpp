@@ -109,7 +109,7 @@ UserPathSpec with_bounces(UserPathSpec path, std::int64_t count) {
 }
 
 /// What tells the paths of one entry apart.
-std::string bounces_text(auto count) { return fmt::format(", {} bounces", count); }
+std::string bounces_text(auto count) { return fmt::format(", {} bounce{}", count, count == 1 ? "" : "s"); }
 
 /// One path, or one for each number of bounces.
 std::vector<UserPathSpec> read_paths(const YamlNode& node, std::size_t number, const Defaults& defaults) {
@@ -202,7 +202,7 @@ std::string entry_text(const UserPathEntry& entry) {
 } // namespace
 
 UserPathFile load_user_paths(const std::string& path) {
-    const YamlPtr root = parse_yaml(read_text_file(path), path);
+    const YamlPtr root = parse_yaml(read_text_file(path, "a file of user paths"), path, "user paths");
     const MapReader map(*root, "user paths", {"paths", "beta", "patch", "tolerance"});
     Defaults defaults;
     if (const YamlNode* beta = map.find("beta")) defaults.beta = radians(read_number(*beta, kBeta));

@@ -27,7 +27,7 @@ IncludeStack::IncludeStack(const std::string& path)
 }
 
 void IncludeStack::open(const std::string& path) {
-    std::string text = read_text_file(path, kMostBytes);
+    std::string text = read_text_file(path, "a scene file", kMostBytes);
     if (text.starts_with("\x1f\x8b"))
         throw InputError({path, 0, 0}, "found a file packed with gzip, expected text (unpack it first)");
     files_.push_back({canonical(path), std::make_unique<DirectiveReader>(std::move(text), path)});
