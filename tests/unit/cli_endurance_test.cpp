@@ -170,7 +170,8 @@ TEST_F(LongRender, KeepsACheckpointUntilThereIsABetterOne) {
 
 /// Without an effort a pass of photons takes longer than that.
 TEST_F(LongRender, FitsPassesIntoATimeThatIsGoneOnWith) {
-    const std::string render = "render scene.yaml -q --no-png -t 1 --method ipm -o a.exr --checkpoint 0 --resume ";
+    const std::string box = "render " KEYHOLE_SOURCE_DIR "/scenes/box.yaml --resolution 24x16 -q --no-png -t 1 ";
+    const std::string render = box + "--method ipm -o a.exr --checkpoint 0 --resume ";
     std::int64_t before = 0;
     for (const char* time : {"1.5", "2"}) {
         ASSERT_EQ(run(render + "--cpu-time " + time), 0) << read("err");
@@ -178,7 +179,7 @@ TEST_F(LongRender, FitsPassesIntoATimeThatIsGoneOnWith) {
         EXPECT_GT(units, before);
         before = units;
     }
-    run("render scene.yaml -q --no-png -t 1 --method ipm -o b.exr --checkpoint 0 --cpu-time 0.5 -D light_paths=1G");
+    run(box + "--method ipm -o b.exr --checkpoint 0 --cpu-time 0.5 -D light_paths=1G");
     EXPECT_FALSE(exists("b.checkpoint.exr")) << "no unit has all its photons";
 }
 

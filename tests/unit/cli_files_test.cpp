@@ -61,5 +61,5 @@ TEST_F(Files, ACheckpointIsReplacedByNothingButItsOwnRender) {
 
 TEST_F(Files, ANameThatIsTooLongIsAMistakeOfTheUser) {
     EXPECT_EQ(run("render scene.yaml -q --no-png --checkpoint 1 -o " + std::string(245, 'x') + ".exr"), 2);
-    EXPECT_THAT(read("err"), HasSubstr("too long"));
+    EXPECT_THAT(read("err"), HasSubstr("File name too long"));
 }

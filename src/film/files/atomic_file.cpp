@@ -68,7 +68,10 @@ enum class Kind { replaceable, direct };
 Kind kind_of(const std::string& path, const fs::path& target) {
     struct stat status {};
     if (path.empty()) fail("''", ENOENT);
-    if (stat(target.c_str(), &status) != 0) return Kind::replaceable;
+    if (stat(target.c_str(), &status) != 0) {
+        if (errno == ENAMETOOLONG) fail(path, errno); // its own may be longer than the temporary one's
+        return Kind::replaceable;
+    }
     if (S_ISDIR(status.st_mode)) fail(path, EISDIR);
     return S_ISREG(status.st_mode) ? Kind::replaceable : Kind::direct;
 }
