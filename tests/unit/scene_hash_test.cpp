@@ -17,7 +17,7 @@ namespace {
 std::string picture(float spot) {
     std::string bytes = "Pf\n64 64\n-1.0\n";
     for (int i = 0; i < 64 * 64; ++i) {
-        const float x = i == 2222 ? spot : 0.5f;
+        const float x = i == 2222 ? spot : static_cast<float>(i % 97) / 100;
         bytes.append(reinterpret_cast<const char*>(&x), sizeof x);
     }
     return bytes;
