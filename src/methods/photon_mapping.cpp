@@ -140,11 +140,8 @@ class Passes {
         if (context.communicator != nullptr && context.communicator->rank() > 0) return;
         if (context.stopped()) {
             std::error_code error;
-            const bool there = std::filesystem::exists(c_.settings.save_map, error);
-            stats_.warn(Doubt::photons,
-                        fmt::format("{}: the pass was stopped before it had all photons: {}", c_.settings.save_map,
-                                    there ? "the older file stays" : "the file has a part of them"));
-            if (there) return;
+            warn_of_cut_map(c_.settings.save_map, stats_);
+            if (std::filesystem::exists(c_.settings.save_map, error)) return;
         }
         try {
             save_photons(c_.settings.save_map, photon_file_key(c_.scene, c_.settings, c_.coverage), photons);

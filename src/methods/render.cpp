@@ -6,6 +6,7 @@
 #include "methods/choice/method_trials.h"
 #include "methods/learned_direct_light_scope.h"
 #include "methods/method.h"
+#include "methods/photons/photon_file.h"
 #include "methods/render_paths.h"
 
 #include <algorithm>
@@ -70,8 +71,10 @@ RenderResult render(Scene& scene, const Settings& settings, const RunContext& co
     }
     // What others are to go on from has its sums, which a first look has not.
     const bool asked = context.stop != nullptr && context.stop->stopped();
-    if (asked && !has_picture(result) && !share.keep_sums && !share.save && share.communicator == nullptr)
-        return first_look(scene, settings);
+    if (asked && !has_picture(result) && !share.keep_sums && !share.save && share.communicator == nullptr) {
+        result = first_look(scene, settings);
+        if (!settings.save_map.empty()) warn_of_cut_map(settings.save_map, result.stats);
+    }
     return result;
 }
 

@@ -17,7 +17,7 @@ namespace {
 std::string picture(float spot) {
     std::string bytes = "Pf\n64 64\n-1.0\n";
     for (int i = 0; i < 64 * 64; ++i) {
-        const float x = i == 2222 ? spot : 0.5f;
+        const float x = i == 2222 ? spot : static_cast<float>(i % 97) / 100;
         bytes.append(reinterpret_cast<const char*>(&x), sizeof x);
     }
     return bytes;
@@ -30,21 +30,21 @@ media: {tea: {absorption: [0.2, 1.1, 6]}, haze: {scattering: 0.1, anisotropy: 0.
 materials:
   paper: {type: diffuse, reflectance: {type: image, file: p.pfm, mapping: uv, repeat: [3, 1]}}
   marble: {type: diffuse, reflectance: {type: checkerboard, a: 0.1, b: 0.6, repeat: [5, 5]}}
-  glass: {type: dielectric, eta: 1.5}
-  ground: {type: dielectric, eta: 1.5, roughness: 0.2}
+  glass: {type: dielectric, ior: 1.5}
+  ground: {type: dielectric, ior: 1.5, roughness: 0.2}
   metal: {type: conductor, reflectance: [0.9, 0.8, 0.7], roughness: 0.1}
-  varnish: {type: coated_diffuse, reflectance: 0.5, eta: 1.4}
+  varnish: {type: coated_diffuse, reflectance: 0.5, ior: 1.4}
   plastic: {type: principled, base_color: [0.2, 0.3, 0.4], specular: 0.4, sheen: 0.1}
 shapes:
-  - {type: sphere, position: [9, 9, 9], radius: 0.5, emission: {radiance: 60}}
+  - {type: sphere, center: [9, 9, 9], radius: 0.5, emission: {radiance: 60}}
   - {type: box, min: [8, 8, 8], max: [10, 10, 10], material: paper}
   - {type: rectangle, corner: [-1, -1, 0], u: [2, 0, 0], v: [0, 2, 0], material: paper}
-  - {type: sphere, position: [0, 0, -2], material: marble, alpha: 0.7}
-  - {type: sphere, position: [0, 0, -4], material: glass, inside: tea}
-  - {type: sphere, position: [0, 0, -6], material: ground, outside: haze}
-  - {type: sphere, position: [0, 0, -8], material: metal}
-  - {type: sphere, position: [0, 0, -10], material: varnish}
-  - {type: sphere, position: [0, 0, -12], material: plastic}
+  - {type: sphere, center: [0, 0, -2], material: marble, alpha: 0.7}
+  - {type: sphere, center: [0, 0, -4], material: glass, inside: tea}
+  - {type: sphere, center: [0, 0, -6], material: ground, outside: haze}
+  - {type: sphere, center: [0, 0, -8], material: metal}
+  - {type: sphere, center: [0, 0, -10], material: varnish}
+  - {type: sphere, center: [0, 0, -12], material: plastic}
 )";
 
 class HashOfScene : public testing::Test {
@@ -79,12 +79,12 @@ TEST_F(HashOfScene, SeesEveryNumber) {
         {"a: 0.1", "a: 0.11"},
         {"b: 0.6", "b: 0.61"},
         {"repeat: [5, 5]", "repeat: [5, 6]"},
-        {"eta: 1.5}", "eta: 1.51}"},
+        {"ior: 1.5}", "ior: 1.51}"},
         {"roughness: 0.2", "roughness: 0.21"},
         {"0.9, 0.8, 0.7", "0.9, 0.8, 0.71"},
         {"roughness: 0.1", "roughness: 0.11"},
         {"reflectance: 0.5", "reflectance: 0.51"},
-        {"eta: 1.4", "eta: 1.41"},
+        {"ior: 1.4", "ior: 1.41"},
         {"0.2, 0.3, 0.4", "0.2, 0.3, 0.41"},
         {"specular: 0.4", "specular: 0.41"},
         {"sheen: 0.1", "sheen: 0.11"},
