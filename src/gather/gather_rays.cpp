@@ -3,7 +3,6 @@
 #include "gather/direct_irradiance.h"
 #include "gather/direct_light.h"
 #include "gather/photon_reflection.h"
-#include "gather/spots/spot_mixture.h"
 #include "photonmap/confirmation.h"
 #include "photonmap/few_photons.h"
 #include "photonmap/surface/density_in_sight.h"
@@ -39,10 +38,6 @@ constexpr float kKnown = 0.25f;
 /// farther away nothing is known of that.
 constexpr float kInTheSameLight = 0.5f;
 
-/// Rays that may be traced on one after the other, in crevices. Four make light there a little better, and rooms full
-/// of small things noisier.
-constexpr int kMostTracedOn = 2;
-
 /// Caustics are the lesser part of the light where they are below this share of the rest; least probability with which
 /// they are looked at there.
 constexpr double kLesserCaustic = 0.1, kLeastLook = 0.1;
@@ -51,21 +46,7 @@ constexpr double kLesserCaustic = 0.1, kLeastLook = 0.1;
 /// The error that a few more would save is one of this sample alone, and small beside its others.
 constexpr int kSights = 8, kPhotonsAtEnd = 16;
 
-/// Area of the surface in reach of an estimate over that of the disc, below which it is a mean over slats, leaves or
-/// legs: light changes across each of them, and a ray meets the side that it comes from.
-constexpr double kFine = 0.5;
-
 } // namespace
-
-/// Where a ray comes from, as far as what it meets depends on that.
-struct GatherRays::Leg {
-    float distance;  ///< from the vertex before [m]
-    int scatterings; ///< between the eye and the vertex that it leads to
-    int traced_on;   ///< rays before it, each traced on from where the last one ended
-
-    /// Vertices between the eye and the one it led to, d2, beyond d1.
-    int longer() const { return scatterings - 1; }
-};
 
 /// The walk along a gather ray, through specular vertices. It ends where the maps are asked: its last vertex is d2, so
 /// that what it finds is what stored_kind() leaves to final gather.
@@ -116,25 +97,6 @@ GatherRays::Arrival GatherRays::trace(const Vertex& from, const Vec3& w, double 
 }
 
 LightSamples GatherRays::at_end(const Leg& leg) const { return {1, faces_left(leg.scatterings + 1)}; }
-
-bool GatherRays::goes_on(const Leg& leg, const std::optional<std::uint32_t>& place, const SurfaceRegion& here) const {
-    // Where the gather coverage ends, light from beyond it would be lost.
-    if (leg.traced_on == kMostTracedOn || maps_.coverage != nullptr) return false;
-    // That no photon came near doesn't mean that no light does.
-    if (!place) return true;
-    // Farther away than its estimate looks, the place is one of other surfaces, as beside a frame on which no photon
-    // lies: they may have a hundred times the light.
-    const bool near = maps_.irradiance->is_near(*place, here);
-    // The estimate is a mean over its radius. Seen from nearer than that, as in corners, or on a surface that is finer,
-    // the mean is not good enough.
-    const bool seen_from_near = leg.distance < maps_.irradiance->radius(*place);
-    if (leg.traced_on == 0) return !near || seen_from_near || is_fine(*place);
-    // To trace paths further costs more noise than it removes error, but in crevices: there all estimates have the
-    // light of the room before them.
-    return seen_from_near && (!near || maps_.irradiance->is_in_crevice(*place));
-}
-
-bool GatherRays::is_fine(std::uint32_t place) const { return maps_.irradiance->area_share(place) < kFine; }
 
 void GatherRays::add(const Rgb& throughput, const Rgb& light, const End& end, const Leg& leg, Arrival& arrival) const {
     arrival.indirect += throughput * light;
@@ -187,9 +149,13 @@ Rgb GatherRays::irradiance(std::uint32_t place, const Rgb& known, const SurfaceR
                            SampleSource& source) const {
     if (!maps_.irradiance->is_one_sided(place) || maps_.irradiance->is_near(place, here, kInTheSameLight))
         return known * maps_.irradiance->share_that_reaches(place, longer);
-    return density_near(
-        place, here, [&](const Photon& p) { return p.reaches(longer); }, [](const Photon&) { return Rgb(1.0); },
-        source);
+    const auto reaches = [&](const Photon& p) { return p.reaches(longer); };
+    const auto one = [](const Photon& /*p*/) { return Rgb(1.0); };
+    if (maps_.global == nullptr || may_be_partly_occluded(place, here))
+        return density_near(place, here, reaches, one, source);
+    return estimate_density(maps_.global->main_photons(), here, maps_.irradiance->radius(place), area_near(place, here),
+                            [&](const Photon& p) { return Rgb(reaches(p) ? 1 : 0); })
+        .value;
 }
 
 Rgb GatherRays::direct(const std::optional<std::uint32_t>& place, const Vertex& v, const SurfaceRegion& here,
@@ -258,36 +224,6 @@ std::optional<LobeNoise> GatherRays::lobe_noise(const Vertex& v, const Vec3& bac
               again = direct_light(scene_, wide.v, back, at_end(leg), source);
     const double scale = wide.scale * wide.scale;
     return LobeNoise{scale * variance_of_photons(wide.v, back), scale * variance(once, again), variance(first, second)};
-}
-
-Rgb GatherRays::bounced(const Vertex& v, const Vec3& back, const Rgb& irradiance, const Leg& next,
-                        SampleSource& source) const {
-    const auto by_bsdf = [&](const auto& density) {
-        const auto on = continue_walk(v, back, From::eye, source);
-        if (!on || is_specular(on->event)) return Rgb(0.0);
-        return on->weight * trace(v, on->w, on->pdf, next, source).indirect * (on->pdf / density(on->w, on->pdf));
-    };
-    if (maps_.spots == nullptr) return by_bsdf([](const Vec3& /*w*/, double pdf) { return pdf; });
-    const SpotMixture mixture(*maps_.spots, v.point.p, facing(v.point.ng, back), luminance(irradiance));
-    if (!(mixture.aimed() > 0) || source.next() >= mixture.aimed())
-        return by_bsdf([&](const Vec3& w, double pdf) { return mixture.density(w, pdf); });
-    const Vec3 w = mixture.sample(source);
-    const ScatterValue s = scatter(v.point, v.bsdf, Event::finite, w, back);
-    const double density = mixture.density(w, s.pdf_to_light);
-    if (!(density > 0) || !(luminance(s.value) > 0)) return Rgb(0.0);
-    return s.value * trace(v, w, density, next, source).indirect * (v.point.abs_cos(w) / density);
-}
-
-Rgb GatherRays::traced_on(const Vertex& v, const Vec3& back, const std::optional<std::uint32_t>& place,
-                          const Rgb& irradiance, const Leg& leg, SampleSource& source) const {
-    Rgb sum = bounced(v, back, irradiance, {0, leg.scatterings + 1, leg.traced_on + 1}, source);
-    if (!place) return sum;
-    // Light that specular vertices alone brought here is found by no ray.
-    const SurfaceRegion here{v.point.p, facing(v.point.ng, back)};
-    const bool known = maps_.irradiance->is_near(*place, here);
-    if (known ? maps_.irradiance->has_caustics(*place) : scene_.traits().delta)
-        sum += photons({true, leg.longer()}, *place, v, here.normal, back, source);
-    return sum;
 }
 
 Rgb GatherRays::caustic(const Vertex& v, const Vec3& back, double besides, int scatterings,

@@ -86,7 +86,15 @@ class GatherRays {
     /// With which probability a caustic is worth a look; 0 where there is none.
     double chance_of_caustic(const Vertex& v, const Vec3& back, const SurfaceRegion& region, float r,
                              double besides) const;
-    struct Leg;
+    /// Where a ray comes from, as far as what it meets depends on that.
+    struct Leg {
+        float distance;  ///< from the vertex before [m]
+        int scatterings; ///< between the eye and the vertex that it leads to
+        int traced_on;   ///< rays before it, each traced on from where the last one ended
+
+        /// Vertices between the eye and the one it led to, d2, beyond d1.
+        int longer() const { return scatterings - 1; }
+    };
     struct Walk;
     Arrival trace(const Vertex& from, const Vec3& w, double pdf, const Leg& start, SampleSource& source) const;
     /// Of direct light where a leg ends.
