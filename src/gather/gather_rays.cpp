@@ -33,18 +33,17 @@ constexpr double kLeastGlossy = 0.05;
 /// Of a place's radius, how far from it what stands around it is known well enough.
 constexpr float kKnown = 0.25f;
 
-/// Of a place's radius, how far from it light may be that of the place: direct light, and all light that seems to
-/// change across the radius. Places are where photons fell, and so in the light rather than in the shadow beside it:
-/// farther away nothing is known of that.
+/// Of a place's radius, how far from it direct light may be that of the place. Places are where photons fell, and so in
+/// the light rather than in the shadow beside it: farther away nothing is known of that.
 constexpr float kInTheSameLight = 0.5f;
 
 /// Caustics are the lesser part of the light where they are below this share of the rest; least probability with which
 /// they are looked at there.
 constexpr double kLesserCaustic = 0.1, kLeastLook = 0.1;
 
-/// Photons of a caustic that are tested for sight, and photons that are asked about where a gather ray ends.
+/// Photons of a caustic that are tested for sight, and photons that a lobe at the end of a gather ray is asked about.
 /// The error that a few more would save is one of this sample alone, and small beside its others.
-constexpr int kSights = 8, kPhotonsAtEnd = 16;
+constexpr int kSights = 8, kPhotonsOfLobe = 16;
 
 } // namespace
 
@@ -127,13 +126,14 @@ Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSou
     end.place = place;
     if (!v.bsdf.traits().diffuse) return lobe(v, back, place, leg, source);
     const bool on = goes_on(leg, place, here);
+    const double share = place && !on ? maps_.irradiance->share_that_reaches(*place, leg.longer()) : 1;
     const Rgb f = v.bsdf.diffuse_reflectance(back);
     const Rgb direct_here = direct(place, v, here, leg, source);
     Rgb sum = end.direct = f * direct_here;
     if (on)
         sum += traced_on(v, back, place, direct_here + known.irradiance, leg, source);
     else if (place)
-        sum += f * irradiance(*place, known.irradiance, here, leg.longer(), source);
+        sum += f * known.irradiance * share;
     if (!v.bsdf.traits().glossy) return sum;
     // Seldom, and all the more then.
     const double p = std::max(kLeastGlossy, v.bsdf.glossy_probability(back));
@@ -143,19 +143,6 @@ Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSou
     // What is traced on brings the indirect light of all parts.
     if (place && !on) shine += photons({false, leg.longer()}, *place, glossy.v, here.normal, back, source);
     return sum + shine * (glossy.scale / p);
-}
-
-Rgb GatherRays::irradiance(std::uint32_t place, const Rgb& known, const SurfaceRegion& here, int longer,
-                           SampleSource& source) const {
-    if (!maps_.irradiance->is_one_sided(place) || maps_.irradiance->is_near(place, here, kInTheSameLight))
-        return known * maps_.irradiance->share_that_reaches(place, longer);
-    const auto reaches = [&](const Photon& p) { return p.reaches(longer); };
-    const auto one = [](const Photon& /*p*/) { return Rgb(1.0); };
-    if (maps_.global == nullptr || may_be_partly_occluded(place, here))
-        return density_near(place, here, reaches, one, source);
-    return estimate_density(maps_.global->main_photons(), here, maps_.irradiance->radius(place), area_near(place, here),
-                            [&](const Photon& p) { return Rgb(reaches(p) ? 1 : 0); })
-        .value;
 }
 
 Rgb GatherRays::direct(const std::optional<std::uint32_t>& place, const Vertex& v, const SurfaceRegion& here,
@@ -321,27 +308,22 @@ double GatherRays::variance_of_photons(const Vertex& v, const Vec3& back) const 
     });
 }
 
-template <class Counts, class Weight>
-Rgb GatherRays::density_near(std::uint32_t place, const SurfaceRegion& region, const Counts& counts,
-                             const Weight& weight, SampleSource& source) const {
-    if (maps_.global == nullptr) return Rgb(0.0);
-    const float r = maps_.irradiance->radius(place);
-    const double area = area_near(place, region);
-    if (!(area > 0)) return Rgb(0.0);
-    const auto few = [&](const auto& of_photon) {
-        const auto power = [&](const Photon& p) { return counts(p) ? luminance(p.power()) : 0.0; };
-        const auto light = [&](const Photon& p) { return of_photon(p) * p.power(); };
-        return sum_over_few(maps_.global->main_photons(), {region, r, kPhotonsAtEnd}, power, light, source) / area;
-    };
-    if (!may_be_partly_occluded(place, region)) return few(weight);
-    return few(weight_in_sight(scene_, region, r, weight));
-}
-
 Rgb GatherRays::photons(Asked asked, std::uint32_t place, const Vertex& v, const Vec3& normal, const Vec3& back,
                         SampleSource& source) const {
-    return density_near(
-        place, {v.point.p, normal}, [&](const Photon& p) { return !asked.caustics || p.caustic(); },
-        PhotonReflection(v, back, asked.longer), source);
+    if (maps_.global == nullptr) return Rgb(0.0);
+    const PhotonQuery query = query_at(v, normal, options_.max_radius, options_);
+    const float r = maps_.irradiance->radius(place);
+    const double area = area_near(place, query.region);
+    if (!(area > 0)) return Rgb(0.0);
+    const PhotonMap& map = maps_.global->main_photons();
+    const auto few = [&](const auto& weight) {
+        const auto power = [&](const Photon& p) { return !asked.caustics || p.caustic() ? luminance(p.power()) : 0.0; };
+        const auto light = [&](const Photon& p) { return weight(p) * p.power(); };
+        return sum_over_few(map, {query.region, r, kPhotonsOfLobe}, power, light, source) / area;
+    };
+    const PhotonReflection reflected(v, back, asked.longer);
+    if (!may_be_partly_occluded(place, query.region)) return few(reflected);
+    return few(weight_in_sight(scene_, query.region, r, reflected));
 }
 
 } // namespace keyhole

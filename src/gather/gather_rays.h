@@ -104,10 +104,6 @@ class GatherRays {
     bool goes_on(const Leg& leg, const std::optional<std::uint32_t>& place, const SurfaceRegion& here) const;
     /// Whether the surface around a place is finer than the estimate there.
     bool is_fine(std::uint32_t place) const;
-    /// Indirect irradiance on `here` [W/m^2] of what may reach the eye by ways so much longer: that at `place`,
-    /// `known`, or where light changes on the way from there, an estimate of its own.
-    Rgb irradiance(std::uint32_t place, const Rgb& known, const SurfaceRegion& here, int longer,
-                   SampleSource& source) const;
     /// What is known of where a ray ended.
     struct End {
         std::optional<std::uint32_t> place{}; ///< of the irradiance map
@@ -149,11 +145,6 @@ class GatherRays {
     };
     /// Area [m^2] over which photons near a place are counted; 0 where that isn't known.
     double area_near(std::uint32_t place, const SurfaceRegion& region) const;
-    /// The sum of weight(photon) times power over photons within the radius of a place around a region's middle, of
-    /// those that counts(photon) says, by area [1/m^2].
-    template <class Counts, class Weight>
-    Rgb density_near(std::uint32_t place, const SurfaceRegion& region, const Counts& counts, const Weight& weight,
-                     SampleSource& source) const;
     /// The same as global() of these that come on the side of `normal`, near a place of the irradiance map, whose
     /// radius and surface do for `v`, too.
     Rgb photons(Asked asked, std::uint32_t place, const Vertex& v, const Vec3& normal, const Vec3& back,

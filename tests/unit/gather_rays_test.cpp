@@ -107,16 +107,6 @@ TEST(GatherRays, TakeNothingFromPlacesThatLieBeyondTheirOwnEstimates) {
     EXPECT_EQ(floor.seen_at(0.8f), 0) << "light from 0.2 m away";
 }
 
-/// Where light ends an estimate has the photons of the part of its disc that is lit. Places are where photons fell, and
-/// have half a disc of them at least.
-TEST(GatherRays, FindAsFewPhotonsBesideTheLightAsThereAre) {
-    Floor floor(make_diffuse(Rgb(0.5)), make_diffuse(Rgb(0.0)));
-    floor.throw_on(0.5f, 0.75f, 500); // estimates look as far as they may for 60
-    const auto of_disc = [](double x) { return (std::acos(x) - x * std::sqrt(1 - x * x)) / kPi; };
-    const double even = 0.5 / kPi * 500 / 0.25;
-    EXPECT_NEAR(floor.seen_at(0.82f), of_disc(0.7) * even, 0.06 * even);
-}
-
 /// White surfaces, a roof of reflectance `roof` 0.5 m above the floor from x = `edge` on, and a white lamp of 1 cm 1 m
 /// above x = 0.25 m.
 std::unique_ptr<Scene> under_a_lamp(std::vector<Rectangle> surfaces, float edge, double roof, double radiance) {

@@ -10,13 +10,9 @@ namespace {
 
 /// How high above the surface two places are tested for sight of each other, as a share of their distance.
 constexpr float kLift = 0.25f;
-/// How far from a place the middle of its photons' power lies, over the radius, in a crevice, which lies before all of
-/// them, and where light changes across the radius: that of a half disc lies at 0.42, that of 60 photons in even light
-/// beyond 0.2 in one place of a hundred.
-constexpr double kOffCentre = 0.5, kOneSided = 0.3;
-/// Area of the surface in reach of an estimate over that of the disc, from which on the disc lies on it, and those of
-/// points beside it do.
-constexpr double kWholeDisc = 0.9;
+/// How far from a place the middle of its photons' power lies, over the radius, where their light is one-sided: that of
+/// a half disc lies at 0.42.
+constexpr double kOffCentre = 0.5;
 constexpr unsigned kLevels = 8;
 
 /// Radius of an estimate over the free height above its place, at most. In a crevice light changes over the crevice's
@@ -93,11 +89,8 @@ IrradianceMap::Count IrradianceMap::estimate(std::uint32_t i, const PhotonMap& m
                  : estimate_density(main_photons, query.region, r, options.patches, one);
     e.value /= share_in_reach(options.coverage, query.region, r);
     if (r < expected || moment.length() > kOffCentre * sum * r) marks |= Estimate::in_crevice;
-    const double disc = kPi * static_cast<double>(r) * r, share = disc > 0 ? e.area / disc : 0.0;
-    // Where the surface ends photons lie on one side, too.
-    if (share > kWholeDisc && (marks & Estimate::in_crevice) == 0 && moment.length() > kOneSided * sum * r)
-        marks |= Estimate::one_sided;
-    estimates_[i] = Estimate(e.value, marks, r, share,
+    const double disc = kPi * static_cast<double>(r) * r;
+    estimates_[i] = Estimate(e.value, marks, r, disc > 0 ? e.area / disc : 0.0,
                              e.obstructed ? obstructed_levels(*options.patches, query.region, r) : std::uint8_t{0});
     if (!shares_.empty() && sum > 0)
         std::ranges::transform(reaching, shares_[i].begin(),

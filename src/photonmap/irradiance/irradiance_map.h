@@ -62,8 +62,6 @@ class IrradianceMap {
     /// Whether it seems to lie in a crevice: its light lies on one side of it, or so little is free above it that the
     /// estimate looks less far than it would for enough photons.
     bool is_in_crevice(std::uint32_t i) const { return estimates_[i].is_in_crevice(); }
-    /// Whether its photons lie so much on one side of it that light seems to change across that radius.
-    bool is_one_sided(std::uint32_t i) const { return estimates_[i].is_one_sided(); }
     /// Whether the middle of a region is within that radius of it, times `share`, as the region measures: the outer
     /// face of a wall is not near what stands before the inner one.
     bool is_near(std::uint32_t i, const SurfaceRegion& region, float share = 1) const {
@@ -100,7 +98,7 @@ class IrradianceMap {
 
     class Estimate {
       public:
-        enum Mark : unsigned { caustics = 1, in_crevice = 2, one_sided = 4 };
+        enum Mark : unsigned { caustics = 1, in_crevice = 2 };
         Estimate() = default;
         /// `obstructed`, bit i: something may stand on the region of radius / 2^i.
         /// `marks`: of Mark.
@@ -112,7 +110,6 @@ class IrradianceMap {
         Rgb irradiance() const { return irradiance_.decode(); }
         bool has_caustics() const { return (irradiance_.marks() & caustics) != 0; }
         bool is_in_crevice() const { return (irradiance_.marks() & in_crevice) != 0; }
-        bool is_one_sided() const { return (irradiance_.marks() & one_sided) != 0; }
         unsigned obstructed() const { return obstructed_; }
         double area_share() const { return area_share_ / 255.0; }
         /// At most the one given, and at least 127/128 of it [m].
