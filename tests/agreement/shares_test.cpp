@@ -30,8 +30,11 @@ class Shares : public testing::TestWithParam<const char*> {
             scene->set_window({24, 16, 0});
             result = render(*scene, s, {}, {}, share);
         });
-        for (const auto& [key, value] :
-             {std::pair("program", "p"), {"scene hash", "h"}, {"settings", "spp=2"}, {"seed", "1"}})
+        for (const auto& [key, value] : {std::pair("program", "p"),
+                                         {"scene hash", "h"},
+                                         {"settings", "spp=2"},
+                                         {"seed", "1"},
+                                         {"user paths", "none"}})
             result.picture.metadata[key] = value;
         return result;
     }
