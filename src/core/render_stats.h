@@ -125,11 +125,20 @@ struct RenderStats {
     std::vector<std::string> warnings;    ///< in words
     std::map<std::string, Doubt> doubts;  ///< what warnings are about; those that aren't here: the render
     std::optional<std::string> unsaved;   ///< why photons that were to be kept weren't
+    std::optional<std::string> cut_map;   ///< what is to be said of them where a stop came before all were there
+    bool has_saved_map = false;           ///< whether they were asked for and kept, or that failed
     bool complete = true;                 ///< false after a stop
 
     void warn(Doubt about, std::string warning) {
         doubts[warning] = about;
         warnings.push_back(std::move(warning));
+    }
+
+    /// What became of photons that another render was to keep.
+    void take_word_of_map(const RenderStats& other) {
+        if (other.unsaved) unsaved = other.unsaved;
+        if (other.cut_map) cut_map = other.cut_map;
+        has_saved_map = has_saved_map || other.has_saved_map;
     }
 
     /// Adds what a stage before the render took, and what it found.

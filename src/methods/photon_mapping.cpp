@@ -84,14 +84,14 @@ class Passes {
           pixels_(c.scene, c.settings, task.share, StreamPurpose::gather) {}
 
     /// All passes that there are units of.
-    /// @throws Interrupted if there is nothing to show.
+    /// @throws Interrupted if there is nothing to show, and no photons were kept.
     void run(const RunContext& context) {
         next_ = work_.take(context);
         try {
             while (next_ && run_pass(work_.pass_of(*next_), context)) {
             }
         } catch (const Interrupted&) {
-            if (work_.is_first()) throw; // what the pass before left is a picture
+            if (work_.is_first() && !stats_.has_saved_map) throw; // what the pass before left is a picture
         }
     }
     /// The same by a process group: each helps with every pass, whether or not it gets to sample pixels from it.
@@ -106,7 +106,6 @@ class Passes {
         }
     }
     const PixelSampling& pixels() const { return pixels_; }
-    bool has_saved_photons() const { return saved_; }
 
   private:
     /// Returns whether to go on.
@@ -136,12 +135,15 @@ class Passes {
     /// Where a file is asked for.
     void save(const Photons& photons, const RunContext& context) {
         if (c_.settings.save_map.empty()) return;
-        saved_ = true;
+        stats_.has_saved_map = true;
         if (context.communicator != nullptr && context.communicator->rank() > 0) return;
         if (context.stopped()) {
             std::error_code error;
-            warn_of_cut_map(c_.settings.save_map, stats_);
-            if (std::filesystem::exists(c_.settings.save_map, error)) return;
+            const bool there = std::filesystem::exists(c_.settings.save_map, error);
+            stats_.cut_map =
+                fmt::format("{}: the render was stopped before all photons of the pass were there: {}",
+                            c_.settings.save_map, there ? "the older file stays" : "the file has a part of them");
+            if (there) return;
         }
         try {
             save_photons(c_.settings.save_map, photon_file_key(c_.scene, c_.settings, c_.coverage), photons);
@@ -178,7 +180,6 @@ class Passes {
     PassObserver* observer_;
     RenderStats& stats_;
     PixelSampling pixels_;
-    bool saved_ = false;               // or tried to
     std::optional<std::int64_t> next_; // unit
 };
 
@@ -224,7 +225,7 @@ RenderResult render_photons(const RenderTask& task) {
         passes.run(context);
     else
         passes.run_together(context);
-    if (!settings.save_map.empty() && !passes.has_saved_photons())
+    if (!settings.save_map.empty() && !stats.has_saved_map)
         stats.warnings.emplace_back("no photons were saved: those of the first pass were not made here");
     sampler->finish(stats);
     warn_of_photons(stats, work.passes(), settings.max_depth);

@@ -6,7 +6,6 @@
 #include "methods/choice/method_trials.h"
 #include "methods/learned_direct_light_scope.h"
 #include "methods/method.h"
-#include "methods/photons/photon_file.h"
 #include "methods/render_paths.h"
 
 #include <algorithm>
@@ -72,9 +71,11 @@ RenderResult render(Scene& scene, const Settings& settings, const RunContext& co
     // What others are to go on from has its sums, which a first look has not.
     const bool asked = context.stop != nullptr && context.stop->stopped();
     if (asked && !has_picture(result) && !share.keep_sums && !share.save && share.communicator == nullptr) {
+        const RenderStats before = std::move(result.stats);
         result = first_look(scene, settings);
-        if (!settings.save_map.empty()) warn_of_cut_map(settings.save_map, result.stats);
+        result.stats.take_word_of_map(before);
     }
+    if (result.stats.cut_map) result.stats.warn(Doubt::photons, *result.stats.cut_map);
     return result;
 }
 

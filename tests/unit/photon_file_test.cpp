@@ -76,10 +76,10 @@ TEST_F(SavedMap, IsReplacedByNoPartOfAnother) {
         return render(*scene_, s, context).stats.warnings;
     };
     const std::string good = content();
-    EXPECT_THAT(stopped(), testing::Contains(HasSubstr("stopped before")));
+    EXPECT_THAT(stopped(), testing::Contains(HasSubstr("were there: the older file stays")));
     EXPECT_EQ(content(), good);
     std::filesystem::remove(file_);
-    EXPECT_THAT(stopped(), testing::Contains(HasSubstr("map.photons: the render was stopped before")));
+    EXPECT_THAT(stopped(), testing::Contains(HasSubstr("were there: the file has a part of them")));
     EXPECT_TRUE(std::filesystem::exists(file_));
 }
 

@@ -40,7 +40,7 @@ void MeanRender::add(RenderResult&& result, double weight) {
 }
 
 void MeanRender::leave_out(const RenderStats& stats) {
-    if (stats.unsaved) unsaved_ = stats.unsaved;
+    of_map_.take_word_of_map(stats);
     for (const StageStats& stage : stats.stages) {
         others_.wall_seconds += stage.wall_seconds;
         others_.cpu_seconds += stage.cpu_seconds;
@@ -51,7 +51,7 @@ void MeanRender::leave_out(const RenderStats& stats) {
 RenderResult MeanRender::take() {
     auto& stages = result_->stats.stages;
     if (others_.cpu_seconds > 0) stages.insert(stages.begin(), others_);
-    if (unsaved_) result_->stats.unsaved = std::move(unsaved_);
+    result_->stats.take_word_of_map(of_map_);
     return std::move(*result_);
 }
 

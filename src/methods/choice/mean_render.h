@@ -20,12 +20,14 @@ class MeanRender {
     /// took, and that its photons weren't kept.
     void leave_out(const RenderStats& stats);
     RenderResult take();
+    /// What became of photons that any of them was to keep.
+    const RenderStats& of_map() const { return of_map_; }
 
   private:
     std::optional<RenderResult> result_;
     double weight_ = 0, most_ = 0;
     StageStats others_{.stage = &stages::others};
-    std::optional<std::string> unsaved_;
+    RenderStats of_map_;
 };
 
 } // namespace keyhole

@@ -252,7 +252,7 @@ class RenderInTime {
     /// Paths are a noisy picture, not a wrong one; but a method that somebody named isn't replaced in silence.
     RenderResult without_picture() {
         if (context_.stop->requested() || (settings_.method == &methods::automatic && context_.stopped()))
-            return first_look(scene_, settings_);
+            return look_first();
         if (settings_.method != &methods::automatic)
             throw InputError(fmt::format("too little time for {0}: what it does before its first picture takes longer "
                                          "here; expected more than {1:.2g} s, or another method",
@@ -260,7 +260,12 @@ class RenderInTime {
         remarks_.push_back("paths are traced: " + std::string(method_->name) + " was not done in its time");
         use(methods::path);
         render_rest();
-        return mean_.empty() ? first_look(scene_, settings_) : finish();
+        return mean_.empty() ? look_first() : finish();
+    }
+    RenderResult look_first() {
+        RenderResult result = first_look(scene_, settings_);
+        result.stats.take_word_of_map(mean_.of_map());
+        return result;
     }
 
     RenderResult finish() {
@@ -325,7 +330,8 @@ RenderResult render_in_time(Scene& scene, const Settings& settings, const std::s
     Settings s = settings;
     if (!given.contains("brightness_error")) s.brightness_error = 0; // stage one gets its part of the time, no more
     RenderResult result = RenderInTime{scene, s, given, context, user_paths, share}.run();
-    if (!s.save_map.empty() && !method_named(result.stats.method).keeps_photons)
+    if (result.stats.cut_map) result.stats.warn(Doubt::photons, *result.stats.cut_map);
+    if (!s.save_map.empty() && !result.stats.has_saved_map && !method_named(result.stats.method).keeps_photons)
         result.stats.warnings.emplace_back("no photons were saved: there was too little time for them");
     return result;
 }

@@ -125,11 +125,4 @@ Photons load_photons(const std::string& path, const PhotonFileKey& key) {
     return photons;
 }
 
-void warn_of_cut_map(const std::string& path, RenderStats& stats) {
-    stats.warn(Doubt::photons,
-               fmt::format("{}: the render was stopped before all photons of the pass were there: an older "
-                           "file stays, a new one has a part of them",
-                           path));
-}
-
 } // namespace keyhole

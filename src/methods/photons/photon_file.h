@@ -1,7 +1,6 @@
 // Photon maps in files.
 #pragma once
 
-#include "core/render_stats.h"
 #include "core/settings.h"
 #include "photonmap/photons.h"
 #include "sampling/paths/gather_coverage.h"
@@ -28,8 +27,5 @@ void save_photons(const std::string& path, const PhotonFileKey& key, const Photo
 /// @throws InputError, with what was found and expected, if there is no such file, or it is none of these, of another
 ///     version, of another scene or depth, or damaged.
 Photons load_photons(const std::string& path, const PhotonFileKey& key);
-
-/// Says of a file for photons that the render was stopped before it had all.
-void warn_of_cut_map(const std::string& path, RenderStats& stats);
 
 } // namespace keyhole
