@@ -12,14 +12,14 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <set>
+#include <system_error>
 
 namespace keyhole {
 namespace {
 
 /// Between checkpoints of a render that goes on, where nobody says.
 constexpr double kSeconds = 600;
-
-constexpr int kMostRanks = 16'384;
 
 namespace fs = std::filesystem;
 
@@ -55,10 +55,21 @@ std::string Checkpoints::file(const std::string& exr, int rank) const {
 }
 
 std::vector<std::string> Checkpoints::found(const std::string& exr) const {
+    if (file(exr).empty()) return {};
+    const fs::path own(file(exr));
+    std::set<int> ranks;
+    std::error_code error; // of a name that is too long, or no folder: that it can't be written is said elsewhere
+    for (const auto& entry : fs::directory_iterator(own.has_parent_path() ? own.parent_path() : ".", error)) {
+        const std::string name = entry.path().filename().string(), prefix = own.stem().string() + ".";
+        if (name == own.filename()) ranks.insert(0);
+        int rank = 0;
+        const auto number = name.starts_with(prefix)
+                                ? std::from_chars(name.data() + prefix.size(), name.data() + name.size(), rank)
+                                : std::from_chars_result{nullptr, std::errc::invalid_argument};
+        if (number.ec == std::errc() && rank > 0 && fs::path(file(exr, rank)).filename() == name) ranks.insert(rank);
+    }
     std::vector<std::string> files;
-    std::error_code error; // of a name that is too long: that it can't be written is said elsewhere
-    for (int rank = 0; rank < kMostRanks; ++rank)
-        if (std::string path = file(exr, rank); fs::exists(path, error)) files.push_back(std::move(path));
+    for (const int rank : ranks) files.push_back(file(exr, rank));
     return files;
 }
 

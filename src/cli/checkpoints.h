@@ -38,8 +38,10 @@ struct Checkpoints {
     /// days.
     void keep_others(const std::string& exr) const;
 
-  private:
+    /// Files of checkpoints for an output that are there, of all processes.
     std::vector<std::string> found(const std::string& exr) const;
+
+  private:
     void read(const std::string& exr, const NamedPicture& render);
 
     NamedPicture done_; // without a name: there is nothing to go on from

@@ -71,11 +71,10 @@ int run(InspectOptions o) {
     if (o.output.empty()) o.output = name + ".html";
     check_writable(o.output);
     const std::vector<NamedFile> outputs{{"--output", o.output}, {"--save-map", o.save_map}};
-    check_apart(outputs, {{"the scene", o.scene}, {"--user-paths", o.user_paths}});
     std::vector<std::string> load_warnings;
     LoadedScene loaded = load(o.scene, o.overrides, &load_warnings);
-    check_apart(outputs, files_of(loaded));
     if (!o.user_paths.empty()) loaded.user_paths = load_user_paths(o.user_paths);
+    check_apart(outputs, files_of_scene());
     choose_resolution(loaded.description.window, o.resolution);
     Settings settings = preview_settings(loaded.settings, o.overrides);
     settings.save_map = o.save_map;

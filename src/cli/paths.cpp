@@ -157,10 +157,10 @@ void draw(const Scene& scene, const UserPath& path, const Rgb8& color, Canvas& c
 int show(ShowOptions o) {
     if (o.output.empty()) o.output = default_png(default_exr(o.scene));
     check_writable(o.output);
-    check_apart({{"--output", o.output}}, {{"the scene", o.scene}, {"user paths", o.paths}});
     std::vector<std::string> overrides{"method=path", "spp=24"};
     overrides.insert(overrides.end(), o.overrides.begin(), o.overrides.end());
     SceneWithPaths all = load_with_paths(o.scene, o.paths, overrides, o.resolution);
+    check_apart({{"--output", o.output}}, files_of_scene());
     const UserPaths paths = bind_user_paths(*all.scene, all.user_paths);
     const RenderResult preview = render(*all.scene, all.settings, {});
     const Image& beauty = preview.picture.layers.at("beauty");
@@ -194,8 +194,8 @@ struct SuggestCommand {
 };
 
 int suggest(const SuggestCommand& o) {
-    check_apart({{"--output", o.output}}, {{"the scene", o.scene}});
     LoadedScene loaded = load(o.scene, o.overrides);
+    check_apart({{"--output", o.output}}, files_of_scene());
     const Scene scene(std::move(loaded.description));
     const StageOneSettings first{.max_scatterings = static_cast<int>(loaded.settings.max_depth),
                                  .samples = loaded.settings.brightness_samples,

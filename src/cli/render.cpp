@@ -169,58 +169,71 @@ RenderResult render_scene(LoadedScene& loaded, RenderOptions& options, std::vect
     return result;
 }
 
-/// CPU time of a unit of effort [s], about, and passes that should fit into a time where a checkpoint keeps whole ones
-/// alone: several, because scenes may be as many times slower than others.
-constexpr double kSecondsOfEffort = 5, kPassesInTime = 8;
+/// Passes that should fit into a time where a checkpoint keeps whole ones alone: several, because scenes may be as many
+/// times slower than others.
+constexpr double kPassesInTime = 8;
 /// From this effort on a pass takes no less than by the settings' defaults.
 constexpr double kEffortOfDefaults = 3;
 
-/// Settings whose passes are short enough for the time, or as long as those of the checkpoint to go on from.
+/// Settings whose passes are short enough for the time.
 Settings with_short_passes(const Settings& settings, const ImageWindow& window, const RenderOptions& options,
                            const std::set<std::string>& named) {
     if (settings.method->samples_pixels) return settings; // whose units are rounds
-    const std::string file = options.checkpoints.file(options.outputs.exr);
-    std::error_code error;
-    if (!options.checkpoints.resume || !std::filesystem::exists(file, error)) {
-        const double seconds =
-            options.cpu_time ? *options.cpu_time : cpu_time_of(options.timeout.value_or(0), options.threads);
-        const double effort = seconds / (kSecondsOfEffort * kPassesInTime);
-        return effort < kEffortOfDefaults
-                   ? with_effort(settings, effort, static_cast<std::int64_t>(window.size()), named)
-                   : settings;
-    }
-    Settings s = settings;
-    const auto words = settings_of({file, read_exr(file)});
+    const double seconds =
+        options.cpu_time ? *options.cpu_time : cpu_time_of(options.timeout.value_or(0), options.threads);
+    const double effort = seconds / (kSecondsOfEffort * kPassesInTime);
+    return effort < kEffortOfDefaults ? with_effort(settings, effort, static_cast<std::int64_t>(window.size()), named)
+                                      : settings;
+}
+
+/// Settings of effort that no option names, as the checkpoint has them: a time may have chosen them.
+/// @throws InputError where it ends by time, and nobody says when.
+Settings with_effort_of(const std::string& checkpoint, Settings settings, const RenderOptions& options,
+                        const std::set<std::string>& named) {
+    const auto words = words_by_key(read_exr_metadata(checkpoint)["settings"]);
+    const bool has_end = settings.passes > 0;
     for (const std::string_view key : kSettingsOfEffort)
         if (const auto word = words.find(std::string(key)); word != words.end() && !named.contains(word->first))
-            apply_override(s, word->second);
-    return s;
+            apply_override(settings, word->second);
+    if (has_end && settings.passes == 0 && settings.target_error == 0 && !options.in_time())
+        throw InputError(checkpoint + ": found no number of passes to end with, expected --timeout or --cpu-time as "
+                                      "when it was begun");
+    return settings;
 }
 
 /// The scene with the settings that the options ask for.
 /// @throws InputError for a scene, settings and options that don't go together.
 LoadedScene load_for(const RenderOptions& options, std::vector<std::string>& warnings) {
     std::set<std::string> named = named_settings(options.overrides);
+    if (options.group != nullptr && options.in_time())
+        throw InputError("found --timeout or --cpu-time, which end one process; expected --passes, a number that all "
+                         "processes know beforehand");
     with_quality_of({}, options.quality, {}); // a word that is none, before the scene is read
     LoadedScene loaded = load(options.scene, options.overrides, &warnings);
     if (!options.resolution.empty()) set_resolution(loaded.description.window, options.resolution);
     // An error to reach asks for as many passes as that takes, unless somebody says how many.
-    const bool in_passes = options.in_time() && options.checkpoints.asked();
+    if (!options.load_map.empty() && loaded.settings.target_error > 0 && !named.contains("target_error")) {
+        warnings.push_back("target_error of the scene has no say with --load-map: the photons of a file are the same "
+                           "in every pass");
+        loaded.settings.target_error = 0;
+    }
+    const bool in_passes = options.in_time() && options.checkpoints.asked() && options.load_map.empty();
     const bool to_error =
         loaded.settings.target_error > 0 && (named.contains("target_error") || loaded.settings.passes == 1);
     if ((to_error || in_passes) && !named.contains("passes")) {
         loaded.settings.passes = 0;
         named.insert("passes"); // an effort has no say in it
     }
-    if (in_passes) loaded.settings = with_short_passes(loaded.settings, loaded.description.window, options, named);
+    const std::vector<std::string> older = options.checkpoints.found(options.outputs.exr);
+    if (options.checkpoints.resume && !older.empty())
+        loaded.settings = with_effort_of(older.front(), loaded.settings, options, named);
+    else if (in_passes)
+        loaded.settings = with_short_passes(loaded.settings, loaded.description.window, options, named);
     loaded.settings = with_quality_of(loaded.settings, options.quality, named);
     for (const auto& [option, file] : {std::pair{"--save-map", &options.save_map}, {"--load-map", &options.load_map}})
         if (!file->empty() && !loaded.settings.method->keeps_photons)
             throw InputError(fmt::format("{}: found method {}, expected one that keeps photons: {}", option,
                                          loaded.settings.method->name, names_of(&Method::keeps_photons)));
-    if (options.group != nullptr && options.in_time())
-        throw InputError("found --timeout or --cpu-time, which end one process; expected --passes, a number that all "
-                         "processes know beforehand");
     loaded.settings.save_map = options.save_map;
     loaded.settings.load_map = options.load_map;
     if (!options.user_paths.empty()) loaded.user_paths = load_user_paths(options.user_paths);
@@ -245,7 +258,7 @@ void write(RenderResult& result, const RenderOptions& options, const StopToken& 
         tell("{}: {} x {} pixels{}{}\n", options.outputs.exr, width, height,
              result.settings.target_error > 0 && error != values.end() ? ", relative error " + percent(error->second)
                                                                        : "",
-             result.stats.complete ? "" : ", stopped early");
+             result.stats.complete || (result.settings.target_error > 0 && !stop.requested()) ? "" : ", stopped early");
 }
 
 int run(RenderOptions options) {
@@ -262,14 +275,13 @@ int run(RenderOptions options) {
         if (!file.empty()) check_writable(file);
     std::vector<NamedFile> outputs = options.outputs.files();
     outputs.insert(outputs.end(), {{"--save-map", options.save_map}, {"the checkpoint", checkpoint}});
-    check_apart(outputs,
-                {{"the scene", options.scene}, {"--user-paths", options.user_paths}, {"--load-map", options.load_map}});
+    check_apart(outputs, {{"--load-map", options.load_map}});
     if (options.writes()) options.checkpoints.keep_others(options.outputs.exr);
 
     const InterruptHandler interrupts(stop);
     std::vector<std::string> load_warnings;
     LoadedScene loaded = load_for(options, load_warnings);
-    check_apart(outputs, files_of(loaded));
+    check_apart(outputs, files_of_scene());
     options.outputs.exposure = loaded.settings.exposure.value;
     options.outputs.noise_layers = loaded.settings.noise_layers;
     options.outputs.denoise = loaded.settings.denoise;

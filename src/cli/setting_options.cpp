@@ -1,12 +1,12 @@
 #include "cli/setting_options.h"
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "methods/choice/effort.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <thread>
 #include <utility>
 
 namespace keyhole {
@@ -63,8 +63,6 @@ Settings with_quality_of(const Settings& settings, const std::string& quality, c
     return with_quality(settings, *word, named);
 }
 
-double cpu_time_of(double seconds, int threads) {
-    return seconds * (threads > 0 ? threads : std::max(1U, std::thread::hardware_concurrency()));
-}
+double cpu_time_of(double seconds, int threads) { return seconds * busy_cores(threads); }
 
 } // namespace keyhole

@@ -147,6 +147,7 @@ class Hash {
   public:
     template <class T> void add(const T& value) { add_bytes(std::as_bytes(std::span(&value, 1))); }
     template <class T> void add(const std::vector<T>& values) { add_bytes(std::as_bytes(std::span(values))); }
+    void add(std::string_view text) { add_bytes(std::as_bytes(std::span(text))); }
     std::uint64_t value() const { return value_; }
 
   private:

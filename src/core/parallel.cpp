@@ -5,6 +5,8 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
+
 // The thread sanitizer's runtime, where there is one. oneTBB is not instrumented, so the sanitizer must be told that
 // whoever starts a loop hands over to its bodies, and they back. This file is not instrumented either (CMakeLists.txt).
 extern "C" {
@@ -24,6 +26,11 @@ void release(void* address) {
 }
 
 } // namespace
+
+int busy_cores(int threads) {
+    const int all = tbb::info::default_concurrency();
+    return threads > 0 ? std::min(threads, all) : all;
+}
 
 void with_threads(int threads, const std::function<void()>& body) {
     const int n = threads > 0 ? threads : tbb::info::default_concurrency();

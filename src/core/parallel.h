@@ -6,6 +6,9 @@
 
 namespace keyhole {
 
+/// Cores that so many threads keep busy (0: all).
+int busy_cores(int threads = 0);
+
 /// Limits every parallel loop made inside `body` to `threads` threads (0: all cores; more than the cores is allowed).
 void with_threads(int threads, const std::function<void()>& body);
 

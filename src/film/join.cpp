@@ -96,12 +96,14 @@ Picture average(const std::vector<NamedPicture>& pictures) {
 
 } // namespace
 
-std::map<std::string, std::string> settings_of(const NamedPicture& p) {
-    std::map<std::string, std::string> settings;
-    std::istringstream words(attribute(p, "settings"));
-    for (std::string word; words >> word;) settings[word.substr(0, word.find('='))] = word;
-    return settings;
+std::map<std::string, std::string> words_by_key(const std::string& text) {
+    std::map<std::string, std::string> by_key;
+    std::istringstream words(text);
+    for (std::string word; words >> word;) by_key[word.substr(0, word.find('='))] = word;
+    return by_key;
 }
+
+std::map<std::string, std::string> settings_of(const NamedPicture& p) { return words_by_key(attribute(p, "settings")); }
 
 WorkItemSet units_of(const NamedPicture& p) {
     try {

@@ -36,6 +36,9 @@ enum class SameRender { seed, method };
 /// @throws InputError that says what differs.
 void check_same_render(const NamedPicture& a, const NamedPicture& b, SameRender same);
 
+/// The words "key=value" of a text, by key.
+std::map<std::string, std::string> words_by_key(const std::string& text);
+
 /// The settings that a picture was rendered with: by key, each as "key=value". @throws InputError without them.
 std::map<std::string, std::string> settings_of(const NamedPicture& p);
 

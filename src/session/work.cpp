@@ -17,6 +17,9 @@ constexpr const char* kUnits = "units";
 constexpr const char* kWarnings = "warnings";
 constexpr const char* kError = "error"; // sums that only a render that goes on reads
 
+/// Fewer passes tell no error: what they differ in is chance.
+constexpr std::int64_t kLeastPasses = 4;
+
 /// Units in so many passes; as many as there are numbers if they don't fit.
 std::int64_t units(std::int64_t passes, std::int64_t per_pass) {
     constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max() / 2;
@@ -113,7 +116,7 @@ std::int64_t Work::left() const {
 }
 
 bool Work::enough() const {
-    return settings_.target_error > 0 && done_.size() % per_pass_ == 0 && done_.size() / per_pass_ >= 4 &&
+    return settings_.target_error > 0 && done_.size() % per_pass_ == 0 && passes() >= kLeastPasses &&
            error_.relative() <= settings_.target_error;
 }
 
@@ -177,9 +180,14 @@ Picture Work::finish(RenderStats& stats) {
     if (passes() > 1 && settings_.passes != 1 && knows_error_) stats.values["relative error"] = error_.relative();
     if (share_.save && done_.size() > 0) share_.save(snapshot(stats)); // nothing is not worth an older checkpoint
     if (missed) // not in the checkpoint: who goes on may reach it
-        stats.warnings.push_back(fmt::format("the relative error is {} after {} pass{}, not {} as was asked for",
-                                             passes() > 1 && knows_error_ ? percent(error_.relative()) : "unknown",
-                                             passes(), passes() == 1 ? "" : "es", percent(settings_.target_error)));
+        stats.warnings.push_back(
+            passes() < kLeastPasses
+                ? fmt::format(
+                      "found {} pass{}, expected {} at least: fewer don't tell whether the relative error is {}",
+                      passes(), passes() == 1 ? "" : "es", kLeastPasses, percent(settings_.target_error))
+                : fmt::format("the relative error is {} after {} passes, not {} as was asked for",
+                              knows_error_ ? percent(error_.relative()) : "unknown", passes(),
+                              percent(settings_.target_error)));
     if (pending_ && !share_.keep_sums) total_.merge(*pending_);
     if (total_.film) total_.film->report(stats);
     stats.samples = samples();

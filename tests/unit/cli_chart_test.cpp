@@ -132,4 +132,9 @@ TEST_F(Program, ChartGoesOnWhereItStopped) {
     // Other settings make other pictures.
     ASSERT_EQ(run(chart + "path -D max_depth=2"), 0) << read("err");
     EXPECT_THAT(read("err"), HasSubstr("2 runs, 2 of them to be made"));
+    std::string text = read("scene.yaml");
+    text.replace(text.find("spp: 2"), 6, "max_depth: 3");
+    scratch.write("scene.yaml", text);
+    ASSERT_EQ(run(chart + "path"), 0) << read("err");
+    EXPECT_THAT(read("err"), HasSubstr("2 runs, 2 of them to be made"));
 }

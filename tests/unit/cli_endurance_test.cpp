@@ -164,7 +164,7 @@ TEST_F(LongRender, KeepsACheckpointUntilThereIsABetterOne) {
     const auto units = [this] { return read_exr(scratch.path("a.checkpoint.exr")).metadata.at("units"); };
     ASSERT_EQ(run(render + "--pass-range 0:1"), 0) << read("err");
     EXPECT_EQ(units(), "0:2");
-    run(render + "--resume --timeout 0.001");
+    EXPECT_EQ(run(render + "--resume --timeout 0.001"), 0) << read("err");
     EXPECT_EQ(units().substr(0, 2), "0:") << "there was no time for anything";
 }
 
@@ -172,15 +172,34 @@ TEST_F(LongRender, KeepsACheckpointUntilThereIsABetterOne) {
 TEST_F(LongRender, FitsPassesIntoATimeThatIsGoneOnWith) {
     const std::string box = "render " KEYHOLE_SOURCE_DIR "/scenes/box.yaml --resolution 24x16 -q --no-png -t 1 ";
     const std::string render = box + "--method ipm -o a.exr --checkpoint 0 --resume ";
+    const auto units = [this] { return units_of({"", read_exr(scratch.path("a.checkpoint.exr"))}).size(); };
     std::int64_t before = 0;
     for (const char* time : {"1.5", "2"}) {
         ASSERT_EQ(run(render + "--cpu-time " + time), 0) << read("err");
-        const std::int64_t units = units_of({"", read_exr(scratch.path("a.checkpoint.exr"))}).size();
-        EXPECT_GT(units, before);
-        before = units;
+        EXPECT_GT(units(), before);
+        before = units();
     }
-    run(box + "--method ipm -o b.exr --checkpoint 0 --cpu-time 0.5 -D light_paths=1G");
-    EXPECT_FALSE(exists("b.checkpoint.exr")) << "no unit has all its photons";
+    EXPECT_EQ(run(render), 2);
+    EXPECT_THAT(read("err"), HasSubstr("expected --timeout or --cpu-time as when it was begun"));
+    EXPECT_EQ(run(render + "--cpu-time 1 -D light_paths=7k"), 2);
+    EXPECT_THAT(read("err"), HasSubstr("expected light_paths=7000"));
+    EXPECT_EQ(units(), before);
+}
+
+TEST_F(LongRender, SaysWhereNoUnitFitsIntoTheTime) {
+    EXPECT_EQ(run("render " KEYHOLE_SOURCE_DIR "/scenes/box.yaml --resolution 24x16 -q --no-png --method ipm -o a.exr "
+                  "--checkpoint 0 --cpu-time 0.5 -D light_paths=1G"),
+              2);
+    EXPECT_THAT(read("err"), HasSubstr("expected more time, or shorter units"));
+    EXPECT_FALSE(exists("a.checkpoint.exr")) << "no unit has all its photons";
+}
+
+TEST_F(LongRender, GoesOnWithTheEffortThatItWasBegunWith) {
+    const std::string render = "render scene.yaml -q --no-png --checkpoint 1000 ";
+    ASSERT_EQ(run(render + "-o whole.exr --passes 3 --spp 5"), 0) << read("err");
+    ASSERT_EQ(run(render + "-o a.exr --passes 3 --spp 5 --pass-range 0:1"), 0) << read("err");
+    ASSERT_EQ(run(render + "-o a.exr --resume"), 0) << read("err");
+    expect_same("a.exr", "whole.exr");
 }
 
 TEST_F(LongRender, ATargetInTheSceneIsThatOfTheOption) {
@@ -203,6 +222,8 @@ TEST_F(LongRender, ATargetThatIsMissedIsAWarning) {
         EXPECT_EQ(read_exr(scratch.path("a.exr")).metadata.at("complete"), "no");
         EXPECT_EQ(run(render + " --strict"), 3);
     }
+    EXPECT_EQ(run("render scene.yaml --no-png -o a.exr --target-error 0.9 --passes 2"), 0);
+    EXPECT_THAT(read("err"), HasSubstr("found 2 passes, expected 4 at least: fewer don't tell"));
     for (const char* error : {"0", "-1", "nan", "2", "x"}) {
         EXPECT_EQ(run("render scene.yaml -o b.exr --target-error " + std::string(error)), 2) << error;
         EXPECT_THAT(read("err"), HasSubstr("expected a relative error above 0")) << error;

@@ -45,6 +45,40 @@ TEST_F(Files, OutputsNeverReplaceInputsOrEachOther) {
     EXPECT_EQ(run("render scene.yaml -q -o a.exr --png /dev/null --stats /dev/null"), 0) << read("err");
 }
 
+TEST_F(Files, OutputsReplaceNothingThatASceneIsReadFrom) {
+    scratch.write("red.ppm", "P3 1 1 255 255 0 0\n");
+    scratch.write("sky.ppm", "P3 2 1 255 9 9 9 9 9 9\n");
+    scratch.write("roof.obj", "mtllib roof.mtl\nv -1 2 -1\nv 1 2 -1\nv 0 2 1\nf 1 2 3\n");
+    scratch.write("roof.mtl", "newmtl a\n");
+    std::filesystem::copy_file(KEYHOLE_SOURCE_DIR "/tests/data/tent.ply", scratch.path("tent.ply"));
+    scratch.write("all.yaml", R"(
+film: {resolution: [24, 16]}
+camera: {from: [0, 0, 3], to: [0, 0, 0]}
+materials: {white: {type: diffuse, reflectance: {type: image, file: red.ppm}}}
+shapes:
+  - {type: sphere, material: white}
+  - {type: mesh, file: roof.obj, material: white}
+emitters:
+  - {type: environment, image: sky.ppm}
+)");
+    scratch.write("part.pbrt", "Shape \"plymesh\" \"string filename\" \"tent.ply\"\n");
+    scratch.write("all.pbrt", "Film \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 16\n"
+                              "Camera \"perspective\"\nWorldBegin\nLightSource \"infinite\"\nInclude \"part.pbrt\"\n");
+    for (const auto& [scene, files] : std::initializer_list<std::pair<std::string, std::vector<std::string>>>{
+             {"all.yaml", {"red.ppm", "sky.ppm", "roof.obj"}}, {"all.pbrt", {"part.pbrt", "tent.ply"}}}) {
+        for (const std::string& file : files)
+            for (const std::string& line :
+                 {"render " + scene + " -o a.exr --spp 1 --stats " + file, "inspect " + scene + " -o " + file,
+                  "paths suggest " + scene + " -o " + file}) {
+                const std::string before = read(file);
+                EXPECT_EQ(run(line), 2) << line;
+                EXPECT_THAT(read("err"), HasSubstr("as a file of the scene, which is read")) << line;
+                EXPECT_EQ(read(file), before) << line;
+            }
+        EXPECT_EQ(run("render " + scene + " -q -o a.exr --spp 1 --stats other.json"), 0) << read("err");
+    }
+}
+
 TEST_F(Files, ACheckpointIsReplacedByNothingButItsOwnRender) {
     const std::string render = "render scene.yaml -q --no-png -o a.exr --passes 2 --checkpoint 1000";
     ASSERT_EQ(run(render), 0) << read("err");

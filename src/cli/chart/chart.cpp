@@ -2,10 +2,12 @@
 
 #include "cli/chart/outputs.h"
 #include "cli/program.h"
+#include "cli/words/metadata.h"
 #include "cli/words/tell.h"
 #include "cli/words/units.h"
 #include "core/bytes.h"
 #include "core/error.h"
+#include "core/parallel.h"
 #include "sampling/scene_hash.h"
 #include "scene/load/load.h"
 
@@ -16,20 +18,18 @@
 #include <filesystem>
 #include <set>
 #include <string_view>
-#include <thread>
 
 namespace keyhole {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// The scene's hash, with what changes every picture: settings, and the program's version.
-std::uint64_t hash_of(const Scene& scene, const std::vector<std::string>& settings) {
+/// Of all that changes its pictures.
+std::uint64_t hash_of(LoadedScene loaded) {
+    const std::uint64_t scene = scene_hash(Scene(std::move(loaded.description)));
     Hash hash;
-    hash.add(scene_hash(scene));
-    const auto add = [&](std::string_view text) { hash.add(std::vector<char>(text.begin(), text.end())); };
-    add(KEYHOLE_VERSION);
-    for (const std::string& setting : settings) add(setting);
+    for (const auto& [key, value] : render_identity(loaded.settings, scene, loaded.user_paths))
+        hash.add(std::string_view(key)), hash.add(std::string_view(value));
     return hash.value();
 }
 
@@ -42,8 +42,7 @@ std::vector<ChartScene> load_scenes(const ChartOptions& options) {
         LoadedScene loaded = load(path, options.settings);
         if (!options.resolution.empty()) set_resolution(loaded.description.window, options.resolution);
         const ImageWindow window = loaded.description.window;
-        scenes.push_back(
-            {name, path, hash_of(Scene(std::move(loaded.description)), options.settings), window.width, window.height});
+        scenes.push_back({name, path, hash_of(std::move(loaded)), window.width, window.height});
     }
     return scenes;
 }
@@ -56,7 +55,7 @@ class Chart {
     Chart(const ChartOptions& options, const StopToken& stop)
         : options_(options), stop_(stop), renderer_(options, stop), scenes_(load_scenes(options)),
           log_(options.folder + "/runs.jsonl"), runs_(all_runs(options)), results_(runs_.size()),
-          jobs_(options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()))) {
+          jobs_(options.jobs > 0 ? options.jobs : busy_cores()) {
         fs::create_directories(fs::path(options.folder) / "pictures");
         for (const Run& run : runs_) pictures_.push_back(picture_of(run));
     }

@@ -1,8 +1,6 @@
 // Files of a command that must not be one.
 #pragma once
 
-#include "scene/load/load.h"
-
 #include <string>
 #include <vector>
 
@@ -14,8 +12,8 @@ struct NamedFile {
     std::string path;
 };
 
-/// Those that a scene was read from, as far as they are known: scene files, user paths and images.
-std::vector<NamedFile> files_of(const LoadedScene& scene);
+/// Those that a scene was read from: files_read().
+std::vector<NamedFile> files_of_scene();
 
 /// Compares files themselves, whatever they are called; what is no regular file, as /dev/null, may stand for several.
 /// @throws InputError where an output would write over an input, or over another output.

@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <new>
-#include <thread>
 #include <utility>
 
 namespace keyhole {
@@ -24,12 +23,10 @@ constexpr double kMostOfTime = 0.3;
 /// Who interrupts a render waits no longer for it [s].
 constexpr double kPatience = 0.25;
 
-int cores() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
-
 } // namespace
 
 Denoising::Denoising(Denoise what, bool png, std::size_t pixels, int threads)
-    : pixels_(pixels), threads_(threads > 0 ? std::min(threads, cores()) : cores()),
+    : pixels_(pixels), threads_(busy_cores(threads)),
       reach_(what == Denoise::exr || (what == Denoise::png && png) ? kDenoisingReach : 0) {}
 
 double Denoising::reserve_of_cpu_time(double seconds) {

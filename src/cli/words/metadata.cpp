@@ -19,8 +19,7 @@ std::string settings_text(const Settings& settings) {
 std::map<std::string, std::string> render_identity(const Settings& settings, std::uint64_t scene_hash,
                                                    const UserPathFile& user_paths) {
     Hash paths;
-    const std::string text = user_paths_text(user_paths, "");
-    paths.add(std::vector<char>(text.begin(), text.end()));
+    paths.add(std::string_view(user_paths_text(user_paths, "")));
     return {{"user paths", user_paths.paths.empty() ? "none" : fmt::format("{:016x}", paths.value())},
             {"program", "keyhole " KEYHOLE_VERSION},
             {"settings", settings_text(settings)},

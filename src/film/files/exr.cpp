@@ -182,6 +182,14 @@ void expect_sums(const Imf::Header& header, Picture& picture, Imf::FrameBuffer& 
     }
 }
 
+std::map<std::string, std::string> metadata_of(const Imf::Header& header) {
+    std::map<std::string, std::string> metadata;
+    for (auto a = header.begin(); a != header.end(); ++a)
+        if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&a.attribute()))
+            metadata[a.name()] = text->value();
+    return metadata;
+}
+
 Picture decode(Imf::InputFile& file) {
     const Imf::Header& header = file.header();
     const auto& window = header.dataWindow();
@@ -200,9 +208,7 @@ Picture decode(Imf::InputFile& file) {
     }
     // Only what write_exr() wrote starts at the origin and has sums.
     if (window.min.x == 0 && window.min.y == 0) expect_sums(header, picture, buffer);
-    for (auto a = header.begin(); a != header.end(); ++a)
-        if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&a.attribute()))
-            picture.metadata[a.name()] = text->value();
+    picture.metadata = metadata_of(header);
     file.setFrameBuffer(buffer);
     file.readPixels(window.min.y, window.max.y);
     if (!picture.sums.empty() && !picture.metadata.contains(kSumsHash))
@@ -222,6 +228,19 @@ std::string reason(const std::exception& e) {
     return text;
 }
 
+/// What `take` makes of a file.
+template <class Take> auto read(const std::string& path, const Take& take) {
+    // Asked first because the system knows better words for it than OpenEXR.
+    if (errno = 0; !std::ifstream(path).good())
+        throw InputError(fmt::format("{}: cannot read: {}", path, std::strerror(errno)));
+    try {
+        Imf::InputFile file(path.c_str());
+        return take(file);
+    } catch (const std::exception& e) {
+        throw InputError(fmt::format("{}: cannot read: {}", path, reason(e)));
+    }
+}
+
 } // namespace
 
 void write_exr(const std::string& path, const Picture& picture) {
@@ -235,15 +254,11 @@ void write_exr(const std::string& path, const Picture& picture) {
 }
 
 Picture read_exr(const std::string& path) {
-    // Asked first because the system knows better words for it than OpenEXR.
-    if (errno = 0; !std::ifstream(path).good())
-        throw InputError(fmt::format("{}: cannot read: {}", path, std::strerror(errno)));
-    try {
-        Imf::InputFile file(path.c_str());
-        return decode(file);
-    } catch (const std::exception& e) {
-        throw InputError(fmt::format("{}: cannot read: {}", path, reason(e)));
-    }
+    return read(path, [](Imf::InputFile& file) { return decode(file); });
+}
+
+std::map<std::string, std::string> read_exr_metadata(const std::string& path) {
+    return read(path, [](Imf::InputFile& file) { return metadata_of(file.header()); });
 }
 
 } // namespace keyhole

@@ -3,6 +3,7 @@
 
 #include "film/picture.h"
 
+#include <map>
 #include <string>
 
 namespace keyhole {
@@ -18,5 +19,7 @@ void write_exr(const std::string& path, const Picture& picture);
 /// is the file's data window, whatever its display window.
 /// @throws InputError with the path and the reason.
 Picture read_exr(const std::string& path);
+/// Its metadata alone. @throws InputError as read_exr(), for what is no OpenEXR file.
+std::map<std::string, std::string> read_exr_metadata(const std::string& path);
 
 } // namespace keyhole

@@ -9,9 +9,6 @@
 
 namespace keyhole {
 
-/// CPU time of a unit of effort, on scenes/ at 320x240 [s]: what is known before anything was measured.
-constexpr double kSecondsOfEffort = 5;
-
 /// The most effort of which a render by the method of `cost` is predicted to take at most `seconds`; next to none where
 /// that is too much already. Where what was `given` takes most of that time, the rest gets two fifths of it all the
 /// same.

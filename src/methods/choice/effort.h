@@ -13,8 +13,11 @@ struct StageBalance {
     double brightness = 1, chains = 1;
 };
 
-/// `settings` with everything that makes a render longer and better set by `effort`: 1 takes about 5 s of CPU time on
-/// the scenes of scenes/ at 320x240. More effort is more samples, more photons, a finer cache, in proportions that
+/// CPU time of a unit of effort, on scenes/ at 320x240 [s]: what is known before anything was measured.
+constexpr double kSecondsOfEffort = 5;
+
+/// `settings` with everything that makes a render longer and better set by `effort`: 1 takes about kSecondsOfEffort on
+/// the scenes of scenes/. More effort is more samples, more photons, a finer cache, in proportions that
 /// served well there; photons grow more slowly than the paths that bring them, so that bias and noise of
 /// lookups shrink together. Settings named in `given` stay as they are. Photons that the memory can't hold at once are
 /// spread over passes.

@@ -2,6 +2,7 @@
 
 #include "core/bytes.h"
 #include "core/error.h"
+#include "core/files_read.h"
 #include "scene/texture.h"
 
 #include <fmt/format.h>
@@ -64,6 +65,7 @@ std::shared_ptr<const TextureImage> load_image(const std::string& path, ImagePar
     if (!std::filesystem::is_regular_file(path, error))
         throw InputError(fmt::format("{}: found no such file, expected an image", path));
     const std::pair key{std::filesystem::weakly_canonical(path, error).string(), part};
+    note_file_read(key.first);
     // Readers run one at a time: scenes have few images, and two threads must not decode the same one.
     const std::lock_guard lock(cache().mutex);
     auto& entry = cache().images[key];

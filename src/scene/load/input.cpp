@@ -1,5 +1,7 @@
 #include "scene/load/input.h"
 
+#include "core/files_read.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <zlib.h>
@@ -121,6 +123,7 @@ std::string read_text_file(const std::string& path, std::string_view what, std::
         return fail(fmt::format("found {} bytes, expected at most {}", bytes, most_bytes));
     std::ifstream stream(path, std::ios::binary);
     if (!stream) return fail("found a file that can't be opened, expected a readable one");
+    note_file_read(path);
     std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
     if (stream.bad()) return fail("found a file that can't be read, expected a readable one");
     return text;
@@ -132,6 +135,7 @@ std::string read_packed_file(const std::string& path, std::size_t most_unpacked)
     const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
     const auto size = std::filesystem::file_size(path, error);
     if (file == nullptr || error) throw InputError("found no readable file, expected a mesh");
+    note_file_read(path);
     std::string bytes(size + 1, '\0'); // one more, that the end of a file that isn't packed is found at once
     std::size_t count = 0;
     for (int read = 1; read > 0; count += static_cast<std::size_t>(std::max(0, read))) {

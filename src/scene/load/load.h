@@ -15,9 +15,8 @@ namespace keyhole {
 struct LoadedScene {
     SceneDescription description;
     Settings settings;
-    UserPathFile user_paths;          ///< of the file that the scene names; none otherwise
-    std::size_t instances = 0;        ///< groups or objects placed, counted as often as they are
-    std::vector<std::string> files{}; ///< scene files that were read, and user paths; of other formats than YAML none
+    UserPathFile user_paths;   ///< of the file that the scene names; none otherwise
+    std::size_t instances = 0; ///< groups or objects placed, counted as often as they are
 };
 
 /// Reads a scene: pbrt's format where the path ends in .pbrt, glTF where in .gltf or .glb, else YAML.

@@ -1,6 +1,7 @@
 #include "scene/load/load_mesh.h"
 
 #include "core/error.h"
+#include "core/files_read.h"
 #include "scene/geometry.h"
 #include "scene/load/load.h"
 
@@ -49,6 +50,7 @@ std::string check_file(const std::string& path) {
     if (std::ranges::find(kKnown, extension) == kKnown.end())
         fail(path, fmt::format("found the extension '{}', expected .obj, .ply, .ply.gz, .gltf or .glb", extension));
     if (!std::ifstream(path)) fail(path, "found a file that can't be opened, expected a readable mesh");
+    note_file_read(path);
     return extension;
 }
 
@@ -222,6 +224,7 @@ class WithContent : public Assimp::DefaultIOSystem {
   public:
     WithContent(std::string path, const std::string& content) : path_(std::move(path)), content_(content) {}
     Assimp::IOStream* Open(const char* file, const char* mode) override {
+        note_file_read(file);
         if (file != path_) return DefaultIOSystem::Open(file, mode);
         return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(content_.data()), content_.size());
     }

@@ -43,7 +43,6 @@ class SceneReader {
         scene.settings = settings_;
         scene.user_paths = std::move(user_paths_);
         scene.instances = instances_ + shapes_.instances();
-        scene.files.assign(seen_.begin(), seen_.end());
         for (const auto& o : overrides) apply_override(scene.settings, o, warnings_out_);
         return scene;
     }
@@ -131,9 +130,7 @@ class SceneReader {
         section("emitters", [&](const YamlNode& node) { read_emitters(node); });
         section("render", [&](const YamlNode& node) { read_settings(node); });
         section("user_paths", [&](const YamlNode& node) {
-            const std::string path = resolve_path(node, "the path of a file of user paths");
-            user_paths_ = load_user_paths(path);
-            seen_.insert(path);
+            user_paths_ = load_user_paths(resolve_path(node, "the path of a file of user paths"));
         });
     }
 
