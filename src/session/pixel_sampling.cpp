@@ -23,6 +23,12 @@ PixelSampling::PixelSampling(const Scene& scene, const Settings& settings, const
     if (is_adaptive(settings, share)) density_.emplace(window.width, window.height);
 }
 
+std::pair<int, int> PixelSampling::nth_of_step(int n) {
+    // Of the bits of n, from the lowest: which diagonal of 2 x 2, which half of it, and the same within.
+    const int a = n & 1, b = n >> 1 & 1, c = n >> 2 & 1, d = n >> 3 & 1;
+    return {2 * (a ^ b) + (c ^ d), 2 * a + c};
+}
+
 Range PixelSampling::samples_of(std::size_t pixel, std::int64_t round) const {
     if (!density_ || !density_->is_decided()) return {round, round + 1};
     const double shift = Rng(seed_, StreamPurpose::sampling_density, pixel).next();

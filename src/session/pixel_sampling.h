@@ -19,6 +19,7 @@
 #include <cmath>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace keyhole {
@@ -44,13 +45,16 @@ class PixelSampling {
     double samples_per_pixel() const { return static_cast<double>(samples_) / static_cast<double>(pixels_); }
 
   private:
-    static constexpr int kTile = 16;
-    struct Tile {
+    static constexpr int kTile = 64, kStep = 4; // pixels
+    /// The pixel of each kStep x kStep that comes n-th: neighbours far apart, as in ordered dithering.
+    static std::pair<int, int> nth_of_step(int n);
+    /// What some of a tile's pixels showed.
+    struct Part {
         RunningStats luminance;
         std::int64_t samples = 0;
     };
     template <class Sample>
-    void sample_pixel(Film& film, int x, int y, std::int64_t round, Tile& tile, const Sample& sample);
+    void sample_pixel(Film& film, int x, int y, std::int64_t round, Part& part, const Sample& sample);
     /// The numbers of a pixel's samples in a round.
     Range samples_of(std::size_t pixel, std::int64_t round) const;
     void end_of_round(std::int64_t round, const RunContext& context);
@@ -73,21 +77,25 @@ bool PixelSampling::take_round(Film& film, std::int64_t round, const RunContext&
     const int across = (window.width + kTile - 1) / kTile, down = (window.height + kTile - 1) / kTile;
     if (round == 0) at_begin_ = context.seconds_left();
     std::atomic<bool> whole = true;
-    std::vector<Tile> tiles(static_cast<std::size_t>(across) * static_cast<std::size_t>(down));
-    parallel_for(static_cast<std::int64_t>(across) * down, [&](std::int64_t tile) {
+    // All tiles' first pixels come before their second ones: a round that is cut short has no seam.
+    const std::int64_t tiles = std::int64_t{across} * down, parts = tiles * kStep * kStep;
+    std::vector<Part> found(static_cast<std::size_t>(parts));
+    parallel_for(parts, [&](std::int64_t i) {
         if (context.stopped()) {
             whole = false;
             return;
         }
-        const int x0 = static_cast<int>(tile % across) * kTile, y0 = static_cast<int>(tile / across) * kTile;
+        const auto [right, below] = nth_of_step(static_cast<int>(i / tiles));
+        const int x0 = static_cast<int>(i % tiles % across) * kTile, y0 = static_cast<int>(i % tiles / across) * kTile;
         const int x1 = std::min(x0 + kTile, window.width), y1 = std::min(y0 + kTile, window.height);
-        for (int y = y0; y < y1; ++y)
-            for (int x = x0; x < x1; ++x)
-                sample_pixel(film, x, y, round, tiles[static_cast<std::size_t>(tile)], sample);
-        context.advance((x1 - x0) * (y1 - y0));
+        std::uint64_t pixels = 0;
+        for (int y = y0 + below; y < y1; y += kStep)
+            for (int x = x0 + right; x < x1; x += kStep, ++pixels)
+                sample_pixel(film, x, y, round, found[static_cast<std::size_t>(i)], sample);
+        context.advance(pixels);
     });
     samples_ = 0;
-    for (const Tile& t : tiles) {
+    for (const Part& t : found) {
         luminances_.merge(t.luminance);
         samples_ += t.samples;
     }
@@ -96,7 +104,7 @@ bool PixelSampling::take_round(Film& film, std::int64_t round, const RunContext&
 }
 
 template <class Sample>
-void PixelSampling::sample_pixel(Film& film, int x, int y, std::int64_t round, Tile& tile, const Sample& sample) {
+void PixelSampling::sample_pixel(Film& film, int x, int y, std::int64_t round, Part& part, const Sample& sample) {
     const ImageWindow& window = scene_.camera().window();
     const auto pixel =
         static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(window.width) + static_cast<std::uint64_t>(x);
@@ -110,9 +118,9 @@ void PixelSampling::sample_pixel(Film& film, int x, int y, std::int64_t round, T
         const PixelSample s = sample(window.to_window(centre + film.filter().sample_offset(u0, u1)), source);
         film.add(x, y, s, half_of(n));
         const double l = luminance(s.direct + s.indirect + s.caustic);
-        ++tile.samples;
+        ++part.samples;
         if (!std::isfinite(l)) continue;
-        tile.luminance.add(density_ ? l / density_->at(pixel) : l);
+        part.luminance.add(density_ ? l / density_->at(pixel) : l);
         if (density_ && !density_->is_decided()) density_->add(pixel, l, half_of(n));
     }
 }

@@ -1,4 +1,5 @@
 // Materials, textures, spectra, lights and media of pbrt's format: each becomes the model that docs/pbrt.md names.
+#include "scene/geometry.h"
 #include "scene/load/pbrt/spectrum.h"
 #include "scene/materials/measured_media.h"
 #include "support/pbrt_scenes.h"
@@ -175,6 +176,15 @@ TEST(PbrtLights, AreaLightsShineByScalePowerAndExposure) {
     const PbrtScene exposed("AreaLightSource \"diffuse\" " + kPbrtTriangle,
                             "Film \"rgb\" \"float iso\" 50 Camera \"perspective\" \"float shutterclose\" 4");
     expect_near(exposed.shape().emission->radiance, Rgb(2.0));
+}
+
+/// However many facets stand for it.
+TEST(PbrtLights, PowerIsThatOfAQuadric) {
+    for (const std::string shape : {"\"disk\"", "\"cylinder\"", "\"sphere\" \"float phimax\" 90", "\"sphere\""}) {
+        const PbrtScene s("AreaLightSource \"diffuse\" \"float power\" 10 Shape " + shape);
+        ASSERT_EQ(s.scene.description.shapes.size(), 1u) << shape;
+        expect_near(s.shape().emission->radiance, Rgb(10 / (kPi * surface_area(s.shape()))));
+    }
 }
 
 TEST(PbrtLights, SpectraHaveLuminanceOne) {

@@ -149,7 +149,11 @@ ShapeSource curve(Parameters& p) {
 }
 
 using ShapeReader = ShapeSource (*)(Parameters&);
-template <Geometry (*kRead)(Parameters&)> ShapeSource quadric(Parameters& p) { return {kRead(p), {}}; }
+template <Geometry (*kRead)(Parameters&)> ShapeSource quadric(Parameters& p) {
+    ShapeSource source{kRead(p), {}};
+    source.faces_per_patch = kMaxMeshTriangles; // facets of one light
+    return source;
+}
 
 const std::map<std::string_view, ShapeReader>& shape_readers() {
     static const std::map<std::string_view, ShapeReader> table{
