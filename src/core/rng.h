@@ -68,6 +68,7 @@ enum class StreamPurpose : std::uint64_t {
     each_emitter,
     emission_trial,
     scene_hash,
+    filter,
 };
 
 /// PCG32 (O'Neill 2014). One for each chain and each pixel, never for each thread, so that a picture does not

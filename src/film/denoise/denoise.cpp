@@ -1,6 +1,7 @@
 #include "film/denoise/denoise.h"
 
 #include "core/parallel.h"
+#include "core/rng.h"
 #include "core/vec.h"
 #include "film/denoise/nonlocal_means.h"
 #include "film/picture.h"
@@ -27,17 +28,55 @@ void scale(Image& image, int exponent) {
     for (float& v : image.data) v = std::ldexp(v, exponent);
 }
 
+/// Pixels around one over which its noise is averaged, and over which the filter is judged.
+constexpr int kReachOfNoise = 2, kReachOfJudgement = 3;
+/// And over which that of a pixel of one sample is: of its neighbours, one in sixteen may have another.
+constexpr int kReachOfSingle = 6;
+
+/// Pixels that have one sample: no half differs from the other in any layer. So have those of an even background, where
+/// it makes no difference.
+std::vector<bool> pixels_of_one_sample(const Picture& picture) {
+    std::vector<bool> single(static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height), true);
+    for (const auto& [name, image] : picture.layers) {
+        if (!name.starts_with(noise_layer({}))) continue;
+        for (std::size_t i = 0; i < image.data.size(); ++i)
+            if (image.data[i] != 0) single[i / static_cast<std::size_t>(image.channels)] = false;
+    }
+    return single;
+}
+
 /// The sum of some layers of three channels, and of their noise.
 struct FilterPart {
     Image mean, noise;
+    std::vector<bool> single; ///< by pixel: of one sample
 
     FilterPart(const Picture& picture, std::initializer_list<const char*> layers)
-        : mean(picture.width, picture.height, 3), noise(mean) {
+        : mean(picture.width, picture.height, 3), noise(mean), single(pixels_of_one_sample(picture)) {
         for (const std::string layer : layers) {
             add(picture.layers.at(layer), mean);
             add(picture.layers.at(noise_layer(layer)), noise);
         }
     }
+
+    /// Gives pixels of one sample halves that differ as much as those of their neighbours would: who stopped a render
+    /// in the middle of a round of samples shall not see where.
+    void assume_noise_of_single() {
+        const Image known = noise;
+        parallel_for(noise.height, [&](std::int64_t row) {
+            const int y = static_cast<int>(row);
+            for (int x = 0; x < noise.width; ++x) {
+                if (!is_single(x, y)) continue;
+                // That of neighbours is of two samples.
+                const Rgb squares = mean_square(known, x, y) * 2.0;
+                // By chance, so that pixels seem alike on average.
+                const bool up = Rng(0, StreamPurpose::filter, index(x, y)).next() < 0.5;
+                for (int c = 0; c < 3; ++c)
+                    noise.at(x, y)[c] = static_cast<float>((up ? 1 : -1) * std::sqrt(squares[c]));
+            }
+        });
+    }
+
+    bool is_single(int x, int y) const { return single[index(x, y)]; }
 
     /// Brings its mean near 1, so that squares are numbers, whatever the unit of light. Returns the exponent of the
     /// power of two that it was.
@@ -52,6 +91,22 @@ struct FilterPart {
     }
 
   private:
+    std::size_t index(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(mean.width) + static_cast<std::size_t>(x);
+    }
+    /// Over pixels near (x, y) that have more than one sample; 0 without any.
+    Rgb mean_square(const Image& noise, int x, int y) const {
+        Rgb sum(0.0);
+        int count = 0;
+        for (int j = std::max(0, y - kReachOfSingle); j <= std::min(noise.height - 1, y + kReachOfSingle); ++j)
+            for (int i = std::max(0, x - kReachOfSingle); i <= std::min(noise.width - 1, x + kReachOfSingle); ++i) {
+                if (is_single(i, j)) continue;
+                const float* p = noise.at(i, j);
+                sum += Rgb(p[0], p[1], p[2]) * Rgb(p[0], p[1], p[2]);
+                ++count;
+            }
+        return count > 0 ? sum / count : sum;
+    }
     static void add(const Image& layer, Image& sum) {
         std::ranges::transform(layer.data, sum.data, sum.data.begin(), std::plus());
     }
@@ -101,7 +156,8 @@ std::vector<Outlier> take_out_outliers(FilterPart& part, int reach) {
             const float rest = mean_of_most(luminance, x, y, reach, window);
             if (light <= kMostAdded * rest * static_cast<float>(window.size())) continue;
             float *p = part.mean.at(x, y), *noise = part.noise.at(x, y);
-            const bool confirmed = std::abs(luminance_at(part.noise, x, y)) < (1 - kLeastInHalf) * light;
+            const bool confirmed =
+                !part.is_single(x, y) && std::abs(luminance_at(part.noise, x, y)) < (1 - kLeastInHalf) * light;
             found.push_back({x, y, {p[0], p[1], p[2]}, confirmed});
             for (int c = 0; c < 3; ++c) p[c] *= rest / light;
             std::fill_n(noise, 3, 0.0f);
@@ -110,8 +166,6 @@ std::vector<Outlier> take_out_outliers(FilterPart& part, int reach) {
     return found;
 }
 
-/// Pixels around one over which its noise is averaged, and over which the filter is judged.
-constexpr int kReachOfNoise = 2, kReachOfJudgement = 3;
 /// Of the square of the mean: as everywhere, what is darker has no relative error to speak of.
 constexpr float kDark = 0.01f;
 
@@ -170,6 +224,7 @@ Image judged(const FilterPart& part, const std::array<Image, 2>& smooth) {
 Image filtered(FilterPart part, const FilterGuides& guides, int reach, const StopToken* stop) {
     if (std::ranges::all_of(part.noise.data, [](float d) { return d == 0; })) return part.mean;
     const int exponent = part.normalise();
+    part.assume_noise_of_single();
     const std::vector<Outlier> outliers = take_out_outliers(part, reach);
     const int width = part.mean.width, height = part.mean.height, border = reach + kPatch;
     const auto channel = [&](float sign, int c) {
