@@ -23,9 +23,10 @@ PixelSampling::PixelSampling(const Scene& scene, const Settings& settings, const
     if (is_adaptive(settings, share)) density_.emplace(window.width, window.height);
 }
 
-std::pair<int, int> PixelSampling::nth_of_step(int n) {
+std::pair<int, int> PixelSampling::pixel_of_turn(std::int64_t n) {
     // Of the bits of n, from the lowest: which diagonal of 2 x 2, which half of it, and the same within.
-    const int a = n & 1, b = n >> 1 & 1, c = n >> 2 & 1, d = n >> 3 & 1;
+    const auto bit = [n](int i) { return static_cast<int>(n >> i & 1); };
+    const int a = bit(0), b = bit(1), c = bit(2), d = bit(3);
     return {2 * (a ^ b) + (c ^ d), 2 * a + c};
 }
 

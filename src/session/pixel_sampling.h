@@ -45,14 +45,18 @@ class PixelSampling {
     double samples_per_pixel() const { return static_cast<double>(samples_) / static_cast<double>(pixels_); }
 
   private:
-    static constexpr int kTile = 64, kStep = 4; // pixels
-    /// The pixel of each kStep x kStep that comes n-th: neighbours far apart, as in ordered dithering.
-    static std::pair<int, int> nth_of_step(int n);
-    /// What some of a tile's pixels showed.
+    static constexpr int kTile = 16;
+    static constexpr int kStep = 4; // pixels
     struct Part {
         RunningStats luminance;
         std::int64_t samples = 0;
     };
+    /// The pixel of each kStep x kStep whose turn comes n-th: neighbours far apart, as in ordered dithering.
+    static std::pair<int, int> pixel_of_turn(std::int64_t n);
+    /// In a tile, pixels (x, y) + (step i, step j).
+    template <class Sample>
+    Part sample_pixels(Film& film, int x, int y, int step, std::int64_t round, const RunContext& context,
+                       const Sample& sample);
     template <class Sample>
     void sample_pixel(Film& film, int x, int y, std::int64_t round, Part& part, const Sample& sample);
     /// The numbers of a pixel's samples in a round.
@@ -77,30 +81,41 @@ bool PixelSampling::take_round(Film& film, std::int64_t round, const RunContext&
     const int across = (window.width + kTile - 1) / kTile, down = (window.height + kTile - 1) / kTile;
     if (round == 0) at_begin_ = context.seconds_left();
     std::atomic<bool> whole = true;
-    // All tiles' first pixels come before their second ones: a round that is cut short has no seam.
-    const std::int64_t tiles = std::int64_t{across} * down, parts = tiles * kStep * kStep;
-    std::vector<Part> found(static_cast<std::size_t>(parts));
-    parallel_for(parts, [&](std::int64_t i) {
+    // Pixels of one sample have no noise that is known. Of a second round that is cut short they lie everywhere, where
+    // a seam would show; rays of pixels apart take up to a sixth longer.
+    const std::int64_t tiles = std::int64_t{across} * down, turns = round == 1 ? kStep * kStep : 1;
+    std::vector<Part> parts(static_cast<std::size_t>(turns * tiles));
+    parallel_for(turns * tiles, [&](std::int64_t i) {
         if (context.stopped()) {
             whole = false;
             return;
         }
-        const auto [right, below] = nth_of_step(static_cast<int>(i / tiles));
-        const int x0 = static_cast<int>(i % tiles % across) * kTile, y0 = static_cast<int>(i % tiles / across) * kTile;
-        const int x1 = std::min(x0 + kTile, window.width), y1 = std::min(y0 + kTile, window.height);
-        std::uint64_t pixels = 0;
-        for (int y = y0 + below; y < y1; y += kStep)
-            for (int x = x0 + right; x < x1; x += kStep, ++pixels)
-                sample_pixel(film, x, y, round, found[static_cast<std::size_t>(i)], sample);
-        context.advance(pixels);
+        const auto [right, below] = pixel_of_turn(i / tiles);
+        const int x = static_cast<int>(i % tiles % across) * kTile, y = static_cast<int>(i % tiles / across) * kTile;
+        parts[static_cast<std::size_t>(i)] =
+            sample_pixels(film, x + right, y + below, turns > 1 ? kStep : 1, round, context, sample);
     });
     samples_ = 0;
-    for (const Part& t : found) {
-        luminances_.merge(t.luminance);
-        samples_ += t.samples;
+    for (const Part& p : parts) {
+        luminances_.merge(p.luminance);
+        samples_ += p.samples;
     }
     if (whole) end_of_round(round, context);
     return whole;
+}
+
+template <class Sample>
+PixelSampling::Part PixelSampling::sample_pixels(Film& film, int x, int y, int step, std::int64_t round,
+                                                 const RunContext& context, const Sample& sample) {
+    const ImageWindow& window = scene_.camera().window();
+    const int right = std::min((x / kTile + 1) * kTile, window.width),
+              bottom = std::min((y / kTile + 1) * kTile, window.height);
+    Part part;
+    std::uint64_t pixels = 0;
+    for (int j = y; j < bottom; j += step)
+        for (int i = x; i < right; i += step, ++pixels) sample_pixel(film, i, j, round, part, sample);
+    context.advance(pixels);
+    return part;
 }
 
 template <class Sample>
