@@ -87,12 +87,14 @@ class Progress {
 
 /// What a stage needs from its caller besides its input.
 struct RunContext {
-    StopToken* stop = nullptr;            ///< may be null: never stopped
-    Progress* progress = nullptr;         ///< may be null: silent
-    double reserve = 0;                   ///< of the time until `stop`, what is left to later stages [s]
-    bool whole_round = false;             ///< every pixel gets its first sample even if time is up
-    bool in_overtime = false;             ///< goes on when time is up, until somebody asks for a stop
-    bool by_time = false;                 ///< stages may do more or less than the settings say, for the sake of others
+    StopToken* stop = nullptr;    ///< may be null: never stopped
+    Progress* progress = nullptr; ///< may be null: silent
+    double reserve = 0;           ///< of the time until `stop`, what is left to later stages [s]
+    bool whole_round = false;     ///< every pixel gets its first sample even if time is up
+    bool in_overtime = false;     ///< goes on when time is up, until somebody asks for a stop
+    bool by_time = false;         ///< stages may do more or less than the settings say, for the sake of others
+    /// Gather rays that a record of the irradiance cache is worth for each pixel across that it serves.
+    double rays_for_pixel = std::numeric_limits<double>::infinity();
     Communicator* communicator = nullptr; ///< that does this together: its user throws ProcessLost; null: alone
 
     /// Whether to finish early: where there is a process group, by what it has agreed on.

@@ -20,6 +20,7 @@ constexpr std::size_t kBatch = 64;  // records computed at once
 constexpr std::size_t kAhead = 256; // pixels whose points are found at once
 constexpr float kCovered = 0.1f;    // share below which a point needs a record of its own
 constexpr float kLift = 0.1f;       // height at which places look at each other, over their distance
+constexpr double kLeastWorth = 32;  // rays, fewer of which are no record
 constexpr double kFirst = 0.5;      // share of rays that each record gets alike
 constexpr int kLeastMore = 8;       // fewer rays are not worth a hemisphere
 constexpr std::array kSteps{kCoarsest, kCoarsest / 2, kCoarsest / 4, kCoarsest / 8, 1, 1};
@@ -214,7 +215,9 @@ IrradianceCache fill_cache(const GatherRays& rays, const HotSpots& spots, const 
     const double start = context.seconds_left();
     std::uint64_t level = 0;
     for (const int step : kSteps) {
-        fill.fill_level(step, level++, context);
+        // Where fewer rays would do, pixels are better off with gather rays of their own.
+        if (step == kCoarsest || options.rays_for_pixel * step >= kLeastWorth) fill.fill_level(step, level, context);
+        ++level;
         context.advance(1);
     }
     const double seconds = std::isfinite(start) ? start - context.seconds_left() : 0;

@@ -45,5 +45,22 @@ TEST(FillCache, LeavesRecordsInSightOnEitherSideOfAWall) {
     EXPECT_LT(cache.size(), 100u);
 }
 
+/// Records that few rays would do for are left to gather rays of the pixels.
+TEST(FillCache, LeavesOutRecordsThatAreNotWorthTheirRays) {
+    const auto scene = parted_floor();
+    const GatherRays rays(*scene, {}, {.max_radius = 0.1f, .caustic_radius = 0.1f}, 8);
+    const HotSpots spots(rays, 1 << 11, 1, {});
+    const auto records = [&](double rays_for_pixel) {
+        const CacheOptions options{.error = 0.1, .rays = 64, .rays_for_pixel = rays_for_pixel};
+        return fill_cache(rays, spots, options, {}).size();
+    };
+    const std::size_t all = records(64), half = records(17), few = records(0.1);
+    EXPECT_EQ(all, records(std::numeric_limits<double>::infinity()));
+    EXPECT_LT(half, all);
+    EXPECT_LT(few, half);
+    EXPECT_LE(few, 9u) << "16 pixels apart";
+    EXPECT_GT(few, 0u);
+}
+
 } // namespace
 } // namespace keyhole

@@ -63,6 +63,16 @@ TEST(StageBalance, TakesNoiseOfPixelsIntoAccount) {
     EXPECT_GT(noisy.spp, calm.spp);
 }
 
+/// More where samples are many or good, fewer where records are good by few rays.
+TEST(StageBalance, ValuesRaysByWhatSamplesWouldGain) {
+    const Experience cost = ten_seconds(settings());
+    const double usual = rays_for_pixel({0.1, 1e-3}, cost, 4);
+    EXPECT_NEAR(rays_for_pixel({0.1, 1e-3}, cost, 8), 2 * usual, 1e-9 * usual);
+    EXPECT_NEAR(rays_for_pixel({0.4, 1e-3}, cost, 4), usual / 2, 1e-9 * usual);
+    EXPECT_NEAR(rays_for_pixel({0.1, 4e-3}, cost, 4), 2 * usual, 1e-9 * usual);
+    EXPECT_EQ(rays_for_pixel({0, 1e-3}, cost, 4), std::numeric_limits<double>::infinity());
+}
+
 TEST(StageBalance, KeepsWhatWasGivenAndWhatNoNoiseTells) {
     const Settings s = settings();
     const Experience cost = ten_seconds(s);

@@ -282,6 +282,12 @@ double blur_of(const TriedMethod& photons, std::span<const TriedMethod> tried) {
     return best != nullptr && photons.narrow ? blur(*photons.narrow, *best->narrow) : 0;
 }
 
+/// Whether each pixel gets a sample in the time that is left. Paths are traced where none has time for that.
+bool has_time_for_a_sample(const TriedMethod& t, const TrialContext& c) {
+    return !t.method->samples_pixels || t.method == &methods::path ||
+           t.of.per_sample(c.scene.camera().window().size()) < c.context.stop->seconds_left();
+}
+
 /// Errors of all, for so much time or work, and the best first.
 void rank(std::vector<TriedMethod>& tried, const TrialContext& c, double left) {
     std::vector<TrialPictures> pictures;
@@ -330,7 +336,8 @@ std::vector<TriedMethod> try_methods(const TrialContext& c, double most) {
         const double spent = start - c.context.stop->seconds_left();
         if (c.context.stopped() || spent + part > budget) break;
         if (method->keeps_photons && !plan(c, std::min(kPlan * start, most))) continue;
-        if (auto t = try_method(c, *method, small, part)) tried.push_back(std::move(*t));
+        if (auto t = try_method(c, *method, small, part); t && has_time_for_a_sample(*t, c))
+            tried.push_back(std::move(*t));
     }
     rank(tried, c, c.context.stop->seconds_left());
     return tried;

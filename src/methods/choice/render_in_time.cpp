@@ -219,6 +219,8 @@ class RenderInTime {
         WorkPartition share = share_to_look_at();
         limited.by_time = last && chosen.passes == 1 && !given_.contains("cache_rays") && !given_.contains("spp");
         if (method_->keeps_photons) {
+            if (cost_->noise)
+                limited.rays_for_pixel = rays_for_pixel(*cost_->noise, cost_->cost, static_cast<double>(planned_spp_));
             Settings planned = chosen;
             planned.spp = std::min(chosen.spp, planned_spp_);
             share.for_gather = std::min(1.2 * cost_->cost.predict(Stage::Work::gather, planned, pixels_), seconds / 2) /

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace keyhole {
 namespace {
@@ -15,6 +16,9 @@ constexpr double kLeastRays = 64;
 /// Of the time of all stages that settings have a say in, what light paths or chains take at least, with the irradiance
 /// that is made of their photons. Too few photons blur light, which no noise tells.
 constexpr double kLeastForPhotons = 0.15, kMostMorePhotons = 8;
+/// Records overlap, and each serves pixels on all sides of it: so many times across as are between two of its level.
+/// Half and double make no difference beyond noise.
+constexpr double kServed = 4;
 /// Of the samples of pixels that effort gives.
 constexpr double kLeastSamples = 0.5;
 
@@ -61,6 +65,15 @@ Settings split_stage_three(const Settings& settings, const Experience& cost, con
     const double left = both - records * static_cast<double>(s.cache_rays) / rays;
     s.spp = std::max<std::int64_t>(1, static_cast<std::int64_t>(spp * std::max(left / samples, kLeastSamples)));
     return s;
+}
+
+/// A record of r rays that serves s^2 pixels has the error s^2 V / r there, with V of one ray; all pixels have A / S
+/// with S samples. The last ray of a record gains s^2 V / r^2, and that time spent on samples A / S^2, about: as much
+/// where r is s S (V / A)^(1/2).
+double rays_for_pixel(const PhotonQuality::Noise& noise, const Experience& cost, double spp) {
+    const double of_ray = noise.records * kRaysAtFirst * static_cast<double>(cost.settings.cache_rays);
+    return noise.samples > 0 ? kServed * spp * std::sqrt(of_ray / noise.samples)
+                             : std::numeric_limits<double>::infinity();
 }
 
 StageBalance rebalance(const StageBalance& balance, const RenderStats& stats) {

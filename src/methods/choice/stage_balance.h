@@ -19,4 +19,8 @@ StageBalance rebalance(const StageBalance& balance, const RenderStats& stats);
 Settings split_stage_three(const Settings& settings, const Experience& cost, const PhotonQuality::Noise& noise,
                            double pixels, const std::set<std::string>& given);
 
+/// RunContext::rays_for_pixel of a render with so many samples of a pixel, by the same noise; infinite where samples
+/// have none.
+double rays_for_pixel(const PhotonQuality::Noise& noise, const Experience& cost, double spp);
+
 } // namespace keyhole

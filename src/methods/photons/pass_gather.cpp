@@ -83,7 +83,8 @@ PassGather::PassGather(const SamplerContext& c, const RenderPlan& plan, std::int
             samples.rays = context.stopped() ? kUsualGatherRays : gather_rays_that_pay(cache, samples);
     };
     if (plan.cache) {
-        const CacheOptions options = cache_options(s, static_cast<double>(radii.shrink), seed);
+        CacheOptions options = cache_options(s, static_cast<double>(radii.shrink), seed);
+        options.rays_for_pixel = context.rays_for_pixel;
         RaysOfRecords decide;
         if (context.by_time && context.communicator == nullptr)
             decide = [&](const PlacedRecords& placed) {
