@@ -20,6 +20,8 @@ namespace {
 
 /// Of the whole time, at most; and so many seconds with a smaller share of longer times.
 constexpr double kMost = 0.08, kSeconds = 0.4, kShare = 0.03;
+/// In less time than that a trial shows nothing; of the whole time, what is spent to have it.
+constexpr double kLeastSeconds = 0.3, kMostForLeast = 0.15;
 /// Of the whole time, what the survey that methods with photons start with may take.
 constexpr double kPlan = 0.12;
 /// A trial that takes so many times as long as it should is given up.
@@ -327,17 +329,21 @@ std::optional<TrialCost> try_cost(const TrialContext& c, const Method& method, d
 
 std::vector<TriedMethod> try_methods(const TrialContext& c, double most) {
     const double start = c.context.stop->seconds_left();
-    const double budget = std::min({kMost * start, kSeconds + kShare * start, most});
+    const double least = std::min(kLeastSeconds, kMostForLeast * start);
+    const double budget = std::min({std::max(kMost * start, least), kSeconds + kShare * start, most});
+    double beyond = 0; // what photons took more than their part, which the others don't go without
     const ImageWindow small = trial_window(c.scene.camera().window(), budget);
     std::vector<TriedMethod> tried;
     for (const Method* method : all_methods()) {
         const double part = method->trial.share * budget;
         if (part == 0 || !can_do(c.scene, c.settings, *method)) continue;
-        const double spent = start - c.context.stop->seconds_left();
+        const double spent = start - c.context.stop->seconds_left() - beyond;
         if (c.context.stopped() || spent + part > budget) break;
         if (method->keeps_photons && !plan(c, std::min(kPlan * start, most))) continue;
         if (auto t = try_method(c, *method, small, part); t && has_time_for_a_sample(*t, c))
             tried.push_back(std::move(*t));
+        const double taken = start - c.context.stop->seconds_left() - beyond - spent;
+        if (method->keeps_photons) beyond += std::max(0.0, taken - part);
     }
     rank(tried, c, c.context.stop->seconds_left());
     return tried;
