@@ -2,8 +2,8 @@
 
 #include "core/shared_work.h"
 #include "methods/choice/affordable.h"
-#include "methods/choice/filtered_grain.h"
 #include "methods/choice/first_look.h"
+#include "methods/choice/rank_methods.h"
 #include "methods/choice/stage_balance.h"
 #include "methods/method.h"
 #include "session/passes.h"
@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace keyhole {
@@ -20,6 +21,8 @@ namespace {
 
 /// Of the whole time, at most; and so many seconds with a smaller share of longer times.
 constexpr double kMost = 0.08, kSeconds = 0.4, kShare = 0.03;
+/// After that share of it, by photons' fault, no other method is tried.
+constexpr double kMostWithPhotons = 0.22;
 /// In less time than that a trial shows nothing; of the whole time, what is spent to have it.
 constexpr double kLeastSeconds = 0.3, kMostForLeast = 0.15;
 /// Of the whole time, what the survey that methods with photons start with may take.
@@ -29,22 +32,16 @@ constexpr double kPatience = 3;
 /// Photons need some time however little they are to do: that share of all of it, up to so many seconds. To do without
 /// them may cost a hundred times the error.
 constexpr double kPatienceForPhotons = 0.08, kMostPatience = 0.8;
+/// Two renders that take so many times a trial's time together are enough: what photons blur isn't told then.
+constexpr double kPatienceForNarrow = 4;
 /// What traces importance costs is told by so many walks.
 constexpr std::int64_t kImportons = 2000;
 /// Rays of records in a trial: their noise is told by few, and there are many records even in a small window.
 constexpr std::int64_t kCacheRays = 64;
 /// Number of the first render of a trial, for its seed; those that count have others.
 constexpr std::int64_t kTrialSeed = std::int64_t{1} << 20;
-/// What photons and records err falls as this power of the effort at least: often faster while they are few, but two
-/// renders don't tell what both have wrong.
-constexpr double kSlope = 0.85;
-/// What they blur falls as this power. Beside the edge of a shadow the squared error is as wide as the radius of
-/// lookups, whose area falls as photons are more: those of with_effort().
-constexpr double kBlurSlope = 0.35;
 /// Share of the light from which on it matters that photons blur caustics.
 constexpr double kCausticLight = 0.1;
-/// Of the grain that a trial shows, what stays at least where pixels of the picture are smaller.
-constexpr double kLeastGrain = 0.3;
 /// Squared error from which on dots are told: a tenth of the light.
 constexpr double kDotsToTell = 0.01;
 /// Of trials by work: seconds that a window of their size is for, and samples of its pixels.
@@ -179,10 +176,14 @@ void narrow_pixels(Settings& s, double scale) {
 
 double effort_of(double seconds) { return std::min(seconds / kSecondsOfEffort, 0.1); }
 
-/// The two renders of a method with settings `s`, and of path tracing those with narrow pixels; none if one is missing.
-/// `scale`: of the picture over the window. `render(settings, is_first)` makes one.
+/// The two renders of a method with settings `s`, and of path tracing those with narrow pixels, too; of others as well,
+/// where light is caustic and these two took no more than `patience`. None if one is missing.
+/// @param scale of the picture over the window.
+/// @param patience seconds, or rays.
+/// @param render makes one: render(settings, is_first).
 template <class Render>
-std::optional<TriedMethod> try_with(const TrialContext& c, Settings s, double scale, const Render& render) {
+std::optional<TriedMethod> try_with(const TrialContext& c, Settings s, double scale, double patience,
+                                    const Render& render) {
     s.seed = seed_of_render(c.settings, kTrialSeed);
     auto first = render(s, true);
     if (!first) return std::nullopt;
@@ -197,7 +198,8 @@ std::optional<TriedMethod> try_with(const TrialContext& c, Settings s, double sc
                       .by_samples = samples,
                       .of = std::move(second->of),
                       .error = {}};
-    const bool caustics = first->caustic > kCausticLight && (s.method->samples_pixels || s.method->keeps_photons);
+    const bool caustics = first->caustic > kCausticLight && (s.method->samples_pixels || s.method->keeps_photons) &&
+                          first->of.taken + tried.of.taken <= patience;
     if (s.method == &methods::path || caustics) {
         narrow_pixels(s, scale);
         auto third = render(s, false);
@@ -217,42 +219,10 @@ std::optional<TriedMethod> try_method(const TrialContext& c, const Method& metho
     double most = kPatience * half;
     if (method.keeps_photons)
         most = std::max(most, std::min(kPatienceForPhotons * c.context.stop->seconds_left(), kMostPatience));
-    return try_with(c, trial_settings(c, method, effort), scale, [&](const Settings& s, bool is_first) {
+    const double patience = kPatienceForNarrow * seconds;
+    return try_with(c, trial_settings(c, method, effort), scale, patience, [&](const Settings& s, bool is_first) {
         return render_trial(c, s, effort, is_first && method.samples_pixels ? half : most);
     });
-}
-
-/// The squared error in the time that is left as a trial shows it.
-double predict_by_trial(const TriedMethod& t, const TrialContext& c, double left) {
-    const double pixels = c.scene.camera().window().size();
-    const double time = t.of.taken / left, size = pixels / t.of.cost.pixels;
-    const TrialError& e = t.error;
-    if (t.method->samples_pixels) {
-        // Light that was missed is that of rare, bright samples, and grain where they are found.
-        const double missing = e.missing * t.of.cost.pixels / kTrialParts;
-        // Where dots come closer than one to a block of the trial, they are grain.
-        return (grain_that_counts(c.settings, *t.method) * e.grain + e.blotches + missing) * time * size +
-               e.dots * std::min(1.0, kTrialBlock * time * size);
-    }
-    if (!t.method->keeps_photons)
-        return t.method->trial.doubt * (e.grain * time * size + (e.blotches + e.missing) * time);
-    Settings s = c.settings;
-    s.method = t.method;
-    double effort = 0;
-    s = t.of.settings_for(s, c.given, pixels, left, effort);
-    const double samples = static_cast<double>(s.spp * s.passes) / t.of.samples;
-    const double growth = effort / t.of.cost.effort;
-    const double of_samples = grain_that_counts(c.settings, *t.method) * t.by_samples / samples;
-    return t.method->trial.doubt *
-           (e.grain * (of_samples + (1 - t.by_samples) / growth) +
-            (e.blotches + e.missing) * std::pow(growth, -kSlope) + e.blur * std::pow(growth, -kBlurSlope));
-}
-
-/// The squared error in the time that is left, told from that of a trial. What isn't led through the openings that were
-/// found misses most of the light in a short one: its picture is dark and quiet, and its error larger than it seems.
-double predict(const TriedMethod& t, const TrialContext& c, double left) {
-    const double hidden = t.method->follows_user_paths ? 1 : std::sqrt(c.findings.gain_by_openings);
-    return hidden * predict_by_trial(t, c, left);
 }
 
 /// Rays that light tracing by importance would take with the settings, or else the first of the methods.
@@ -267,47 +237,10 @@ double work_asked_for(const TrialContext& c, std::span<const TriedMethod> tried)
     return ipm->of.cost.predict(s, pixels);
 }
 
-/// What the variance of a sample has of differences within a pixel of the small window that a pixel of the picture,
-/// which is smaller, doesn't have: the same for all methods that sample pixels.
-double variance_within_pixels(std::span<const TriedMethod> tried) {
-    const auto path = std::ranges::find(tried, &methods::path, &TriedMethod::method);
-    if (path == tried.end() || !path->narrow) return 0;
-    return variance_less(path->pictures, *path->narrow) * path->of.samples;
-}
-
-/// What photons blur, by the method that samples pixels best.
-double blur_of(const TriedMethod& photons, std::span<const TriedMethod> tried) {
-    const TriedMethod* best = nullptr;
-    const auto error = [](const TriedMethod& t) { return t.error.grain + t.error.blotches + t.error.missing; };
-    for (const TriedMethod& t : tried)
-        if (t.method->samples_pixels && t.narrow && (best == nullptr || error(t) < error(*best))) best = &t;
-    return best != nullptr && photons.narrow ? blur(*photons.narrow, *best->narrow) : 0;
-}
-
 /// Whether each pixel gets a sample in the time that is left. Paths are traced where none has time for that.
 bool has_time_for_a_sample(const TriedMethod& t, const TrialContext& c) {
     return !t.method->samples_pixels || t.method == &methods::path ||
            t.of.per_sample(c.scene.camera().window().size()) < c.context.stop->seconds_left();
-}
-
-/// Errors of all, for so much time or work, and the best first.
-void rank(std::vector<TriedMethod>& tried, const TrialContext& c, double left) {
-    std::vector<TrialPictures> pictures;
-    for (const TriedMethod& t : tried) {
-        pictures.push_back(t.pictures);
-        pictures.back().rare_samples = t.method->samples_pixels;
-    }
-    const std::vector<TrialError> errors = trial_errors(pictures);
-    const double within = variance_within_pixels(tried);
-    for (std::size_t i = 0; i < tried.size(); ++i) tried[i].error = errors[i];
-    for (std::size_t i = 0; i < tried.size(); ++i) {
-        if (tried[i].method->keeps_photons) tried[i].error.blur = blur_of(tried[i], tried);
-        double& grain = tried[i].error.grain;
-        if (tried[i].method->keeps_photons || tried[i].method->samples_pixels)
-            grain = std::max(kLeastGrain * grain, grain - within / tried[i].of.samples);
-        tried[i].predicted = predict(tried[i], c, left);
-    }
-    std::ranges::stable_sort(tried, {}, &TriedMethod::predicted);
 }
 
 } // namespace
@@ -338,14 +271,14 @@ std::vector<TriedMethod> try_methods(const TrialContext& c, double most) {
         const double part = method->trial.share * budget;
         if (part == 0 || !can_do(c.scene, c.settings, *method)) continue;
         const double spent = start - c.context.stop->seconds_left() - beyond;
-        if (c.context.stopped() || spent + part > budget) break;
+        if (c.context.stopped() || spent + part > budget || spent + beyond > kMostWithPhotons * start) break;
         if (method->keeps_photons && !plan(c, std::min(kPlan * start, most))) continue;
         if (auto t = try_method(c, *method, small, part); t && has_time_for_a_sample(*t, c))
             tried.push_back(std::move(*t));
         const double taken = start - c.context.stop->seconds_left() - beyond - spent;
         if (method->keeps_photons) beyond += std::max(0.0, taken - part);
     }
-    rank(tried, c, c.context.stop->seconds_left());
+    rank_methods(tried, c, c.context.stop->seconds_left());
     return tried;
 }
 
@@ -364,10 +297,11 @@ std::vector<TriedMethod> try_methods_by_work(const TrialContext& c) {
             Settings s = trial_settings(c, *method, effort);
             if (method->samples_pixels) s.spp = kSamplesOfTrial;
             const auto render = [&](const Settings& of, bool) { return render_trial(c, of, effort, context); };
-            if (auto t = try_with(c, s, scale, render)) tried.push_back(std::move(*t));
+            if (auto t = try_with(c, s, scale, std::numeric_limits<double>::infinity(), render))
+                tried.push_back(std::move(*t));
         }
     }
-    if (!tried.empty()) rank(tried, c, work_asked_for(c, tried));
+    if (!tried.empty()) rank_methods(tried, c, work_asked_for(c, tried));
     return tried;
 }
 
