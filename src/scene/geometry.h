@@ -56,6 +56,12 @@ double surface_area(const Shape& shape);
 /// The triangles of an instance in world space.
 TriangleMesh flattened(const MeshInstance& instance);
 
+/// Exchanges the sides of all triangles.
+void reverse_winding(TriangleMesh& mesh);
+
+/// Whether a triangle, at least, has one shading normal.
+bool is_flat_in_part(const TriangleMesh& mesh);
+
 /// Moves a mesh to where a transform takes it. A mirrored one reverses the corners of the triangles.
 void transform_mesh(TriangleMesh& mesh, const ObjectToWorld& to_world);
 
