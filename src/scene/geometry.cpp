@@ -234,15 +234,11 @@ void drop_needless_normals(TriangleMesh& mesh) {
     mesh.normals.clear();
 }
 
-bool may_be_clear(const Shape& shape) {
-    const ClearGlass glass = shape.material->traits().clear;
-    const TriangleMesh* mesh = held_mesh(shape);
-    if (glass != ClearGlass::face) return glass == ClearGlass::pane;
-    if (mesh == nullptr || mesh->normals.empty()) return mesh != nullptr;
-    return std::ranges::any_of(mesh->triangles, [&](const auto& corners) {
-        const auto& [a, b, c] = corners;
-        return mesh->normals[a] == mesh->normals[b] && mesh->normals[a] == mesh->normals[c];
-    });
+bool is_flat_in_part(const TriangleMesh& mesh) {
+    return mesh.normals.empty() || std::ranges::any_of(mesh.triangles, [&](const auto& corners) {
+               const auto& [a, b, c] = corners;
+               return mesh.normals[a] == mesh.normals[b] && mesh.normals[a] == mesh.normals[c];
+           });
 }
 
 bool is_interface(const Shape& shape) {
