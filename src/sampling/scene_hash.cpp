@@ -88,7 +88,9 @@ void add_geometry(const Shape& shape, std::map<const TriangleMesh*, std::size_t>
     const TriangleMesh& mesh = *held_mesh(shape);
     if (const auto* instance = std::get_if<MeshInstance>(&shape.geometry)) {
         const auto [known, fresh] = meshes.try_emplace(&mesh, meshes.size());
-        hash.add(instance->to_world->matrix());
+        const Imath::M44d& m = instance->to_world->matrix();
+        for (const Imath::V3d& v : {row_of(m, 0), row_of(m, 1), row_of(m, 2), m.translation()})
+            for (int i = 0; i < 3; ++i) add_number(hash, v[i]);
         hash.add(known->second);
         if (!fresh) return;
     }

@@ -257,6 +257,18 @@ TEST(MeshInstance, IsShownAndToldApartByWhereItStands) {
     EXPECT_NE(scene_hash(*scene), scene_hash(*other));
 }
 
+std::uint64_t hash_of_copy_at(double x) {
+    std::vector<Shape> shapes;
+    const auto place = std::make_shared<const ObjectToWorld>(moved({}, 1, {x, 0, 0}));
+    shapes.push_back(instance_of(ball(), place, make_diffuse(Rgb(0.5))));
+    return scene_hash(*scene_of(std::move(shapes)));
+}
+
+TEST(MeshInstance, HasTheHashOfItsPlaceInFloats) {
+    EXPECT_EQ(hash_of_copy_at(1), hash_of_copy_at(1 + 1e-15)) << "last bits of doubles are the library's affair";
+    EXPECT_NE(hash_of_copy_at(1), hash_of_copy_at(1 + 1e-6));
+}
+
 /// Glass of flat faces lets light straight through, that of a ball none; a pane all.
 TEST(MeshInstance, IsClearGlassWhereTheMeshIs) {
     TriangleMesh flat = dented_ball(12, 8);
