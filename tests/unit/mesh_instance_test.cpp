@@ -16,6 +16,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <set>
 
 namespace keyhole {
 namespace {
@@ -267,6 +268,36 @@ std::uint64_t hash_of_copy_at(double x) {
 TEST(MeshInstance, HasTheHashOfItsPlaceInFloats) {
     EXPECT_EQ(hash_of_copy_at(1), hash_of_copy_at(1 + 1e-15)) << "last bits of doubles are the library's affair";
     EXPECT_NE(hash_of_copy_at(1), hash_of_copy_at(1 + 1e-6));
+}
+
+/// Blades whose feet are one corner in cells that are large enough to be few.
+std::shared_ptr<const TriangleMesh> grass() {
+    TriangleMesh mesh;
+    Rng rng(5, StreamPurpose::test, 0);
+    for (std::uint32_t i = 0; i < 1000; ++i) {
+        const auto [x, y] = rng.take<2>();
+        const Vec3 foot(float(x), float(y), 0);
+        for (const Vec3& p : {foot, foot + Vec3(1e-6f, 0, 0), foot + Vec3(0, 0, 0.1f)}) mesh.positions.push_back(p);
+        mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    return std::make_shared<const TriangleMesh>(std::move(mesh));
+}
+
+TEST(MeshInstance, IsShownHoweverManyThereAre) {
+    for (const auto& mesh : {ball(), grass()})
+        for (const int copies : {1, 30, 800}) {
+            std::vector<Shape> shapes;
+            for (int i = 0; i < copies; ++i)
+                shapes.push_back(instance_of(mesh, std::make_shared<const ObjectToWorld>(moved({}, 1, {2.0 * i, 0, 0})),
+                                             textured()));
+            constexpr std::size_t kMost = 1000;
+            const SurfaceMesh shown = surface_mesh(*scene_of(std::move(shapes)), kMost);
+            std::set<int> seen;
+            for (const auto& triangle : shown.triangles)
+                seen.insert(int(std::lround(shown.positions[triangle[0]].x / 2 - 0.2f)));
+            EXPECT_EQ(seen.size(), std::size_t(copies));
+            EXPECT_LE(shown.triangles.size(), 2 * kMost + std::size_t(copies));
+        }
 }
 
 /// Glass of flat faces lets light straight through, that of a ball none; a pane all.
