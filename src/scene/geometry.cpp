@@ -149,9 +149,10 @@ double triangle_area(const Shape& shape, std::uint32_t triangle) {
     return area_of(a, b, c);
 }
 
-bool has_area(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& triangle) {
+bool has_area(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& triangle, double scale) {
     const Vec3& a = mesh.positions[triangle[0]];
-    const Imath::V3d n = Imath::V3d(mesh.positions[triangle[1]] - a).cross(Imath::V3d(mesh.positions[triangle[2]] - a));
+    const Imath::V3d ab(mesh.positions[triangle[1]] - a), ac(mesh.positions[triangle[2]] - a);
+    const Imath::V3d n = (ab * scale).cross(ac * scale);
     return n.length2() > std::numeric_limits<float>::min();
 }
 
@@ -159,7 +160,7 @@ bool has_area(const Geometry& geometry) {
     const auto any = [](const TriangleMesh& mesh) {
         return std::ranges::any_of(mesh.triangles, [&](const auto& t) { return has_area(mesh, t); });
     };
-    if (const auto* instance = std::get_if<MeshInstance>(&geometry)) return any(*instance->mesh);
+    if (const auto* instance = std::get_if<MeshInstance>(&geometry)) return !instance->mesh->triangles.empty();
     const auto* mesh = std::get_if<TriangleMesh>(&geometry);
     return mesh == nullptr || any(*mesh);
 }

@@ -75,13 +75,33 @@ TEST(PbrtInstances, CountOnceTowardsTheLimit) {
 TEST(PbrtInstances, MayBeFlattenedByTheirTransform) {
     const std::string object = "ObjectBegin \"o\" " + pbrt_text(dented_ball(30, 20)) + "ObjectEnd\n";
     EXPECT_THAT(pbrt_error(object + pbrt_copies(kCopies) + "Scale 1 0 1 ObjectInstance \"o\""),
-                testing::HasSubstr("found"));
+                testing::HasSubstr("found a transform that flattens the shape"));
     // Regular, but what goes back and forth between the spaces loses its digits.
     const PbrtScene s(object + pbrt_copies(kCopies) +
                       "Transform [1 0 0 0  1 0.0001 0 0  0 0 1 0  0 0 0 1] ObjectInstance \"o\"");
     EXPECT_TRUE(std::holds_alternative<TriangleMesh>(s.scene.description.shapes.back().geometry));
     EXPECT_THAT(pbrt_error(object + pbrt_copies(kCopies) + "Translate 1e14 0 0 ObjectInstance \"o\""),
                 testing::HasSubstr("too large or too far"));
+}
+
+TEST(PbrtInstances, ThatAreFlattenedCountTowardsTheLimit) {
+    // Sheared so much that no copy can be an instance.
+    EXPECT_THAT(pbrt_error("ObjectBegin \"o\" " + pbrt_text(dented_ball(100, 100)) +
+                           "ObjectEnd Transform [1 0 0 0  1 0.0001 0 0  0 0 1 0  0 0 0 1]\n" + pbrt_copies(10'000)),
+                testing::HasSubstr(fmt::format("or {} triangles, expected fewer", kMaxTriangles)));
+}
+
+/// The object's own unit may be as small as it likes.
+TEST(SharedMesh, KeepsSmallTriangles) {
+    TriangleMesh ball = dented_ball(30, 20);
+    const std::size_t triangles = ball.triangles.size();
+    transform_mesh(ball, Imath::M44d().setScale(1e-12));
+    ball.triangles.push_back({5, 5, 6});
+    const SharedMesh shared(std::move(ball));
+    EXPECT_EQ(shared.mesh().triangles.size(), triangles);
+    const Geometry placed = shared.placed(std::make_shared<const ObjectToWorld>(Imath::M44d().setScale(1e12)));
+    ASSERT_TRUE(std::holds_alternative<TriangleMesh>(placed)) << "rays can't be told from nothing where it is so small";
+    EXPECT_TRUE(has_area(placed));
 }
 
 class YamlInstances : public testing::Test {
