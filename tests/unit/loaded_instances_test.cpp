@@ -9,7 +9,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
+#include <string>
 
 namespace keyhole {
 namespace {
@@ -160,9 +162,8 @@ TEST_F(YamlInstances, OfOneMeshInSeveralGroupsAreApart) {
     EXPECT_LT((b.p - a.p - Vec3(0, 9, 0)).length(), 1e-4f);
 }
 
-TEST(GltfInstancesOfMeshes, HoldThemOnce) {
-    test::GltfFile file;
-    const TriangleMesh mesh = dented_ball(30, 20);
+/// Many nodes that have one mesh.
+void fill_with_copies(test::GltfFile& file, const TriangleMesh& mesh) {
     std::vector<float> numbers;
     std::vector<std::uint32_t> indices;
     for (const Vec3& p : mesh.positions) numbers.insert(numbers.end(), {p.x, p.y, p.z});
@@ -173,9 +174,17 @@ TEST(GltfInstancesOfMeshes, HoldThemOnce) {
     root["nodes"] = nlohmann::json::array();
     root["scenes"][0]["nodes"] = nlohmann::json::array();
     for (int i = 0; i < kCopies; ++i) {
-        root["nodes"].push_back({{"mesh", 0}, {"translation", {i, 0, 0}}, {"scale", {1, -2, 1}}});
+        root["nodes"].push_back(
+            {{"mesh", 0}, {"translation", {i, 0, 0}}, {"scale", {1, -2, 1}}, {"name", "copy " + std::to_string(i)}});
         root["scenes"][0]["nodes"].push_back(i);
     }
+}
+
+TEST(GltfInstancesOfMeshes, HoldThemOnce) {
+    test::GltfFile file;
+    const TriangleMesh mesh = dented_ball(30, 20);
+    fill_with_copies(file, mesh);
+    auto& root = file.root;
     const LoadedScene scene = file.read();
     const auto& shapes = scene.description.shapes;
     ASSERT_EQ(shapes.size(), std::size_t{kCopies});
@@ -186,6 +195,33 @@ TEST(GltfInstancesOfMeshes, HoldThemOnce) {
     // What emits has triangles of its own.
     root["materials"][0] = {{"emissiveFactor", {1, 1, 1}}};
     EXPECT_EQ(Scene(file.read().description).emitters().size(), std::size_t{kCopies});
+}
+
+TEST(GltfInstancesOfMeshes, ThatAreOpenAreToldOfOnce) {
+    test::GltfFile file;
+    TriangleMesh mesh = dented_ball(30, 20);
+    mesh.triangles.pop_back();
+    fill_with_copies(file, mesh);
+    file.root["materials"][0] = nlohmann::json::parse(
+        R"({"extensions": {"KHR_materials_transmission": {"transmissionFactor": 1},
+            "KHR_materials_volume": {"thicknessFactor": 0.2, "attenuationDistance": 0.5,
+                                     "attenuationColor": [0.25, 1, 0]}}})");
+    for (const Shape& shape : file.read().description.shapes) EXPECT_EQ(shape.inside, nullptr);
+    EXPECT_EQ(std::ranges::count_if(file.warnings,
+                                    [](const std::string& w) { return w.find("isn't closed") != std::string::npos; }),
+              1);
+}
+
+TEST(GltfInstancesOfMeshes, AreAllSeenWhereThereIsNoCamera) {
+    test::GltfFile file;
+    fill_with_copies(file, dented_ball(30, 20));
+    const LoadedScene scene = file.read();
+    const Camera camera(scene.description.camera, scene.description.window);
+    const SurfacePoint eye = camera.eye(0.5, 0.5);
+    for (const Shape& shape : scene.description.shapes) {
+        const SurfacePoint p = triangle_point(shape, 50, 0.3f, 0.3f);
+        EXPECT_TRUE(camera.image_point(eye, (p.p - eye.p).normalized()));
+    }
 }
 
 } // namespace
