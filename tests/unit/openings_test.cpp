@@ -181,5 +181,21 @@ TEST(FoundOpenings, AreUsedWithoutAWordAndCanBeTurnedOff) {
     EXPECT_FALSE(free.stats.values.contains("openings found"));
 }
 
+/// They lead to where light comes by itself, not through the keyhole.
+TEST(PathsOfUsers, ThatGainNothingAreNotPraised) {
+    auto loaded = load_scene(KEYHOLE_SOURCE_DIR "/scenes/failures/keyhole.yaml");
+    Scene scene(std::move(loaded.description));
+    Settings settings = loaded.settings;
+    settings.method = &method_named("ipm");
+    settings.light_paths = 20'000;
+    settings.spp = 1;
+    UserPathSpec path = test::user_path("to the floor", {{0, 1.99f, -1.2f}, {0, 0, -1.2f}}, 0.1);
+    path.points[1].through = Opening{{-0.5, 1, -1.5}, {1, 0, 0}, {0, 0, 0.6}};
+    const RenderResult result = render(scene, settings, {}, {{path}});
+    EXPECT_EQ(result.stats.values.at("gain by openings"), 1);
+    for (const std::string& remark : result.stats.remarks)
+        EXPECT_EQ(remark.find("user paths"), std::string::npos) << remark;
+}
+
 } // namespace
 } // namespace keyhole
