@@ -25,6 +25,7 @@
 #include "sampling/guidance/user_paths.h"
 #include "sampling/scene_hash.h"
 #include "scene/load/load.h"
+#include "scene/load/yaml/settings_text.h"
 
 #include <fmt/format.h>
 
@@ -321,7 +322,7 @@ std::string settings_help() {
     visit_settings(defaults, [&](const char* key, const auto& value, const auto&... rest) {
         const auto row = std::tie(rest...); // help, and before it what numbers lie between
         std::string range = choices_of(value);
-        if constexpr (sizeof...(rest) == 3) range = fmt::format("; {} to {}", std::get<0>(row), std::get<1>(row));
+        if constexpr (sizeof...(rest) == 3) range = "; " + bounds_text(std::get<0>(row), std::get<1>(row));
         text += fmt::format("  {:<42}{}{}\n", fmt::format("{}={}", key, printable(value)),
                             std::get<sizeof...(rest) - 1>(row), range);
     });
