@@ -283,6 +283,8 @@ int run(RenderOptions options) {
     std::vector<std::string> load_warnings;
     LoadedScene loaded = load_for(options, load_warnings);
     check_apart(outputs, files_of_scene());
+    // Until all have looked at the checkpoints that were there, and the first has refused to replace any.
+    if (options.group != nullptr && options.checkpoints.asked()) options.group->wait_for_all();
     options.outputs.exposure = loaded.settings.exposure.value;
     options.outputs.noise_layers = loaded.settings.noise_layers;
     options.outputs.denoise = loaded.settings.denoise;
