@@ -66,8 +66,10 @@ TEST_F(Program, TooLittleTimeForPhotonsStillGivesAPicture) {
 TEST_F(Program, AMethodByNameIsThatMethodOrAnError) {
     ASSERT_EQ(run("render scene.yaml -o a.exr --cpu-time 2 --method pm --stats s.json --no-png -q"), 0) << read("err");
     EXPECT_EQ(nlohmann::json::parse(read("s.json"))["method"], "pm");
-    EXPECT_EQ(run("render scene.yaml -o b.exr --cpu-time 0.001 --method pm --no-png -q"), 2);
-    EXPECT_THAT(read("err"), HasSubstr("too little time for pm"));
+    for (const char* method : {"pm", "ipm", "mps", "mlt"}) { // also where openings are looked for before
+        EXPECT_EQ(run(std::string("render scene.yaml -o b.exr --cpu-time 0.001 --no-png -q --method ") + method), 2);
+        EXPECT_THAT(read("err"), HasSubstr(std::string("too little time for ") + method));
+    }
     EXPECT_FALSE(std::filesystem::exists(scratch.path("b.exr")));
 }
 
