@@ -10,6 +10,7 @@
 
 using namespace keyhole;
 using testing::HasSubstr;
+using testing::Not;
 
 TEST_F(Program, HangupWritesThePictureSoFarAndTheRenderGoesOn) {
     const pid_t pid = start("render scene.yaml -o a.exr --spp 10M");
@@ -87,11 +88,12 @@ TEST_F(Program, QualityIsEffortInOneWord) {
 /// Of the candidates for a reference mlt has too little time here.
 TEST_F(Program, AChartMakesItsReferenceByWhatHasTheTime) {
     EXPECT_EQ(
-        run("chart scene.yaml --times 0.3 --methods path --repeats 1 --reference-time 3 --resolution 16x12 -o rep "
-            "-D brightness_samples=1G"),
+        run("chart scene.yaml --times 0.002 --methods path --repeats 1 --reference-time 1 --resolution 16x12 -o rep "),
         0)
         << read("err");
     EXPECT_TRUE(exists("rep/index.html"));
+    EXPECT_THAT(read("err"), HasSubstr("no reference by mlt: "));
+    EXPECT_THAT(read("err"), Not(HasSubstr("no reference by path: ")));
 }
 
 TEST_F(Program, PlanTellsWhatIsLeftOutAndWhy) {
