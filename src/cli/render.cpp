@@ -25,6 +25,7 @@
 #include "sampling/guidance/user_paths.h"
 #include "sampling/scene_hash.h"
 #include "scene/load/load.h"
+#include "scene/load/yaml/settings_text.h"
 
 #include <fmt/format.h>
 
@@ -282,6 +283,8 @@ int run(RenderOptions options) {
     std::vector<std::string> load_warnings;
     LoadedScene loaded = load_for(options, load_warnings);
     check_apart(outputs, files_of_scene());
+    // Until all have looked at the checkpoints that were there, and the first has refused to replace any.
+    if (options.group != nullptr && options.checkpoints.asked()) options.group->wait_for_all();
     options.outputs.exposure = loaded.settings.exposure.value;
     options.outputs.noise_layers = loaded.settings.noise_layers;
     options.outputs.denoise = loaded.settings.denoise;
@@ -321,7 +324,7 @@ std::string settings_help() {
     visit_settings(defaults, [&](const char* key, const auto& value, const auto&... rest) {
         const auto row = std::tie(rest...); // help, and before it what numbers lie between
         std::string range = choices_of(value);
-        if constexpr (sizeof...(rest) == 3) range = fmt::format("; {} to {}", std::get<0>(row), std::get<1>(row));
+        if constexpr (sizeof...(rest) == 3) range = "; " + bounds_text(std::get<0>(row), std::get<1>(row));
         text += fmt::format("  {:<42}{}{}\n", fmt::format("{}={}", key, printable(value)),
                             std::get<sizeof...(rest) - 1>(row), range);
     });

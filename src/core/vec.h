@@ -27,6 +27,11 @@ inline bool is_black(const Rgb& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
 
 inline bool is_finite(const Rgb& c) { return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z); }
 
+/// Sizes of the coordinates.
+template <class T> Imath::Vec3<T> absolute(const Imath::Vec3<T>& v) {
+    return {std::abs(v.x), std::abs(v.y), std::abs(v.z)};
+}
+
 /// The normal `n` or its opposite: the one on the side that `w` points to.
 inline Vec3 facing(const Vec3& n, const Vec3& w) { return n.dot(w) < 0 ? -n : n; }
 

@@ -3,6 +3,7 @@
 #include "core/shared_work.h"
 #include "gather/direct_irradiance.h"
 #include "photonmap/surface/surface_region.h"
+#include "scene/geometry.h"
 #include "scene/material.h"
 
 #include <algorithm>
@@ -15,22 +16,25 @@ namespace {
 constexpr std::size_t kSamplesForEmitter = 4, kMostSamples = 16;
 
 /// How far above a place its surface is looked for, and how far from the place it may be found, over what rounding may
-/// move it by. Not a share of the scene's size: a board's thickness below a place another surface may lie.
-constexpr float kAbove = 64, kNear = 8;
+/// move it by. Not a share of the scene's size: a board's thickness below a place another surface may lie. What
+/// instances add is a bound already, of the place and of the ray, and may come near such a thickness.
+constexpr float kAbove = 64, kNear = 8, kInstances = 2;
 /// What numbers are rounded by across the normal, and about the origin, where nothing is told by their size.
 constexpr float kAcross = 1e-7f, kAtOrigin = 1e-10f;
 
 /// The surface that `place` lies on, found again by a short ray from above. None where something lies in between.
 std::optional<SurfacePoint> surface_at(const Scene& scene, const Photon& place) {
     const Vec3 n = place.normal().decode();
-    const float rounding = scene.rounding_along(n, place.position()) + kAcross * place.position().length() +
-                           kAtOrigin * scene.bounding_sphere().radius;
-    const float above = kAbove * rounding;
+    const float rounding = rounding_along(n, place.position()) + kAcross * place.position().length() +
+                           kAtOrigin * scene.bounding_sphere().radius,
+                of_instances = kInstances * scene.instance_rounding(place.position());
+    const float above = kAbove * rounding + of_instances;
     SurfacePoint start;
     start.p = place.position() + n * above;
     start.site = Site::point;
     auto hit = scene.trace(start, -n);
-    if (!hit || hit->site != Site::surface || !((hit->p - place.position()).length() < kNear * rounding) ||
+    if (!hit || hit->site != Site::surface ||
+        !((hit->p - place.position()).length() < kNear * rounding + of_instances) ||
         std::abs(hit->ng.dot(n)) < SurfaceRegion::kMinCosine)
         return std::nullopt;
     return hit;

@@ -79,8 +79,10 @@ RenderPaths::RenderPaths(const Scene& scene, const Settings& settings, const Use
         const LightGuides guides(scene, paths_);
         own_.values["gain by openings"] = gain_ =
             std::max(1.0, gain_by_guides(scene, guides, ends.eye, search.seed, context, search.learned));
-        own_.remarks.push_back(
-            fmt::format("light is led along user paths: {:.2g} times fewer light paths do as well", gain_));
+        constexpr double kGain = 1.05; // what is less reads "1 times"
+        if (gain_ >= kGain)
+            own_.remarks.push_back(
+                fmt::format("light is led along user paths: {:.2g} times fewer light paths do as well", gain_));
         return;
     }
     const OpeningsFound found = find_openings(scene, ends, search, context);

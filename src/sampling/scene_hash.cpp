@@ -88,7 +88,9 @@ void add_geometry(const Shape& shape, std::map<const TriangleMesh*, std::size_t>
     const TriangleMesh& mesh = *held_mesh(shape);
     if (const auto* instance = std::get_if<MeshInstance>(&shape.geometry)) {
         const auto [known, fresh] = meshes.try_emplace(&mesh, meshes.size());
-        hash.add(instance->to_world->matrix());
+        const Imath::M44d& m = instance->to_world->matrix();
+        for (const Imath::V3d& v : {row_of(m, 0), row_of(m, 1), row_of(m, 2), m.translation()})
+            for (int i = 0; i < 3; ++i) add_number(hash, v[i]);
         hash.add(known->second);
         if (!fresh) return;
     }
@@ -121,13 +123,12 @@ void add_appearances(const std::vector<Shape>& shapes, const Appearances& appear
 }
 
 void add_medium(const Medium* medium, Hash& hash) {
-    // Has it got another member? That belongs here, too.
-    static_assert(sizeof(Medium) == 2 * sizeof(Rgb) + 8 + sizeof(medium->density));
     if (medium == nullptr) return;
-    hash.add(medium->absorption);
-    hash.add(medium->scattering);
-    hash.add(medium->anisotropy);
-    if (medium->density) medium->density->add_to(hash);
+    const auto& [absorption, scattering, anisotropy, density] = *medium; // another member belongs here, too
+    hash.add(absorption);
+    hash.add(scattering);
+    hash.add(anisotropy);
+    if (density) density->add_to(hash);
 }
 
 void add_emitter(const Emitter& emitter, std::size_t questions, Rng& rng, Hash& hash) {
@@ -147,12 +148,13 @@ void add_emitter(const Emitter& emitter, std::size_t questions, Rng& rng, Hash& 
 }
 
 void add_camera(const Camera& camera, Hash& hash) {
-    const CameraParameters& c = camera.parameters();
-    static_assert(sizeof c == 88, "has it got another member? That belongs here, too");
-    for (const Vec3& v : {c.origin, c.right, c.up, c.forward}) hash.add(v);
-    for (const float f : {c.fov_degrees, c.lens_radius, c.focus_distance, c.near}) hash.add(f);
-    for (const double d : {c.shift.x, c.shift.y}) hash.add(d);
-    hash.add(c.sees_surroundings);
+    // Another member belongs here, too.
+    const auto& [origin, right, up, forward, fov_degrees, lens_radius, focus_distance, shift, near, sees_surroundings] =
+        camera.parameters();
+    for (const Vec3& v : {origin, right, up, forward}) hash.add(v);
+    for (const float f : {fov_degrees, lens_radius, focus_distance, near}) hash.add(f);
+    for (const double d : {shift.x, shift.y}) hash.add(d);
+    hash.add(sees_surroundings);
 }
 
 /// In an order that doesn't depend on where files lie.

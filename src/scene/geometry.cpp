@@ -8,8 +8,6 @@
 namespace keyhole {
 namespace {
 
-Vec3 absolute(const Vec3& v) { return {std::abs(v.x), std::abs(v.y), std::abs(v.z)}; }
-
 /// Bounds both the rounding of an interpolated position and that of the next intersection test, relative to the sizes
 /// of the numbers that went in (Pharr, Jakob, Humphreys, "Managing Rounding Error": gamma_7 is 4e-7 in float).
 constexpr float kRelativeError = 1.5e-6f;
@@ -73,7 +71,7 @@ template <class ToWorld>
     SurfacePoint s;
     s.p = a * w + b * u + c * v;
     // Lengths to the fourth power, which floats don't hold for all that may be in a scene.
-    const Imath::V3d n = edge_of(pa, pb, to_world).cross(edge_of(pa, pc, to_world));
+    const Imath::V3d ab = edge_of(pa, pb, to_world), ac = edge_of(pa, pc, to_world), n = ab.cross(ac);
     s.ng = Vec3(n * (1 / std::max(n.length(), std::numeric_limits<double>::min())));
     const Vec3 size = absolute(a) * w + absolute(b) * u + absolute(c) * v;
     s.offset = kRelativeError * absolute(s.ng).dot(size) + to_world.rounding_along(s.ng, size);
@@ -85,8 +83,7 @@ template <class ToWorld>
         if (s.ns.length2() == 0) s.ns = s.ng;
         if (s.ns.dot(s.ng) < 0) s.ns = -s.ns;
     }
-    if (parametrised)
-        parametrise(s, mesh, corners, Vec3(edge_of(pa, pb, to_world)), Vec3(edge_of(pa, pc, to_world)), {u, v});
+    if (parametrised) parametrise(s, mesh, corners, Vec3(ab), Vec3(ac), {u, v});
     return s;
 }
 
@@ -152,9 +149,10 @@ double triangle_area(const Shape& shape, std::uint32_t triangle) {
     return area_of(a, b, c);
 }
 
-bool has_area(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& triangle) {
+bool has_area(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& triangle, double scale) {
     const Vec3& a = mesh.positions[triangle[0]];
-    const Imath::V3d n = Imath::V3d(mesh.positions[triangle[1]] - a).cross(Imath::V3d(mesh.positions[triangle[2]] - a));
+    const Imath::V3d ab(mesh.positions[triangle[1]] - a), ac(mesh.positions[triangle[2]] - a);
+    const Imath::V3d n = (ab * scale).cross(ac * scale);
     return n.length2() > std::numeric_limits<float>::min();
 }
 
@@ -162,7 +160,7 @@ bool has_area(const Geometry& geometry) {
     const auto any = [](const TriangleMesh& mesh) {
         return std::ranges::any_of(mesh.triangles, [&](const auto& t) { return has_area(mesh, t); });
     };
-    if (const auto* instance = std::get_if<MeshInstance>(&geometry)) return any(*instance->mesh);
+    if (const auto* instance = std::get_if<MeshInstance>(&geometry)) return !instance->mesh->triangles.empty();
     const auto* mesh = std::get_if<TriangleMesh>(&geometry);
     return mesh == nullptr || any(*mesh);
 }
@@ -210,7 +208,10 @@ double surface_area(const Shape& shape) {
 void transform_mesh(TriangleMesh& mesh, const ObjectToWorld& to_world) {
     for (Vec3& p : mesh.positions) p = to_world.point(p);
     for (Vec3& n : mesh.normals) n = to_world.normal(n);
-    if (!to_world.is_mirrored()) return;
+    if (to_world.is_mirrored()) reverse_winding(mesh);
+}
+
+void reverse_winding(TriangleMesh& mesh) {
     for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
 }
 
@@ -234,15 +235,11 @@ void drop_needless_normals(TriangleMesh& mesh) {
     mesh.normals.clear();
 }
 
-bool may_be_clear(const Shape& shape) {
-    const ClearGlass glass = shape.material->traits().clear;
-    const TriangleMesh* mesh = held_mesh(shape);
-    if (glass != ClearGlass::face) return glass == ClearGlass::pane;
-    if (mesh == nullptr || mesh->normals.empty()) return mesh != nullptr;
-    return std::ranges::any_of(mesh->triangles, [&](const auto& corners) {
-        const auto& [a, b, c] = corners;
-        return mesh->normals[a] == mesh->normals[b] && mesh->normals[a] == mesh->normals[c];
-    });
+bool is_flat_in_part(const TriangleMesh& mesh) {
+    return mesh.normals.empty() || std::ranges::any_of(mesh.triangles, [&](const auto& corners) {
+               const auto& [a, b, c] = corners;
+               return mesh.normals[a] == mesh.normals[b] && mesh.normals[a] == mesh.normals[c];
+           });
 }
 
 bool is_interface(const Shape& shape) {

@@ -44,10 +44,12 @@ SurfacePoint sphere_point(const Sphere& sphere, const Vec3& outward, bool parame
 /// Area of a triangle [m^2].
 double triangle_area(const TriangleMesh& mesh, std::uint32_t triangle);
 
-/// Whether a triangle is more than a line or a point. Others have no normal; nothing may hit or sample them.
-bool has_area(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& triangle);
+/// Whether a triangle is more than a line or a point where all is `scale` times as large. Others have no normal;
+/// nothing may hit or sample them.
+bool has_area(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& triangle, double scale = 1);
 
-/// Whether any part of a shape has an area in that sense; of an instance before it is placed.
+/// Whether any part of a shape has an area in that sense. An instance has where its mesh has triangles: what they are
+/// as large as is said where they stand.
 bool has_area(const Geometry& geometry);
 
 /// Area of a shape [m^2].
@@ -55,6 +57,12 @@ double surface_area(const Shape& shape);
 
 /// The triangles of an instance in world space.
 TriangleMesh flattened(const MeshInstance& instance);
+
+/// Exchanges the sides of all triangles.
+void reverse_winding(TriangleMesh& mesh);
+
+/// Whether a triangle, at least, has one shading normal.
+bool is_flat_in_part(const TriangleMesh& mesh);
 
 /// Moves a mesh to where a transform takes it. A mirrored one reverses the corners of the triangles.
 void transform_mesh(TriangleMesh& mesh, const ObjectToWorld& to_world);

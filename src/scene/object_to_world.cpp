@@ -14,12 +14,6 @@ constexpr double kRoundings = 5e-7;
 /// Rounding that is larger, relative to coordinates, would move rays visibly off surfaces.
 constexpr float kMostRounding = 3e-5f;
 
-V3d row_of(const Imath::M44d& m, int i) { return {m[i][0], m[i][1], m[i][2]}; }
-
-double determinant(const Imath::M44d& m) { return row_of(m, 0).dot(row_of(m, 1).cross(row_of(m, 2))); }
-
-V3d absolute(const V3d& v) { return {std::abs(v.x), std::abs(v.y), std::abs(v.z)}; }
-
 /// What rounding in a cross product is relative to.
 V3d size_of_cross(const V3d& a, const V3d& b) {
     return {a.y * b.z + a.z * b.y, a.z * b.x + a.x * b.z, a.x * b.y + a.y * b.x};
@@ -31,7 +25,7 @@ Imath::M33f rounding_of(const Imath::M44d& m) {
     const std::array row{absolute(row_of(m, 0)), absolute(row_of(m, 1)), absolute(row_of(m, 2))};
     const std::array adjugate{size_of_cross(row[1], row[2]), size_of_cross(row[2], row[0]),
                               size_of_cross(row[0], row[1])};
-    const double det = std::abs(determinant(m)), cancelled = row[0].dot(adjugate[0]) / det;
+    const double det = std::abs(linear_determinant(m)), cancelled = row[0].dot(adjugate[0]) / det;
     Imath::M33f rounding;
     for (int from = 0; from < 3; ++from)
         for (int to = 0; to < 3; ++to) {
@@ -49,11 +43,11 @@ ObjectToWorld::ObjectToWorld(const Imath::M44d& matrix)
     const Imath::M44d covectors = matrix.inverse().transposed();
     for (int i = 0; i < 3; ++i)
         for (int k = 0; k < 3; ++k) covectors_[i][k] = covectors[i][k];
-    mirrored_ = determinant(matrix) < 0;
+    mirrored_ = linear_determinant(matrix) < 0;
 }
 
 float ObjectToWorld::rounding_along(const Vec3& n, const Vec3& size) const {
-    return Vec3(std::abs(n.x), std::abs(n.y), std::abs(n.z)).dot((size + origin_) * rounding_);
+    return absolute(n).dot((size + origin_) * rounding_);
 }
 
 float ObjectToWorld::relative_rounding() const {

@@ -7,6 +7,12 @@
 
 namespace keyhole {
 
+/// Row `i` of the linear part of a transform of row vectors: where it takes the i-th axis.
+inline Imath::V3d row_of(const Imath::M44d& m, int i) { return {m[i][0], m[i][1], m[i][2]}; }
+
+/// Of the linear part of a transform.
+inline double linear_determinant(const Imath::M44d& m) { return row_of(m, 0).dot(row_of(m, 1).cross(row_of(m, 2))); }
+
 /// The affine transform, regular, from the space of an object to where a copy of it stands in the world.
 class ObjectToWorld {
   public:
@@ -14,7 +20,7 @@ class ObjectToWorld {
     ObjectToWorld(const Imath::M44d& matrix); // NOLINT(google-explicit-constructor): it is that matrix
     const Imath::M44d& matrix() const { return matrix_; }
 
-    Vec3 point(const Vec3& p) const { return Vec3(Imath::V3d(p) * matrix_); }
+    Vec3 point(const Vec3& p) const { return Vec3(direction(Imath::V3d(p)) + matrix_.translation()); }
     Imath::V3d direction(const Imath::V3d& d) const {
         Imath::V3d moved;
         matrix_.multDirMatrix(d, moved);
@@ -29,7 +35,8 @@ class ObjectToWorld {
     /// origin is rounded on its way to the space of the object, and so is the transform. `size` bounds the point's
     /// world coordinates.
     float rounding_along(const Vec3& n, const Vec3& size) const;
-    /// At most that, for a point and an origin that are `size` away from the world's origin: this times 2 |size|.
+    /// At most that, whatever the normal, over the sum of the distances of the point and of the copy's own origin from
+    /// the world's.
     float relative_rounding() const;
     /// Whether that stays within some multiple of what points in the world are rounded by anyway.
     bool rounds_little() const;

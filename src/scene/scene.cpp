@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -81,6 +82,36 @@ std::vector<Shape> checked(std::vector<Shape> shapes) {
     return shapes;
 }
 
+struct MeshTraits {
+    float reach = 0; ///< distance of the farthest position from the origin
+    bool flat_in_part = false;
+};
+
+/// Finds them once for each mesh, however many shapes hold it.
+class MeshTraitsTable {
+  public:
+    const MeshTraits& of(const TriangleMesh& mesh) {
+        const auto [known, fresh] = traits_.try_emplace(&mesh);
+        if (fresh) {
+            for (const Vec3& p : mesh.positions) known->second.reach = std::max(known->second.reach, p.length());
+            known->second.flat_in_part = is_flat_in_part(mesh);
+        }
+        return known->second;
+    }
+
+  private:
+    std::map<const TriangleMesh*, MeshTraits> traits_;
+};
+
+/// Whether light may go straight through `shape`, which has a material: a pane, or glass of which a triangle, at least,
+/// has one shading normal.
+bool may_be_clear(const Shape& shape, MeshTraitsTable& meshes) {
+    const ClearGlass glass = shape.material->traits().clear;
+    if (glass != ClearGlass::face) return glass == ClearGlass::pane;
+    const TriangleMesh* mesh = held_mesh(shape);
+    return mesh != nullptr && meshes.of(*mesh).flat_in_part;
+}
+
 /// Stands for the bounds of a scene that is nothing but its surroundings: much goes by the size of the scene.
 std::pair<Vec3, Vec3> box_around(const Vec3& eye) {
     const float half = std::max(1.0f, 1e-3f * eye.length()); // more than the last bits of a place far away
@@ -100,6 +131,7 @@ Scene::Scene(SceneDescription description)
 void Scene::attach_shapes() {
     emitter_of_shape_.assign(shapes_.size(), SurfacePoint::kNone);
     merge_environments(emitters_);
+    MeshTraitsTable meshes;
     for (std::uint32_t i = 0; i < shapes_.size(); ++i) {
         Shape& shape = shapes_[i];
         if (is_interface(shape)) continue;
@@ -112,11 +144,11 @@ void Scene::attach_shapes() {
         }
         if (is_invisible_light(shape)) continue;
         if (const auto* instance = std::get_if<MeshInstance>(&shape.geometry))
-            instance_rounding_ = std::max(instance_rounding_, instance->to_world->relative_rounding());
+            rounding_.add(*instance->to_world, meshes.of(*instance->mesh).reach);
         accelerator_.attach(i);
         if (!shape.material) continue;
         traits_ = traits_ | shape.material->traits();
-        if (!may_be_clear(shape)) continue;
+        if (!may_be_clear(shape, meshes)) continue;
         if (!clear_glass_) clear_glass_ = std::make_unique<Accelerator>(shapes_);
         clear_glass_->attach(i);
     }
@@ -194,8 +226,25 @@ bool Scene::visible(const Vec3& a, const Vec3& b) const {
     return !accelerator_.occluded(a, b - a, kEdgeEnd);
 }
 
+void Scene::InstanceRounding::add(const ObjectToWorld& to_world, float reach) {
+    const float own = to_world.relative_rounding();
+    const Imath::M44d& m = to_world.matrix();
+    double stretch = 0; // squared: no direction becomes longer
+    for (int i = 0; i < 3; ++i) stretch += row_of(m, i).length2();
+    relative = std::max(relative, own);
+    origins = std::max(origins, own * static_cast<float>(m.translation().length()));
+    reaches = std::max(reaches, own * static_cast<float>(std::sqrt(stretch)) * reach);
+}
+
+float Scene::instance_rounding(const Vec3& p) const {
+    // A copy's own origin may be much farther from the world's than its points are; but those are near one another
+    // where it isn't the object's own coordinates that are large.
+    const float of_point = rounding_.relative * p.length();
+    return of_point + std::min(rounding_.origins, of_point + rounding_.reaches);
+}
+
 float Scene::rounding_along(const Vec3& n, const Vec3& p) const {
-    return keyhole::rounding_along(n, p) + 2 * instance_rounding_ * p.length();
+    return keyhole::rounding_along(n, p) + instance_rounding(p);
 }
 
 std::size_t Scene::triangle_count() const {

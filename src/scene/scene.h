@@ -102,8 +102,11 @@ class Scene {
     /// Those that rays meet.
     std::size_t triangle_count() const;
     /// Bound on the error along unit `n` of a position on a surface [m], whatever the surface:
-    /// keyhole::rounding_along(), and what the transforms of instances add to it.
+    /// keyhole::rounding_along(), and what instances add to it.
     float rounding_along(const Vec3& n, const Vec3& p) const;
+    /// Bound on what the transforms of instances add to the error of a position on a surface [m], whatever the surface
+    /// and the normal. Much larger, mostly, than what it is on any one of them. 0 if there are none.
+    float instance_rounding(const Vec3& p) const;
     /// Memory of the structures that rays are traced with.
     std::size_t accelerator_bytes() const {
         return accelerator_.bytes() + media_.accelerator_bytes() + (clear_glass_ ? clear_glass_->bytes() : 0);
@@ -129,7 +132,15 @@ class Scene {
     Camera camera_;
     BsdfTraits traits_;
     Vec3 lower_{0, 0, 0}, upper_{0, 0, 0};
-    float instance_rounding_ = 0; // the largest, relative to sizes of coordinates
+    /// The largest of all instances.
+    struct InstanceRounding {
+        /// @param reach distance of the mesh's farthest position from the object's origin
+        void add(const ObjectToWorld& to_world, float reach);
+
+        float relative = 0; // to the distances of a point and of a copy's own origin from the world's
+        float origins = 0;  // of copies' own origins [m]
+        float reaches = 0;  // relative one times the distance of a copy's points from its own origin [m]
+    } rounding_;
     Accelerator accelerator_;
     std::unique_ptr<Accelerator> clear_glass_; // over what may be that; null if there is none
 };

@@ -74,10 +74,6 @@ bool is_invisible_light(const Shape& shape);
 /// Drops the normals of a mesh if they are those that its triangles have anyway.
 void drop_needless_normals(TriangleMesh& mesh);
 
-/// Whether light may go straight through `shape`, which has a material: a pane, or glass of which a triangle, at least,
-/// has one shading normal.
-bool may_be_clear(const Shape& shape);
-
 /// Whether rays and light pass `shape` as if it weren't there, but for the media that it parts.
 bool is_interface(const Shape& shape);
 

@@ -10,6 +10,7 @@
 
 using namespace keyhole;
 using testing::HasSubstr;
+using testing::Not;
 
 TEST_F(Program, HangupWritesThePictureSoFarAndTheRenderGoesOn) {
     const pid_t pid = start("render scene.yaml -o a.exr --spp 10M");
@@ -66,8 +67,10 @@ TEST_F(Program, TooLittleTimeForPhotonsStillGivesAPicture) {
 TEST_F(Program, AMethodByNameIsThatMethodOrAnError) {
     ASSERT_EQ(run("render scene.yaml -o a.exr --cpu-time 2 --method pm --stats s.json --no-png -q"), 0) << read("err");
     EXPECT_EQ(nlohmann::json::parse(read("s.json"))["method"], "pm");
-    EXPECT_EQ(run("render scene.yaml -o b.exr --cpu-time 0.001 --method pm --no-png -q"), 2);
-    EXPECT_THAT(read("err"), HasSubstr("too little time for pm"));
+    for (const char* method : {"pm", "ipm", "mps", "mlt"}) { // also where openings are looked for before
+        EXPECT_EQ(run(std::string("render scene.yaml -o b.exr --cpu-time 0.001 --no-png -q --method ") + method), 2);
+        EXPECT_THAT(read("err"), HasSubstr(std::string("too little time for ") + method));
+    }
     EXPECT_FALSE(std::filesystem::exists(scratch.path("b.exr")));
 }
 
@@ -85,11 +88,12 @@ TEST_F(Program, QualityIsEffortInOneWord) {
 /// Of the candidates for a reference mlt has too little time here.
 TEST_F(Program, AChartMakesItsReferenceByWhatHasTheTime) {
     EXPECT_EQ(
-        run("chart scene.yaml --times 0.3 --methods path --repeats 1 --reference-time 3 --resolution 16x12 -o rep "
-            "-D brightness_samples=1G"),
+        run("chart scene.yaml --times 0.002 --methods path --repeats 1 --reference-time 1 --resolution 16x12 -o rep "),
         0)
         << read("err");
     EXPECT_TRUE(exists("rep/index.html"));
+    EXPECT_THAT(read("err"), HasSubstr("no reference by mlt: "));
+    EXPECT_THAT(read("err"), Not(HasSubstr("no reference by path: ")));
 }
 
 TEST_F(Program, PlanTellsWhatIsLeftOutAndWhy) {

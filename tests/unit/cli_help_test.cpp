@@ -54,3 +54,14 @@ TEST_F(Program, AShellCompletesWhatHelpLists) {
     EXPECT_EQ(completed("render scene.yaml --denoise o"), "off\n");
     EXPECT_EQ(completed("render scene.y"), "\n"); // files, by the shell
 }
+
+TEST_F(Program, HelpHasTheBoundsOfASettingThatItsErrorHas) {
+    ASSERT_EQ(run("render --help"), 0);
+    const std::string help = read("out");
+    for (const auto& [setting, bounds] :
+         {std::pair("photon_memory=1", "256KiB to 16384GiB"), {"max_depth=0", "1 to 126"}, {"p_large=2", "0 to 1"}}) {
+        EXPECT_THAT(help, HasSubstr(std::string("; ") + bounds + "\n"));
+        EXPECT_EQ(run(std::string("render scene.yaml -D ") + setting), 2);
+        EXPECT_THAT(read("err"), HasSubstr(std::string("from ") + bounds));
+    }
+}

@@ -240,5 +240,16 @@ TEST_F(GltfScene, BrokenFilesAreErrors) {
     EXPECT_THAT(whole(R"({"asset": {"version": "2.0"}})"), testing::Not(HasSubstr("no error")));
 }
 
+TEST_F(GltfScene, MatricesOfNodesAreAffine) {
+    const auto nodes = [](const char* last) {
+        return fmt::format(R"("scenes": [{{"nodes": [0, 1]}}], "nodes": [{{"mesh": 0}}, {{"mesh": 0,
+          "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0.5, 0, 0, 0, {}]}}], "materials": [{{}}])",
+                           last);
+    };
+    EXPECT_THAT(error_of(nodes("1")), HasSubstr("scene.gltf: found 'matrix' of the node 1 with the last row 0, 0, 0.5, "
+                                                "1, expected 0, 0, 0, 1"));
+    EXPECT_THAT(error_of(nodes("2")), HasSubstr("0, 0, 0.5, 2"));
+}
+
 } // namespace
 } // namespace keyhole

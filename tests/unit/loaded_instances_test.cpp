@@ -9,7 +9,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
+#include <string>
 
 namespace keyhole {
 namespace {
@@ -75,13 +77,33 @@ TEST(PbrtInstances, CountOnceTowardsTheLimit) {
 TEST(PbrtInstances, MayBeFlattenedByTheirTransform) {
     const std::string object = "ObjectBegin \"o\" " + pbrt_text(dented_ball(30, 20)) + "ObjectEnd\n";
     EXPECT_THAT(pbrt_error(object + pbrt_copies(kCopies) + "Scale 1 0 1 ObjectInstance \"o\""),
-                testing::HasSubstr("found"));
+                testing::HasSubstr("found a transform that flattens the shape"));
     // Regular, but what goes back and forth between the spaces loses its digits.
     const PbrtScene s(object + pbrt_copies(kCopies) +
                       "Transform [1 0 0 0  1 0.0001 0 0  0 0 1 0  0 0 0 1] ObjectInstance \"o\"");
     EXPECT_TRUE(std::holds_alternative<TriangleMesh>(s.scene.description.shapes.back().geometry));
     EXPECT_THAT(pbrt_error(object + pbrt_copies(kCopies) + "Translate 1e14 0 0 ObjectInstance \"o\""),
                 testing::HasSubstr("too large or too far"));
+}
+
+TEST(PbrtInstances, ThatAreFlattenedCountTowardsTheLimit) {
+    // Sheared so much that no copy can be an instance.
+    EXPECT_THAT(pbrt_error("ObjectBegin \"o\" " + pbrt_text(dented_ball(100, 100)) +
+                           "ObjectEnd Transform [1 0 0 0  1 0.0001 0 0  0 0 1 0  0 0 0 1]\n" + pbrt_copies(10'000)),
+                testing::HasSubstr(fmt::format("or {} triangles, expected fewer", kMaxTriangles)));
+}
+
+/// The object's own unit may be as small as it likes.
+TEST(SharedMesh, KeepsSmallTriangles) {
+    TriangleMesh ball = dented_ball(30, 20);
+    const std::size_t triangles = ball.triangles.size();
+    transform_mesh(ball, Imath::M44d().setScale(1e-12));
+    ball.triangles.push_back({5, 5, 6});
+    const SharedMesh shared(std::move(ball));
+    EXPECT_EQ(shared.mesh().triangles.size(), triangles);
+    const Geometry placed = shared.placed(std::make_shared<const ObjectToWorld>(Imath::M44d().setScale(1e12)));
+    ASSERT_TRUE(std::holds_alternative<TriangleMesh>(placed)) << "rays can't be told from nothing where it is so small";
+    EXPECT_TRUE(has_area(placed));
 }
 
 class YamlInstances : public testing::Test {
@@ -140,9 +162,8 @@ TEST_F(YamlInstances, OfOneMeshInSeveralGroupsAreApart) {
     EXPECT_LT((b.p - a.p - Vec3(0, 9, 0)).length(), 1e-4f);
 }
 
-TEST(GltfInstancesOfMeshes, HoldThemOnce) {
-    test::GltfFile file;
-    const TriangleMesh mesh = dented_ball(30, 20);
+/// Many nodes that have one mesh.
+void fill_with_copies(test::GltfFile& file, const TriangleMesh& mesh) {
     std::vector<float> numbers;
     std::vector<std::uint32_t> indices;
     for (const Vec3& p : mesh.positions) numbers.insert(numbers.end(), {p.x, p.y, p.z});
@@ -153,9 +174,17 @@ TEST(GltfInstancesOfMeshes, HoldThemOnce) {
     root["nodes"] = nlohmann::json::array();
     root["scenes"][0]["nodes"] = nlohmann::json::array();
     for (int i = 0; i < kCopies; ++i) {
-        root["nodes"].push_back({{"mesh", 0}, {"translation", {i, 0, 0}}, {"scale", {1, -2, 1}}});
+        root["nodes"].push_back(
+            {{"mesh", 0}, {"translation", {i, 0, 0}}, {"scale", {1, -2, 1}}, {"name", "copy " + std::to_string(i)}});
         root["scenes"][0]["nodes"].push_back(i);
     }
+}
+
+TEST(GltfInstancesOfMeshes, HoldThemOnce) {
+    test::GltfFile file;
+    const TriangleMesh mesh = dented_ball(30, 20);
+    fill_with_copies(file, mesh);
+    auto& root = file.root;
     const LoadedScene scene = file.read();
     const auto& shapes = scene.description.shapes;
     ASSERT_EQ(shapes.size(), std::size_t{kCopies});
@@ -166,6 +195,33 @@ TEST(GltfInstancesOfMeshes, HoldThemOnce) {
     // What emits has triangles of its own.
     root["materials"][0] = {{"emissiveFactor", {1, 1, 1}}};
     EXPECT_EQ(Scene(file.read().description).emitters().size(), std::size_t{kCopies});
+}
+
+TEST(GltfInstancesOfMeshes, ThatAreOpenAreToldOfOnce) {
+    test::GltfFile file;
+    TriangleMesh mesh = dented_ball(30, 20);
+    mesh.triangles.pop_back();
+    fill_with_copies(file, mesh);
+    file.root["materials"][0] = nlohmann::json::parse(
+        R"({"extensions": {"KHR_materials_transmission": {"transmissionFactor": 1},
+            "KHR_materials_volume": {"thicknessFactor": 0.2, "attenuationDistance": 0.5,
+                                     "attenuationColor": [0.25, 1, 0]}}})");
+    for (const Shape& shape : file.read().description.shapes) EXPECT_EQ(shape.inside, nullptr);
+    EXPECT_EQ(std::ranges::count_if(file.warnings,
+                                    [](const std::string& w) { return w.find("isn't closed") != std::string::npos; }),
+              1);
+}
+
+TEST(GltfInstancesOfMeshes, AreAllSeenWhereThereIsNoCamera) {
+    test::GltfFile file;
+    fill_with_copies(file, dented_ball(30, 20));
+    const LoadedScene scene = file.read();
+    const Camera camera(scene.description.camera, scene.description.window);
+    const SurfacePoint eye = camera.eye(0.5, 0.5);
+    for (const Shape& shape : scene.description.shapes) {
+        const SurfacePoint p = triangle_point(shape, 50, 0.3f, 0.3f);
+        EXPECT_TRUE(camera.image_point(eye, (p.p - eye.p).normalized()));
+    }
 }
 
 } // namespace

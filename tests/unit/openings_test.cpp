@@ -166,19 +166,36 @@ TEST(GainByGuides, IsNoneWherePathsLeadAstray) {
     EXPECT_LT(gain, 1.2);
 }
 
-TEST(FoundOpenings, AreUsedWithoutAWordAndCanBeTurnedOff) {
-    auto loaded = load_scene(KEYHOLE_SOURCE_DIR "/scenes/failures/keyhole.yaml");
-    Scene scene(std::move(loaded.description));
-    Settings settings = loaded.settings;
+Settings quick(Settings settings) {
     settings.method = &method_named("ipm");
     settings.light_paths = 40'000;
     settings.spp = 1;
+    return settings;
+}
+
+TEST(FoundOpenings, AreUsedWithoutAWordAndCanBeTurnedOff) {
+    auto loaded = load_scene(KEYHOLE_SOURCE_DIR "/scenes/failures/keyhole.yaml");
+    Scene scene(std::move(loaded.description));
+    Settings settings = quick(loaded.settings);
     const RenderResult led = render(scene, settings, {});
     EXPECT_EQ(led.stats.values.at("openings found"), 1);
     EXPECT_GT(led.stats.values.at("gain by openings"), 10);
     settings.find_openings = false;
     const RenderResult free = render(scene, settings, {});
     EXPECT_FALSE(free.stats.values.contains("openings found"));
+}
+
+/// They lead to where light comes by itself, not through the keyhole.
+TEST(PathsOfUsers, ThatGainNothingAreNotPraised) {
+    auto loaded = load_scene(KEYHOLE_SOURCE_DIR "/scenes/failures/keyhole.yaml");
+    Scene scene(std::move(loaded.description));
+    const Settings settings = quick(loaded.settings);
+    UserPathSpec path = test::user_path("to the floor", {{0, 1.99f, -1.2f}, {0, 0, -1.2f}}, 0.1);
+    path.points[1].through = Opening{{-0.5, 1, -1.5}, {1, 0, 0}, {0, 0, 0.6}};
+    const RenderResult result = render(scene, settings, {}, {{path}});
+    EXPECT_EQ(result.stats.values.at("gain by openings"), 1);
+    for (const std::string& remark : result.stats.remarks)
+        EXPECT_EQ(remark.find("user paths"), std::string::npos) << remark;
 }
 
 } // namespace

@@ -3,6 +3,7 @@
 #include "cli/chart/process.h"
 #include "cli/pictures/beauty.h"
 #include "cli/program.h"
+#include "cli/words/tell.h"
 #include "core/error.h"
 #include "film/files/exr.h"
 #include "film/image_error.h"
@@ -18,7 +19,9 @@
 #include <filesystem>
 #include <fstream>
 #include <mutex>
+#include <string>
 #include <thread>
+#include <vector>
 
 namespace keyhole {
 namespace {
@@ -90,13 +93,13 @@ class ReferenceMaker {
     Pair best_candidate() {
         std::array<Pair, kCandidates.size()> pairs;
         double brightest = 0;
-        std::string failure;
+        std::vector<std::string> failures;
         for (std::size_t i = 0; i < pairs.size(); ++i) {
             pairs[i].method = kCandidates[i];
             try {
                 extend(pairs[i], trial_seconds());
             } catch (const InputError& e) { // too little time for it: the others may do
-                failure = e.what();
+                failures.emplace_back(e.what());
                 continue;
             }
             if (renderer_.stopped()) return pairs[0];
@@ -108,7 +111,8 @@ class ReferenceMaker {
             const bool misses_light = pair.brightness() < 0.97 * brightest;
             if (!misses_light && (best == nullptr || pair.standard_error() < best->standard_error())) best = &pair;
         }
-        if (best == nullptr) throw InputError(failure);
+        if (best == nullptr) throw InputError(failures.back());
+        for (const std::string& failure : failures) tell("keyhole: warning: {}; others make it\n", failure);
         return *best;
     }
 

@@ -66,7 +66,7 @@ class RenderInTime {
     RenderInTime(Scene& scene, const Settings& settings, const std::set<std::string>& given, const RunContext& context,
                  const UserPathFile& user_paths, const WorkPartition& share)
         : scene_(scene), settings_(settings), given_(given), context_(context), given_paths_(user_paths), share_(share),
-          start_(left()) {
+          start_(left()), method_(settings.method) {
         pixels_ = scene.camera().window().size();
     }
 
@@ -309,7 +309,7 @@ class RenderInTime {
     std::optional<LearnedDirectLightScope> direct_light_;
     std::optional<RenderPaths> paths_;
     Findings findings_;
-    const Method* method_ = nullptr;
+    const Method* method_;           // the one that was asked for, until one is chosen
     std::optional<TrialCost> cost_;  // of the method; none for those that sample pixels
     std::vector<TriedMethod> tried_; // the best first
     double at_choice_ = 0;           // time that was left then [s]

@@ -29,7 +29,9 @@ struct SurfaceMesh {
 };
 
 /// Shapes that have too many triangles for their share of `most` are simplified: corners in the same cell of a grid
-/// become one (Rossignac and Borrel 1993). Emitters stay as they are as long as they have few.
+/// become one (Rossignac and Borrel 1993), or where that leaves nothing some are shown. None vanishes: of each shape
+/// there is a triangle, and there are 2 `most` and one of each shape at most. Emitters stay as they are as long as they
+/// have few.
 SurfaceMesh surface_mesh(const Scene& scene, std::size_t most);
 
 /// What a pixel's middle sees, and what arrives there.

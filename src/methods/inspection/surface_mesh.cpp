@@ -97,8 +97,25 @@ Part clustered(const TriangleMesh& mesh, double cell, const Vec3& origin) {
     return part;
 }
 
-/// Of as many triangles as that, or nearly.
-Part simplified(const TriangleMesh& mesh, std::size_t most, const Vec3& origin) {
+/// That many of the triangles, from all over the list.
+Part thinned(const Part& all, std::size_t count) {
+    Part part;
+    std::map<std::uint32_t, std::uint32_t> index;
+    const auto moved = [&](std::uint32_t i) {
+        const auto [known, fresh] = index.try_emplace(i, part.positions.size());
+        if (fresh) part.positions.push_back(all.positions[i]);
+        return known->second;
+    };
+    for (std::size_t i = 0; i < count; ++i) {
+        const Triangle& t = all.triangles[i * all.triangles.size() / count];
+        part.triangles.push_back({moved(t[0]), moved(t[1]), moved(t[2])});
+    }
+    return part;
+}
+
+/// Of as many triangles as that at most, and of some. Where all are narrower than cells they don't become larger ones,
+/// and some are left out.
+Part simplified(const TriangleMesh& mesh, std::size_t most) {
     Part part{mesh.positions, {}, {}};
     for (const auto& t : mesh.triangles) part.triangles.push_back({t[0], t[1], t[2]});
     if (part.triangles.size() <= most) return part;
@@ -106,24 +123,26 @@ Part simplified(const TriangleMesh& mesh, std::size_t most, const Vec3& origin) 
     for (const Vec3& p : mesh.positions) box.extendBy(p);
     const double size = std::max(1e-9f, box.size().length());
     for (double parts = 2 * std::sqrt(static_cast<double>(most)); parts >= 1; parts /= 1.4) {
-        part = clustered(mesh, size / parts, origin);
-        if (part.triangles.size() <= most) break;
+        Part coarser = clustered(mesh, size / parts, box.min);
+        if (coarser.triangles.empty()) break;
+        part = std::move(coarser);
+        if (part.triangles.size() <= most) return part;
     }
-    return part;
+    return part.triangles.size() <= most ? part : thinned(part, most);
 }
 
 using MeshPtr = std::shared_ptr<const TriangleMesh>;
 
-/// A mesh that has copies, of as many triangles as that, or nearly.
+/// A mesh that has copies, as simplified() makes it.
 MeshPtr of_few_triangles(const MeshPtr& mesh, std::size_t most) {
     if (mesh->triangles.size() <= most) return mesh;
-    Part part = simplified(*mesh, most, Vec3(0, 0, 0));
+    Part part = simplified(*mesh, most);
     return std::make_shared<TriangleMesh>(TriangleMesh{std::move(part.positions), {}, {}, std::move(part.triangles)});
 }
 
 /// The mesh, with the colour that each position has on one of the triangles that meet there.
-Part coloured(const Shape& shape, const TriangleMesh& mesh, std::size_t most, const Scene& scene) {
-    Part part = simplified(mesh, most, scene.lower());
+Part coloured(const Shape& shape, const TriangleMesh& mesh, std::size_t most) {
+    Part part = simplified(mesh, most);
     TriangleMesh all; // triangles of what is left
     all.positions = part.positions;
     for (const Triangle& t : part.triangles) all.triangles.push_back({t[0], t[1], t[2]});
@@ -163,22 +182,23 @@ SurfaceMesh surface_mesh(const Scene& scene, std::size_t most) {
     out.of_scene = scene.triangle_count();
     const double share =
         std::min(1.0, static_cast<double>(most) / static_cast<double>(std::max<std::size_t>(1, out.of_scene)));
+    constexpr std::size_t kFew = 16; // triangles of a shape, which nobody needs to save where there are few shapes
+    const std::size_t least = std::clamp(most / std::max<std::size_t>(1, scene.shapes().size()), std::size_t{1}, kFew);
     std::map<MeshPtr, MeshPtr> simple; // those of copies
     for (const Shape& shape : scene.shapes()) {
         TriangleMesh made;
         const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
         if (const auto* sphere = std::get_if<Sphere>(&shape.geometry))
             mesh = &(made = tessellated(*sphere, static_cast<std::uint32_t>(around)));
-        constexpr double kFew = 16; // triangles, which nobody needs to save
         const double own = share * static_cast<double>((mesh != nullptr ? mesh : held_mesh(shape))->triangles.size());
-        const auto few = static_cast<std::size_t>(std::max(kFew, own));
+        const auto few = std::max(least, static_cast<std::size_t>(own));
         if (const auto* instance = std::get_if<MeshInstance>(&shape.geometry)) {
             MeshPtr& known = simple[instance->mesh];
             if (known == nullptr) known = of_few_triangles(instance->mesh, few);
             mesh = &(made = flattened({known, instance->to_world}));
         }
         if (mesh->triangles.empty()) continue;
-        Part part = coloured(shape, *mesh, few, scene);
+        Part part = coloured(shape, *mesh, few);
         if (shape.emission != nullptr) {
             part.colours.assign(part.positions.size(), colour_of(*shape.emission));
             emitters.add(part);

@@ -46,6 +46,12 @@ std::uint64_t content_hash(const TextureImage& image) {
     return hash.value();
 }
 
+std::shared_ptr<const TextureImage> read_with_hash(const std::string& path, ImagePart part) {
+    TextureImage image = read_image(path, part);
+    image.hash = content_hash(image); // once: scenes are asked for theirs several times
+    return std::make_shared<const TextureImage>(std::move(image));
+}
+
 } // namespace
 
 std::size_t TextureImage::bytes() const {
@@ -70,7 +76,7 @@ std::shared_ptr<const TextureImage> load_image(const std::string& path, ImagePar
     const std::lock_guard lock(cache().mutex);
     auto& entry = cache().images[key];
     auto image = entry.lock();
-    if (image == nullptr) entry = image = std::make_shared<const TextureImage>(read_image(path, part));
+    if (image == nullptr) entry = image = read_with_hash(path, part);
     return image;
 }
 
@@ -79,8 +85,7 @@ std::vector<LoadedImage> loaded_images() {
     const std::lock_guard lock(cache().mutex);
     for (const auto& [key, entry] : cache().images)
         if (const auto image = entry.lock())
-            list.push_back(
-                {key.first, image->width, image->height, image->channels, image->bytes(), content_hash(*image)});
+            list.push_back({key.first, image->width, image->height, image->channels, image->bytes(), image->hash});
     return list;
 }
 

@@ -25,6 +25,7 @@ struct TextureImage {
 
     int width = 0, height = 0, channels = 0;
     std::variant<Bytes, Words, Floats> texels;
+    std::uint64_t hash = 0; ///< of all that, set by load_image()
 
     /// Makes room for width * height * channels texels of a kind.
     template <class Texels> Texels& allocate(int w, int h, int n) {

@@ -112,16 +112,17 @@ bool is_worth_sharing(std::size_t triangles, std::size_t copies);
 /// A mesh for copies of an object.
 class SharedMesh {
   public:
-    /// `mesh` in the space of the object.
+    /// `mesh` in the space of the object. Triangles that are lines or points are dropped.
     explicit SharedMesh(TriangleMesh mesh);
     const TriangleMesh& mesh() const { return *mesh_; }
-    /// The mesh where it stands in a copy: an instance, or moved there where an instance would be too inexact or too
-    /// far away.
+    /// Whether it is an instance in a copy there, which would not be too inexact or too far away.
+    bool stands_as_instance(const ObjectToWorld& to_world) const;
+    /// The mesh where it stands in a copy: an instance, or moved there.
     Geometry placed(const std::shared_ptr<const ObjectToWorld>& to_world) const;
 
   private:
     std::shared_ptr<const TriangleMesh> mesh_;
-    double reach_ = 0; // the largest coordinate
+    double largest_ = 0; // coordinate
 };
 
 } // namespace keyhole

@@ -54,6 +54,7 @@ class Rewriter {
             }
         for (const char* owner : {"meshes", "nodes"})
             for (const Json& entry : list_of(root_, owner)) tell_of_targets(entry);
+        check_matrices();
         const std::size_t nodes = list_of(root_, "nodes").size(); // more are added behind them
         for (std::size_t i = 0; i < nodes; ++i) place_instances(i);
         if (!numbers_.empty()) add_buffer();
@@ -71,6 +72,21 @@ class Rewriter {
         Json& materials = list_of(root_, "materials");
         for (std::size_t i = 0; i < materials.size(); ++i)
             if (materials[i].is_object()) materials[i]["name"] = std::to_string(i);
+    }
+
+    /// Of nodes that have one. What isn't a matrix at all is refused where it is read.
+    void check_matrices() {
+        const Json& nodes = list_of(root_, "nodes");
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            const Json& matrix = nodes[i].is_object() ? member(nodes[i], "matrix") : none_;
+            if (matrix.size() != 16 || !std::ranges::all_of(matrix, &Json::is_number)) continue;
+            constexpr double kRounded = 1e-5;
+            const auto at = [&](std::size_t column) { return matrix[4 * column + 3].get<double>(); };
+            if (std::abs(at(0)) + std::abs(at(1)) + std::abs(at(2)) + std::abs(at(3) - 1) <= kRounded) continue;
+            document_.fail(fmt::format("found 'matrix' of the node {} with the last row {}, {}, {}, {}, expected "
+                                       "0, 0, 0, 1",
+                                       i, at(0), at(1), at(2), at(3)));
+        }
     }
 
     /// Targets without weights change nothing.

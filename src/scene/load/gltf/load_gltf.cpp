@@ -12,11 +12,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <set>
 
 namespace keyhole {
 namespace {
@@ -25,14 +25,37 @@ using gltf::Document;
 using gltf::Json;
 using gltf::MaterialData;
 
+Imath::Box3d box_of(const TriangleMesh& mesh) {
+    Imath::Box3d box;
+    for (const Vec3& p : mesh.positions) box.extendBy(Imath::V3d(p));
+    return box;
+}
+
+/// Holds everything. Of copies the boxes of their meshes, each found once.
+Imath::Box3d box_of(const std::vector<Shape>& shapes) {
+    Imath::Box3d box;
+    std::map<const TriangleMesh*, Imath::Box3d> meshes;
+    for (const Shape& shape : shapes) {
+        const TriangleMesh& mesh = *held_mesh(shape);
+        const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
+        if (instance == nullptr) {
+            box.extendBy(box_of(mesh));
+            continue;
+        }
+        const auto [known, fresh] = meshes.try_emplace(&mesh);
+        if (fresh) known->second = box_of(mesh);
+        const std::array corners{known->second.min, known->second.max};
+        for (unsigned i = 0; i < 8; ++i) {
+            const Vec3 corner(Imath::V3d(corners[i & 1].x, corners[i >> 1 & 1].y, corners[i >> 2].z));
+            box.extendBy(Imath::V3d(instance->to_world->point(corner)));
+        }
+    }
+    return box;
+}
+
 /// Looks at everything from above one corner.
 gltf::View view_of_all(const std::vector<Shape>& shapes) {
-    Imath::Box3d box;
-    for (const Shape& shape : shapes) {
-        const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
-        for (const Vec3& p : held_mesh(shape)->positions)
-            box.extendBy(Imath::V3d(instance != nullptr ? instance->to_world->point(p) : p));
-    }
+    const Imath::Box3d box = box_of(shapes);
     gltf::View view;
     view.window.width = 640;
     view.window.height = 480;
@@ -97,12 +120,18 @@ class SceneBuilder {
     void fill(Shape& shape, const std::shared_ptr<const Medium>& inside) {
         if (inside == nullptr) return;
         const auto* instance = std::get_if<MeshInstance>(&shape.geometry);
-        bool closed = instance != nullptr && closed_.contains(instance->mesh);
-        if (!closed) closed = is_closed(*held_mesh(shape));
-        if (closed && instance != nullptr) closed_.insert(instance->mesh);
+        bool closed = false, told = false;
+        if (instance != nullptr) {
+            const auto [known, fresh] = closed_.try_emplace(instance->mesh);
+            if (fresh) known->second = is_closed(*instance->mesh);
+            closed = known->second;
+            told = !fresh;
+        } else {
+            closed = is_closed(std::get<TriangleMesh>(shape.geometry));
+        }
         if (closed)
             shape.inside = inside;
-        else
+        else if (!told)
             document_.warn(fmt::format("the mesh '{}' isn't closed: nothing in its glass of the material '{}' absorbs",
                                        shape.name, shape.material_name));
     }
@@ -145,8 +174,8 @@ class SceneBuilder {
     Warnings warnings_;
     Document document_;
     std::map<std::size_t, MaterialData> materials_;
-    std::size_t emitting_ = 0;                             ///< triangles, of each copy
-    std::set<std::shared_ptr<const TriangleMesh>> closed_; ///< of those that have copies
+    std::size_t emitting_ = 0;                                   ///< triangles, of each copy
+    std::map<std::shared_ptr<const TriangleMesh>, bool> closed_; ///< of those that have copies
 };
 
 /// What `read` makes of a file.

@@ -8,17 +8,9 @@
 namespace keyhole {
 namespace {
 
-Imath::V3d row(const Transform& t, int i) { return {t[i][0], t[i][1], t[i][2]}; }
-
-double determinant3(const Transform& t) { return row(t, 0).dot(row(t, 1).cross(row(t, 2))); }
-
-void reverse_winding(TriangleMesh& mesh) {
-    for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
-}
-
 /// Whether `t` scales all directions by the same factor.
 bool is_uniform(const Transform& t) {
-    const Imath::V3d x = row(t, 0), y = row(t, 1), z = row(t, 2);
+    const Imath::V3d x = row_of(t, 0), y = row_of(t, 1), z = row_of(t, 2);
     const double s = x.length2(), tolerance = 1e-6 * s;
     return std::abs(y.length2() - s) < tolerance && std::abs(z.length2() - s) < tolerance &&
            std::abs(x.dot(y)) < tolerance && std::abs(y.dot(z)) < tolerance && std::abs(z.dot(x)) < tolerance;
@@ -27,15 +19,15 @@ bool is_uniform(const Transform& t) {
 } // namespace
 
 double regularity(const Transform& t) {
-    const double product = row(t, 0).length() * row(t, 1).length() * row(t, 2).length();
-    return product > 0 ? std::abs(determinant3(t)) / product : 0.0;
+    const double product = row_of(t, 0).length() * row_of(t, 1).length() * row_of(t, 2).length();
+    return product > 0 ? std::abs(linear_determinant(t)) / product : 0.0;
 }
 
 void transform_geometry(Geometry& geometry, const Transform& t) {
     if (const auto* sphere = std::get_if<Sphere>(&geometry)) {
         if (is_uniform(t)) {
             geometry = Sphere{Vec3(Imath::V3d(sphere->center) * t),
-                              static_cast<float>(sphere->radius * row(t, 0).length()), sphere->inward};
+                              static_cast<float>(sphere->radius * row_of(t, 0).length()), sphere->inward};
             return;
         }
         const bool inward = sphere->inward;

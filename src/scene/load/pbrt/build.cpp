@@ -103,8 +103,8 @@ class Builder {
     }
 
     std::vector<Shape> place() {
-        check_limits();
         share_meshes();
+        check_limits();
         std::vector<std::vector<Shape>> made(placements_.size());
         parallel_attempt(placements_.size(), mistakes_, [&](std::size_t i) { made[i] = place(i); });
         if (!mistakes_.empty()) return {};
@@ -122,10 +122,13 @@ class Builder {
     void check_limits() const {
         std::size_t triangles = 0, shapes = 0;
         std::vector<bool> held(records_.size(), false);
-        for (const Placement& p : placements_) {
-            const ShapeRecord& r = records_[p.record];
-            if (!held[p.record]) triangles += triangles_of(r);
-            held[p.record] = is_shared(p.record);
+        for (std::size_t i = 0; i < placements_.size(); ++i) {
+            const std::size_t record = placements_[i].record;
+            const ShapeRecord& r = records_[record];
+            const std::optional<SharedMesh>& shared = shared_[record];
+            const bool instance = shared && shared->stands_as_instance(*copies_[i]);
+            if (!instance || !held[record]) triangles += shared ? shared->mesh().triangles.size() : triangles_of(r);
+            held[record] = held[record] || instance;
             if (++shapes > kMaxShapes || triangles > kMaxTriangles)
                 r.directive.fail(fmt::format("found more than {} shapes or {} triangles, expected fewer", kMaxShapes,
                                              kMaxTriangles));
@@ -150,11 +153,14 @@ class Builder {
             Geometry geometry = put(record, std::move(record.source.geometry), to_object);
             shared_[i].emplace(std::move(std::get<TriangleMesh>(geometry)));
         });
+        std::shared_ptr<const ObjectToWorld> last;
+        std::size_t copy = 0; // that it is of
         for (const Placement& p : placements_) {
-            const bool known = p.copy > 0 && !copies_.empty() && p.copy == placements_[copies_.size() - 1].copy;
-            copies_.push_back(known        ? copies_.back()
-                              : p.copy > 0 ? std::make_shared<const ObjectToWorld>(p.to_world)
-                                           : nullptr);
+            if (shared_[p.record] && p.copy != copy) {
+                last = std::make_shared<const ObjectToWorld>(p.to_world);
+                copy = p.copy;
+            }
+            copies_.push_back(shared_[p.record] ? last : nullptr);
         }
     }
 
@@ -240,7 +246,8 @@ class Builder {
     Mistakes& mistakes_;
     std::vector<std::size_t> uses_;
     std::vector<std::optional<SharedMesh>> shared_;            ///< by record
-    std::vector<std::shared_ptr<const ObjectToWorld>> copies_; ///< by placement: the same one within a copy
+    std::vector<std::shared_ptr<const ObjectToWorld>> copies_; ///< by placement: the same one within a copy; of no
+                                                               ///< shared mesh null
 };
 
 bool same_opacity(const FloatTexture& a, const FloatTexture& b) {

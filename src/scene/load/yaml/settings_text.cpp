@@ -78,23 +78,21 @@ struct Setter {
         if (!matches(name)) return;
         const auto x = parse_whole(value);
         if (!x || *x < minimum || *x > maximum)
-            return refuse(fmt::format("expected a whole number from {} to {}",
-                                      bound_text(minimum, minimum >= kLeastMemory),
-                                      bound_text(maximum, minimum >= kLeastMemory)));
+            return refuse("expected a whole number from " + bounds_text(minimum, maximum));
         member = static_cast<T>(*x);
     }
     void operator()(const char* name, double& member, double minimum, double maximum, const char*) {
         if (!matches(name)) return;
         const auto x = parse_all<double>(value);
         if (!x || !(*x >= minimum && *x <= maximum))
-            return refuse(fmt::format("expected a number from {} to {}", minimum, maximum));
+            return refuse("expected a number from " + bounds_text(minimum, maximum));
         member = *x;
     }
     void operator()(const char* name, AutoNumber& member, double minimum, double maximum, const char*) {
         if (!matches(name)) return;
         const auto x = value == "auto" ? std::nullopt : parse_all<double>(value);
         if (value != "auto" && (!x || !(*x >= minimum && *x <= maximum)))
-            return refuse(fmt::format("expected a number from {} to {}, or auto", minimum, maximum));
+            return refuse(fmt::format("expected a number from {}, or auto", bounds_text(minimum, maximum)));
         member.value = x;
     }
     template <Choice E> void operator()(const char* name, E& member, const char*) {
@@ -132,6 +130,13 @@ std::string new_name(const std::string& key) {
 }
 
 } // namespace
+
+std::string bounds_text(std::int64_t minimum, std::int64_t maximum) {
+    const bool of_memory = minimum >= kLeastMemory;
+    return fmt::format("{} to {}", bound_text(minimum, of_memory), bound_text(maximum, of_memory));
+}
+
+std::string bounds_text(double minimum, double maximum) { return fmt::format("{} to {}", minimum, maximum); }
 
 std::optional<SettingError> set_setting(Settings& settings, const std::string& key, const std::string& value,
                                         std::string* warning) {

@@ -3,11 +3,16 @@
 
 #include "core/settings.h"
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace keyhole {
+
+/// The bounds of a setting, "1 to 126", as one would write them: those of memory in KiB, MiB or GiB.
+std::string bounds_text(std::int64_t minimum, std::int64_t maximum);
+std::string bounds_text(double minimum, double maximum);
 
 /// Why a setting was refused.
 struct SettingError {

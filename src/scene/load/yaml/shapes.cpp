@@ -79,6 +79,12 @@ Geometry read_mesh(const YamlNode& node, MeshCache& meshes) {
 const std::map<std::string_view, PrimitiveReader> kPrimitives{
     {"rectangle", read_rectangle}, {"box", read_box}, {"sphere", read_sphere}, {"mesh", read_mesh}};
 
+/// Takes what stands in the map of a shape to its place.
+void place_geometry(Geometry& geometry, const YamlNode& node, const Transform& to) {
+    transform_geometry(geometry, to);
+    if (MapReader(node, "a shape").boolean("flip", false)) flip(geometry);
+}
+
 } // namespace
 
 void ShapeReader::read_groups(const YamlNode& section) {
@@ -139,16 +145,15 @@ void ShapeReader::read_shape(const YamlNode& node, const Placement& placement) {
         shape.geometry = group->shared->placed(own.copy);
     } else {
         if (held) shape.geometry = kPrimitives.at(type)(node, meshes_);
-        transform_geometry(shape.geometry, own.to_world);
-        if (map.boolean("flip", false)) flip(shape.geometry);
+        place_geometry(shape.geometry, node, own.to_world);
     }
-    const bool is_copy = std::holds_alternative<MeshInstance>(shape.geometry); // which has an area, and emits nothing
-    const double area = is_copy ? 1 : surface_area(shape);
+    const bool is_copy = std::holds_alternative<MeshInstance>(shape.geometry);
     if (!is_copy && !has_bounded_positions(shape.geometry))
         fail(node, "found a shape too large or too far, expected it within 1e13");
     if (type == "mesh" && !has_area(shape.geometry))
         return warnings_.add_flat_mesh(node.position(), fmt::format("mesh '{}'", map.at("file").text));
-    if (!(area > 0)) fail(node, "found a shape without area, expected one that can be seen");
+    const double area = is_copy ? 0 : surface_area(shape); // no copy emits
+    if (!is_copy && !(area > 0)) fail(node, "found a shape without area, expected one that can be seen");
 
     const YamlNode* emission = map.find("emission");
     if (emission != nullptr) shape.emission = read_emission(*emission, area);
@@ -188,11 +193,14 @@ void ShapeReader::add_copy(GroupMesh& mesh, const YamlNode& node, const Placemen
     const std::size_t triangles = triangle_count(shapes_.back()), copies = mesh.copies.size();
     if (!is_worth_sharing(triangles, copies)) return;
     Geometry geometry = kPrimitives.at("mesh")(node, meshes_);
-    transform_geometry(geometry, mesh.to_object);
-    if (MapReader(node, "a shape").boolean("flip", false)) flip(geometry);
+    place_geometry(geometry, node, mesh.to_object);
     mesh.shared.emplace(std::move(std::get<TriangleMesh>(geometry)));
-    for (const GroupMesh::Copy& copy : mesh.copies) shapes_[copy.shape].geometry = mesh.shared->placed(copy.to_world);
-    triangles_ -= (copies - 1) * triangles;
+    triangles_ += mesh.shared->mesh().triangles.size();
+    for (const GroupMesh::Copy& copy : mesh.copies) {
+        if (!mesh.shared->stands_as_instance(*copy.to_world)) continue; // it stays as it is
+        shapes_[copy.shape].geometry = mesh.shared->placed(copy.to_world);
+        triangles_ -= triangles;
+    }
     mesh.copies.clear();
 }
 
