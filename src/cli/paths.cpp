@@ -205,8 +205,14 @@ int suggest(const SuggestCommand& o) {
         find_openings(scene, ends, {.max_scatterings = first.max_scatterings, .seed = first.seed}, {}).paths;
     // An opening says all that is to be said of light that has to pass it.
     if (file.paths.empty()) file = suggest_user_paths(scene, first, o.options);
-    if (file.paths.empty())
-        throw InputError(o.scene + ": found no path that carries light to the eye; try -D brightness_samples=...");
+    if (file.paths.empty()) {
+        const bool sky_alone = std::ranges::all_of(
+            scene.emitters(), [](const auto& emitter) { return emitter->site() == Site::infinite; });
+        throw InputError(o.scene + (sky_alone ? ": found light from infinitely far away alone, expected emitters in "
+                                                "the scene, at which user paths can begin"
+                                              : ": found no path that carries light to the eye; try "
+                                                "-D brightness_samples=..."));
+    }
     const std::string text =
         user_paths_text(file, "User paths for " + o.scene + ", suggested by keyhole paths suggest");
     if (o.output.empty())

@@ -241,11 +241,23 @@ LoadedScene load_for(const RenderOptions& options, std::vector<std::string>& war
     return loaded;
 }
 
+/// Noise of samples, relative to the picture, from which on hardly a pixel says what its light is.
+constexpr double kMostNoise = 1;
+
+void report_noise(RenderResult& result) {
+    const Method& method = *result.settings.method;
+    if (!method.samples_pixels && !method.keeps_photons) return; // of chains there may be no halves
+    const auto noise = sample_noise(result.picture);
+    if (!noise) return;
+    result.stats.values["noise of samples"] = *noise;
+    if (*noise > kMostNoise)
+        result.stats.warn(Doubt::samples, fmt::format("pixels are known to {} only (standard error): try more spp or "
+                                                      "time, or another method",
+                                                      percent(*noise)));
+}
+
 /// Filters the picture, and writes what the options ask for.
 void write(RenderResult& result, const RenderOptions& options, const StopToken& stop) {
-    const Method& method = *result.settings.method;
-    if (method.samples_pixels || method.keeps_photons) // of chains there may be no halves
-        if (const auto noise = sample_noise(result.picture)) result.stats.values["noise of samples"] = *noise;
     result.picture.metadata.merge(picture_metadata(options.command_line, options.scene, result.stats));
     const int width = result.picture.width, height = result.picture.height;
     options.outputs.write(
@@ -291,6 +303,7 @@ int run(RenderOptions options) {
     RenderResult result = render_scene(loaded, options, load_warnings, stop);
     if (!options.writes()) return stop.requested() ? kInterrupted : kSuccess;
     result.stats.warnings.insert(result.stats.warnings.begin(), load_warnings.begin(), load_warnings.end());
+    if (has_picture(result)) report_noise(result);
     if (!options.quiet) print_warnings(result.stats);
     if (!has_picture(result)) {
         if (!stop.requested() && options.checkpoints.asked())

@@ -183,7 +183,8 @@ Picture Work::finish(RenderStats& stats) {
         stats.warnings.push_back(
             passes() < kLeastPasses
                 ? fmt::format(
-                      "found {} pass{}, expected {} at least: fewer don't tell whether the relative error is {}",
+                      "found {} pass{}, expected {} at least: fewer don't tell whether the relative error is {}; a "
+                      "smaller spp makes passes shorter",
                       passes(), passes() == 1 ? "" : "es", kLeastPasses, percent(settings_.target_error))
                 : fmt::format("the relative error is {} after {} passes, not {} as was asked for",
                               knows_error_ ? percent(error_.relative()) : "unknown", passes(),

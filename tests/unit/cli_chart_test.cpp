@@ -96,6 +96,21 @@ TEST_F(Program, AChartMakesItsReferenceByWhatHasTheTime) {
     EXPECT_THAT(read("err"), Not(HasSubstr("no reference by path: ")));
 }
 
+TEST_F(Program, SaysThatPixelsAreNoiseAlone) {
+    const std::string hard = "render " KEYHOLE_SOURCE_DIR "/scenes/failures/keyhole.yaml --resolution 24x16 --no-png ";
+    EXPECT_EQ(run(hard + "--method path --spp 2 -o a.exr --strict"), 3) << read("err");
+    EXPECT_THAT(read("err"), HasSubstr("pixels are known to "));
+    ASSERT_EQ(run("render scene.yaml --no-png --spp 16 -o b.exr"), 0);
+    EXPECT_THAT(read("err"), testing::Not(HasSubstr("pixels are known to ")));
+}
+
+TEST_F(Program, SuggestsNoPathsFromTheSky) {
+    scratch.write("sky.yaml", "camera: {from: [0, 0, 3], to: [0, 0, 0]}\nmaterials: {white: {type: diffuse}}\n"
+                              "shapes: [{type: sphere, material: white}]\nemitters: [{type: environment}]\n");
+    EXPECT_EQ(run("paths suggest sky.yaml"), 2);
+    EXPECT_THAT(read("err"), HasSubstr("sky.yaml: found light from infinitely far away alone, expected emitters"));
+}
+
 TEST_F(Program, PlanTellsWhatIsLeftOutAndWhy) {
     ASSERT_EQ(run("plan scene.yaml --json -D method=ipm -D light_paths=20k"), 0) << read("err");
     const auto plan = nlohmann::json::parse(read("out"));

@@ -224,6 +224,7 @@ TEST_F(LongRender, ATargetThatIsMissedIsAWarning) {
     }
     EXPECT_EQ(run("render scene.yaml --no-png -o a.exr --target-error 0.9 --passes 2"), 0);
     EXPECT_THAT(read("err"), HasSubstr("found 2 passes, expected 4 at least: fewer don't tell"));
+    EXPECT_THAT(read("err"), HasSubstr("; a smaller spp makes passes shorter"));
     for (const char* error : {"0", "-1", "nan", "2", "x"}) {
         EXPECT_EQ(run("render scene.yaml -o b.exr --target-error " + std::string(error)), 2) << error;
         EXPECT_THAT(read("err"), HasSubstr("expected a relative error above 0")) << error;

@@ -22,7 +22,7 @@ namespace {
 /// Of the whole time, at most; and so many seconds with a smaller share of longer times.
 constexpr double kMost = 0.08, kSeconds = 0.4, kShare = 0.03;
 /// After that share of it, by photons' fault, no other method is tried.
-constexpr double kMostWithPhotons = 0.22;
+constexpr double kMostWithPhotons = 0.18;
 /// In less time than that a trial shows nothing; of the whole time, what is spent to have it.
 constexpr double kLeastSeconds = 0.3, kMostForLeast = 0.15;
 /// Of the whole time, what the survey that methods with photons start with may take.
