@@ -53,9 +53,12 @@ class PixelSampling {
     };
     /// The pixel of each kStep x kStep whose turn comes n-th: neighbours far apart, as in ordered dithering.
     static std::pair<int, int> pixel_of_turn(std::int64_t n);
-    /// In a tile, pixels (x, y) + (step i, step j).
+    /// Pixels (x, y) + (step i, step j) of a tile.
+    struct PixelsOfTile {
+        int x, y, step;
+    };
     template <class Sample>
-    Part sample_pixels(Film& film, int x, int y, int step, std::int64_t round, const RunContext& context,
+    Part sample_pixels(Film& film, const PixelsOfTile& some, std::int64_t round, const RunContext& context,
                        const Sample& sample);
     template <class Sample>
     void sample_pixel(Film& film, int x, int y, std::int64_t round, Part& part, const Sample& sample);
@@ -93,7 +96,7 @@ bool PixelSampling::take_round(Film& film, std::int64_t round, const RunContext&
         const auto [right, below] = pixel_of_turn(i / tiles);
         const int x = static_cast<int>(i % tiles % across) * kTile, y = static_cast<int>(i % tiles / across) * kTile;
         parts[static_cast<std::size_t>(i)] =
-            sample_pixels(film, x + right, y + below, turns > 1 ? kStep : 1, round, context, sample);
+            sample_pixels(film, {x + right, y + below, turns > 1 ? kStep : 1}, round, context, sample);
     });
     samples_ = 0;
     for (const Part& p : parts) {
@@ -105,9 +108,10 @@ bool PixelSampling::take_round(Film& film, std::int64_t round, const RunContext&
 }
 
 template <class Sample>
-PixelSampling::Part PixelSampling::sample_pixels(Film& film, int x, int y, int step, std::int64_t round,
+PixelSampling::Part PixelSampling::sample_pixels(Film& film, const PixelsOfTile& some, std::int64_t round,
                                                  const RunContext& context, const Sample& sample) {
     const ImageWindow& window = scene_.camera().window();
+    const auto& [x, y, step] = some;
     const int right = std::min((x / kTile + 1) * kTile, window.width),
               bottom = std::min((y / kTile + 1) * kTile, window.height);
     Part part;
