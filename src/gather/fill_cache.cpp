@@ -20,7 +20,7 @@ constexpr std::size_t kBatch = 64;  // records computed at once
 constexpr std::size_t kAhead = 256; // pixels whose points are found at once
 constexpr float kCovered = 0.1f;    // share below which a point needs a record of its own
 constexpr float kLift = 0.1f;       // height at which places look at each other, over their distance
-constexpr double kLeastWorth = 32;  // rays, fewer of which are no record
+constexpr double kLeastWorth = 40;  // rays, fewer of which are no record
 constexpr double kFirst = 0.5;      // share of rays that each record gets alike
 constexpr int kLeastMore = 8;       // fewer rays are not worth a hemisphere
 constexpr std::array kSteps{kCoarsest, kCoarsest / 2, kCoarsest / 4, kCoarsest / 8, 1, 1};

@@ -18,7 +18,7 @@ constexpr double kLeastRays = 64;
 constexpr double kLeastForPhotons = 0.15, kMostMorePhotons = 8;
 /// Records overlap, and each serves pixels on all sides of it: so many times across as are between two of its level.
 /// Half and double make no difference beyond noise.
-constexpr double kServed = 4;
+constexpr double kServed = 3;
 /// Of the samples of pixels that effort gives.
 constexpr double kLeastSamples = 0.5;
 
