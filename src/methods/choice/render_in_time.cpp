@@ -7,6 +7,7 @@
 #include "methods/choice/first_look.h"
 #include "methods/choice/mean_render.h"
 #include "methods/choice/method_trials.h"
+#include "methods/choice/stage_balance.h"
 #include "methods/learned_direct_light_scope.h"
 #include "methods/method.h"
 #include "methods/render_paths.h"
