@@ -234,6 +234,18 @@ TEST(Denoise_OfALampSmallerThanAPixel, LeavesItInItsPixel) {
     for (int x = 10; x < 30; ++x) EXPECT_NEAR(filtered.at(x, 30)[0] / reference.at(x, 30)[0], 1, x == 20 ? 1 : 0.05);
 }
 
+// Of an even sky no two samples differ, however many there are.
+TEST(Denoise_OfAHoleInARoof, LeavesTheSkyInIt) {
+    const auto hole = [](int x, int y) {
+        if (x != 20 || y != 30) return walls(0, y);
+        PixelSample s;
+        s.direct = Rgb(1e4);
+        return s;
+    };
+    const auto noise = [](const Rgb& light, Rng& rng) { return light.x > 1 ? 1 : 0.9 + 0.2 * rng.next(); };
+    EXPECT_NEAR(denoise(rendered(hole, noise, 16))->at(20, 30)[0], 1e4, 1);
+}
+
 // What one sample in thousands finds, and no other near it, is left out: spread, it would be discs, and the error 7
 // times as large. It comes back with the samples: what both halves have stays.
 TEST(Denoise_OfSamplesThatNoOtherConfirms, LeavesNeitherDotsNorDiscs) {

@@ -33,10 +33,12 @@ constexpr int kReachOfNoise = 2, kReachOfJudgement = 3;
 /// And over which that of a pixel of one sample is: of its neighbours, one in sixteen may have another.
 constexpr int kReachOfSingle = 6;
 
-/// Pixels that have one sample: no half differs from the other in any layer. So have those of an even background, where
-/// it makes no difference.
+/// Pixels that have one sample: something is seen there, and in no layer does a half differ from the other. Two samples
+/// meet no surface at the same distance; where nothing is seen, an even background has no noise.
 std::vector<bool> pixels_of_one_sample(const Picture& picture) {
-    std::vector<bool> single(static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height), true);
+    const std::vector<float>& depth = picture.layers.at("depth").data;
+    std::vector<bool> single(depth.size());
+    std::transform(depth.begin(), depth.end(), single.begin(), [](float z) { return z > 0; });
     for (const auto& [name, image] : picture.layers) {
         if (!name.starts_with(noise_layer({}))) continue;
         for (std::size_t i = 0; i < image.data.size(); ++i)
@@ -48,10 +50,12 @@ std::vector<bool> pixels_of_one_sample(const Picture& picture) {
 /// The sum of some layers of three channels, and of their noise.
 struct FilterPart {
     Image mean, noise;
-    std::vector<bool> single; ///< by pixel: of one sample
+    const std::vector<bool>& single; ///< by pixel: of one sample
 
-    FilterPart(const Picture& picture, std::initializer_list<const char*> layers)
-        : mean(picture.width, picture.height, 3), noise(mean), single(pixels_of_one_sample(picture)) {
+    /// `of_one_sample` must outlive it.
+    FilterPart(const Picture& picture, std::initializer_list<const char*> layers,
+               const std::vector<bool>& of_one_sample)
+        : mean(picture.width, picture.height, 3), noise(mean), single(of_one_sample) {
         for (const std::string layer : layers) {
             add(picture.layers.at(layer), mean);
             add(picture.layers.at(noise_layer(layer)), noise);
@@ -268,8 +272,9 @@ std::optional<Image> denoise(const Picture& picture, int reach, const StopToken*
     for (const std::string layer : {"direct", "indirect", "caustic", "albedo", "normal", "depth"})
         if (!picture.layers.contains(layer) || !picture.layers.contains(noise_layer(layer))) return std::nullopt;
     const FilterGuides guides(picture, reach + kPatch);
-    Image sum = filtered(FilterPart(picture, {"direct"}), guides, reach, stop);
-    const Image rest = filtered(FilterPart(picture, {"indirect", "caustic"}), guides, reach, stop);
+    const std::vector<bool> single = pixels_of_one_sample(picture);
+    Image sum = filtered(FilterPart(picture, {"direct"}, single), guides, reach, stop);
+    const Image rest = filtered(FilterPart(picture, {"indirect", "caustic"}, single), guides, reach, stop);
     if (stop != nullptr && stop->requested()) return std::nullopt;
     std::ranges::transform(sum.data, rest.data, sum.data.begin(),
                            [](float a, float b) { return std::max(0.0f, a + b); });
