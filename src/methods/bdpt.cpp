@@ -76,11 +76,9 @@ RenderResult render_bdpt(const RenderTask& task) {
         const StageClock clock(result.stats, kBidirectionalTracing);
         const SamplingStage stage(scene, work.left(), "bidirectional path tracing", context);
         const auto depth = static_cast<int>(settings.max_depth);
-        const RunContext first = context.first_round();
         while (const auto round = work.take(context)) {
-            const RunContext& until = *round == 0 ? first : context;
             const bool whole =
-                pixels.take_round(*work.unit().film, *round, until, [&](const Vec2& image, SampleSource& source) {
+                pixels.take_round(*work.unit().film, *round, context, [&](const Vec2& image, SampleSource& source) {
                     return sample_pixel(scene, image, depth, settings.mis, splats, source);
                 });
             // Of later rounds that are cut short the eye's samples are enough.

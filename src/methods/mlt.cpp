@@ -51,12 +51,11 @@ bool sample_direct(const Scene& scene, const Settings& settings, const PathSet& 
     const auto depth = static_cast<int>(settings.max_depth);
     const SamplingStage stage(scene, rounds.size(), "direct light", context);
     for (std::int64_t round = rounds.begin; round < rounds.end; ++round)
-        if (!pixels.take_round(film, round, round == 0 ? context.first_round() : context,
-                               [&](const Vec2& image, SampleSource& source) {
-                                   PixelSink sink{&chains};
-                                   trace_path(scene, image, depth, source, sink);
-                                   return sink.pixel;
-                               }))
+        if (!pixels.take_round(film, round, context, [&](const Vec2& image, SampleSource& source) {
+                PixelSink sink{&chains};
+                trace_path(scene, image, depth, source, sink);
+                return sink.pixel;
+            }))
             return false;
     return true;
 }

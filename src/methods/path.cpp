@@ -23,12 +23,11 @@ RenderResult render_path(const RenderTask& task) {
         const auto depth = static_cast<int>(settings.max_depth);
         while (const auto round = work.take(context)) {
             const bool whole =
-                pixels.take_round(*work.unit().film, *round, *round == 0 ? context.first_round() : context,
-                                  [&](const Vec2& image, SampleSource& source) {
-                                      PixelSink sink{};
-                                      trace_path(scene, image, depth, source, sink);
-                                      return sink.pixel;
-                                  });
+                pixels.take_round(*work.unit().film, *round, context, [&](const Vec2& image, SampleSource& source) {
+                    PixelSink sink{};
+                    trace_path(scene, image, depth, source, sink);
+                    return sink.pixel;
+                });
             if (whole) work.end_unit(result.stats);
         }
     }

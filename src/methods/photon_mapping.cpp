@@ -158,9 +158,10 @@ class Passes {
         const StageClock clock(stats_, stages::gather);
         const SamplingStage stage(c_.scene, c_.settings.spp, "gather", context);
         while (next_ && work_.pass_of(*next_) == pass) {
-            const bool whole = pixels_.take_round(
-                *work_.unit().film, *next_, *next_ == 0 ? context.first_round() : context,
-                [&](const Vec2& image, SampleSource& source) { return gather.sample(image, source); });
+            const bool whole =
+                pixels_.take_round(*work_.unit().film, *next_, context, [&](const Vec2& image, SampleSource& source) {
+                    return gather.sample(image, source);
+                });
             if (!whole || for_show) {
                 next_.reset();
                 return false;

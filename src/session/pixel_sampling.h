@@ -35,6 +35,7 @@ class PixelSampling {
     /// Takes a round, of one sample of every pixel, or of one on average once the sampling density is known:
     /// sample(window point, random source) -> PixelSample. Returns whether it got round before a stop. Rounds of an
     /// adaptive render have to be taken one after the other, from 0.
+    /// Of `context`, whole_round is for round 0.
     template <class Sample> bool take_round(Film& film, std::int64_t round, const RunContext& context, Sample&& sample);
 
     /// Of the picture [W/(m^2 sr)], as all samples tell it.
@@ -45,8 +46,8 @@ class PixelSampling {
     double samples_per_pixel() const { return static_cast<double>(samples_) / static_cast<double>(pixels_); }
 
   private:
-    static constexpr int kTile = 16;
-    static constexpr int kStep = 4; // pixels
+    static constexpr int kTile = 16, kStep = 4; // pixels
+    /// What some pixels showed.
     struct Part {
         RunningStats luminance;
         std::int64_t samples = 0;
@@ -79,7 +80,8 @@ class PixelSampling {
 };
 
 template <class Sample>
-bool PixelSampling::take_round(Film& film, std::int64_t round, const RunContext& context, Sample&& sample) {
+bool PixelSampling::take_round(Film& film, std::int64_t round, const RunContext& limit, Sample&& sample) {
+    const RunContext context = round == 0 ? limit.first_round() : limit;
     const ImageWindow& window = scene_.camera().window();
     const int across = (window.width + kTile - 1) / kTile, down = (window.height + kTile - 1) / kTile;
     if (round == 0) at_begin_ = context.seconds_left();

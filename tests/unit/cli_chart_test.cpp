@@ -96,6 +96,15 @@ TEST_F(Program, AChartMakesItsReferenceByWhatHasTheTime) {
     EXPECT_THAT(read("err"), Not(HasSubstr("no reference by path: ")));
 }
 
+/// Too little time for it, however fast the machine: half a million paths.
+TEST_F(Program, EveryPixelGetsASampleByBidirectionalPathTracing) {
+    ASSERT_EQ(run("render " KEYHOLE_SOURCE_DIR "/scenes/box.yaml --resolution 800x600 --method bdpt --cpu-time 0.1 -q "
+                  "--no-png --denoise off -o a.exr --stats s.json"),
+              0)
+        << read("err");
+    EXPECT_EQ(nlohmann::json::parse(read("s.json"))["values"]["empty pixels"], 0);
+}
+
 TEST_F(Program, SaysThatPixelsAreNoiseAlone) {
     const std::string hard = "render " KEYHOLE_SOURCE_DIR "/scenes/failures/keyhole.yaml --resolution 24x16 --no-png ";
     EXPECT_EQ(run(hard + "--method path --spp 16 -o a.exr --strict"), 3) << read("err");

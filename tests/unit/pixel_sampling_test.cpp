@@ -1,6 +1,7 @@
 // The loop over pixels: numbers of samples, their streams, and what an adaptive render makes of them.
 #include "session/pixel_sampling.h"
 
+#include "core/parallel.h"
 #include "methods/method.h"
 #include "methods/render.h"
 #include "support/test_scenes.h"
@@ -42,6 +43,39 @@ PixelSample of_light(double light) {
     PixelSample s{};
     s.direct = Rgb(light, light, light);
     return s;
+}
+
+/// Of how many pixels of a quarter the halves differ in depth, which no two samples have alike: those of two samples.
+double share_of_two(const Picture& picture, int right, int below) {
+    const Image& noise = picture.layers.at("noise.depth");
+    int two = 0;
+    for (int y = 0; y < noise.height / 2; ++y)
+        for (int x = 0; x < noise.width / 2; ++x)
+            two += *noise.at(x + right * noise.width / 2, y + below * noise.height / 2) != 0 ? 1 : 0;
+    return two / (noise.width / 2.0 * (noise.height / 2.0));
+}
+
+TEST(PixelSampling, ARoundThatIsCutShortLiesEverywhere) {
+    for (const double cut : {0.25, 0.5, 1.0}) {
+        MadeUp render(Settings{});
+        StopToken stop;
+        RunContext context;
+        context.stop = &stop;
+        int left = static_cast<int>(render.window.size() * (1 + cut));
+        const auto sample = [&](const Vec2& /*image*/, SampleSource& source) {
+            if (--left <= 0 && cut < 1) stop.request();
+            PixelSample s{};
+            s.depth = 1 + source.next();
+            return s;
+        };
+        with_threads(1, [&] {
+            EXPECT_TRUE(render.pixels.take_round(render.film, 0, context, sample));
+            EXPECT_EQ(render.pixels.take_round(render.film, 1, context, sample), cut == 1);
+        });
+        const Picture picture = render.film.to_picture();
+        for (const int quarter : {0, 1, 2, 3})
+            EXPECT_NEAR(share_of_two(picture, quarter % 2, quarter / 2), cut, cut < 1 ? 0.1 : 0) << quarter;
+    }
 }
 
 /// Half of the picture is noisy, by rare bright samples; the mean of a pixel is 1 everywhere.
