@@ -51,6 +51,12 @@ Shape instance_of(const std::shared_ptr<const TriangleMesh>& mesh, const std::sh
     return {.geometry = MeshInstance{mesh, to_world}, .material = std::move(material), .emission = nullptr};
 }
 
+std::unique_ptr<Scene> scene_of(std::vector<Shape> shapes) {
+    SceneDescription d;
+    d.shapes = std::move(shapes);
+    return std::make_unique<Scene>(std::move(d));
+}
+
 std::vector<Shape> without_instances(const std::vector<Shape>& shapes) {
     std::vector<Shape> all;
     for (const Shape& s : shapes) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace keyhole::test {
 
@@ -22,6 +23,9 @@ Imath::M44d moved(const Imath::M44d& transform, double scale, const Imath::V3d& 
 /// A shape that stands there as an instance.
 Shape instance_of(const std::shared_ptr<const TriangleMesh>& mesh, const std::shared_ptr<const ObjectToWorld>& to_world,
                   std::shared_ptr<const Material> material);
+
+/// Of nothing but these.
+std::unique_ptr<Scene> scene_of(std::vector<Shape> shapes);
 
 /// The same shapes with meshes in the place of their instances.
 std::vector<Shape> without_instances(const std::vector<Shape>& shapes);

@@ -15,6 +15,7 @@ using test::dented_ball;
 using test::instance_of;
 using test::moved;
 using test::random_transform;
+using test::scene_of;
 
 /// A ball about `at`, where its object has it at `in_object`.
 Shape ball_at(const Vec3& at, const Vec3& in_object, const Imath::M44d& linear = {}) {
@@ -23,12 +24,6 @@ Shape ball_at(const Vec3& at, const Vec3& in_object, const Imath::M44d& linear =
     const Imath::V3d origin = Imath::V3d(at) - Imath::V3d(in_object) * linear;
     return instance_of(std::make_shared<const TriangleMesh>(std::move(mesh)),
                        std::make_shared<const ObjectToWorld>(moved(linear, 1, origin)), make_diffuse(Rgb(0.5)));
-}
-
-std::unique_ptr<Scene> scene_of(std::vector<Shape> shapes) {
-    SceneDescription d;
-    d.shapes = std::move(shapes);
-    return std::make_unique<Scene>(std::move(d));
 }
 
 TEST(RoundingOfInstances, IsBounded) {

@@ -25,6 +25,7 @@ using test::dented_ball;
 using test::instance_of;
 using test::moved;
 using test::random_transform;
+using test::scene_of;
 using test::without_instances;
 
 std::shared_ptr<const TriangleMesh> ball(std::uint32_t columns = 24, std::uint32_t rows = 12) {
@@ -34,12 +35,6 @@ std::shared_ptr<const TriangleMesh> ball(std::uint32_t columns = 24, std::uint32
 /// Depends on the parametrisation, so that points have one.
 std::shared_ptr<const Material> textured() {
     return make_diffuse(function_texture<Rgb>([](const SurfacePoint& p) { return Rgb(0.2, p.uv.x, 0.5); }));
-}
-
-std::unique_ptr<Scene> scene_of(std::vector<Shape> shapes) {
-    SceneDescription d;
-    d.shapes = std::move(shapes);
-    return std::make_unique<Scene>(std::move(d));
 }
 
 /// Objects of two meshes each, which have holes but for one, and a mesh that has no copies.
