@@ -56,6 +56,8 @@ TEST(FillCache, LeavesOutRecordsThatAreNotWorthTheirRays) {
     };
     const std::size_t all = records(64), half = records(17), few = records(0.1);
     EXPECT_EQ(all, records(std::numeric_limits<double>::infinity()));
+    EXPECT_EQ(all, records(41)) << "40 rays are a record";
+    EXPECT_LT(records(39), all);
     EXPECT_LT(half, all);
     EXPECT_LT(few, half);
     EXPECT_LE(few, 9u) << "16 pixels apart";

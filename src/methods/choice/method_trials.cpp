@@ -270,12 +270,12 @@ std::vector<TriedMethod> try_methods(const TrialContext& c, double most) {
     for (const Method* method : all_methods()) {
         const double part = method->trial.share * budget;
         if (part == 0 || !can_do(c.scene, c.settings, *method)) continue;
-        const double spent = start - c.context.stop->seconds_left() - beyond;
-        if (c.context.stopped() || spent + part > budget || spent + beyond > kMostWithPhotons * start) break;
+        const double before = start - c.context.stop->seconds_left();
+        if (c.context.stopped() || before - beyond + part > budget || before > kMostWithPhotons * start) break;
         if (method->keeps_photons && !plan(c, std::min(kPlan * start, most))) continue;
         if (auto t = try_method(c, *method, small, part); t && has_time_for_a_sample(*t, c))
             tried.push_back(std::move(*t));
-        const double taken = start - c.context.stop->seconds_left() - beyond - spent;
+        const double taken = start - c.context.stop->seconds_left() - before;
         if (method->keeps_photons) beyond += std::max(0.0, taken - part);
     }
     rank_methods(tried, c, c.context.stop->seconds_left());
