@@ -23,7 +23,7 @@ import numpy
 from common import luminance
 
 KINDS = {
-    "bidirectional": "BD", "lens_subpath": "LS", "lens_perturbation": "LP", "multi_chain_perturbation": "MC",
+    "bidirectional": "BD", "light_tracing": "LT", "lens_subpath": "LS", "lens_perturbation": "LP", "multi_chain_perturbation": "MC",
     "caustic_perturbation": "CP", "photon_map": "PM",
 }
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
