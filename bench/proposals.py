@@ -34,11 +34,11 @@ def configurations():
     yield "all", {}
     for kind, short in KINDS.items():
         if kind != "bidirectional":
-            yield f"without {short}", {f"p_{kind}": 0}
-    yield "BD alone", {f"p_{k}": 0 for k in KINDS if k != "bidirectional"}
+            yield f"without {short}", {f"{kind}.weight": 0}
+    yield "BD alone", {f"{k}.weight": 0 for k in KINDS if k != "bidirectional"}
     for kind, short in KINDS.items():
         if kind != "bidirectional":
-            yield f"BD + {short}", {f"p_{k}": 0 for k in KINDS if k not in ("bidirectional", kind)}
+            yield f"BD + {short}", {f"{k}.weight": 0 for k in KINDS if k not in ("bidirectional", kind)}
 
 
 def indirect(path):
