@@ -132,10 +132,12 @@ bool needs_light_paths(const Scene& scene, const StageOneSettings& settings) {
 /// The technique that needs fewer rays for the same error, tried. Rays and not seconds, so that the choice is the same
 /// on every machine; a connection costs about as much again as its ray.
 Technique choose_technique(const Trial& path, const Trial& bidirectional) {
-    // One that never meets a small lamp behind glass seems precise: it is the one that found less light.
+    // One that never meets a small lamp behind glass seems precise: it is the one that found less light. To take
+    // bidirectional tracing in vain costs some rays, path tracing that misses a caustic costs the light.
     const double more = bidirectional.brightness.mean() - path.brightness.mean();
-    if (std::abs(more) > 4 * std::hypot(path.brightness.standard_error(), bidirectional.brightness.standard_error()))
-        return more > 0 ? Technique::bidirectional : Technique::path;
+    const double error = std::hypot(path.brightness.standard_error(), bidirectional.brightness.standard_error());
+    if (more > 2 * error) return Technique::bidirectional;
+    if (-more > 4 * error) return Technique::path;
     const auto cost = [](const Trial& t, double connections) {
         // Nothing found is no reason to trust a technique.
         const double infinity = std::numeric_limits<double>::infinity();
