@@ -217,7 +217,8 @@ Rgb GatherRays::caustic(const Vertex& v, const Vec3& back, double besides, int s
                         SampleSource& source) const {
     if (maps_.caustic == nullptr) return Rgb(0.0);
     return on_each_side(v, back, [&](const Vec3& normal) {
-        return caustic_on_side(v, normal, back, besides, scatterings - 1, source);
+        return caustic_on_side(v, normal, back, besides, scatterings - 1, source) +
+               outlying_on_side(v, normal, back, scatterings - 1);
     });
 }
 
@@ -242,6 +243,24 @@ Rgb GatherRays::caustic_on_side(const Vertex& v, const Vec3& normal, const Vec3&
     const auto seen = weight_in_sight(scene_, query.region, r, reflected);
     const auto light = [&](const Photon& photon) { return seen(photon) * photon.power(); };
     return sum_over_few(photons, {query.region, r, kSights}, all, light, source) / area;
+}
+
+Rgb GatherRays::outlying_on_side(const Vertex& v, const Vec3& normal, const Vec3& back, int longer) const {
+    Rgb sum(0.0);
+    if (maps_.outlying == nullptr) return sum;
+    const PhotonQuery query = query_at(v, normal, options_.caustic_radius, options_);
+    const PhotonReflection reflected(v, back, longer);
+    maps_.outlying->for_each_reaching(query.region, [&](const Photon& photon, float r) {
+        if (in_sight(scene_, query.region, sight_lift(r), photon.position()))
+            sum += reflected(photon) * photon.power() / (kPi * static_cast<double>(r) * r);
+    });
+    if (is_black(sum)) return sum;
+    // At an edge of the surface as much of a wide region is missing as of a lookup's. In folds and on small things that
+    // tells nothing of it.
+    const PilotedRegion piloted = piloted_region(maps_.caustic->pilots(), query);
+    const double area = maps_.caustic_surroundings->around(query.region, piloted).area;
+    const double disc = kPi * static_cast<double>(piloted.radius) * piloted.radius;
+    return sum / std::clamp(disc > 0 ? area / disc : 1.0, 0.5, 1.0);
 }
 
 double GatherRays::chance_of_caustic(const Vertex& v, const Vec3& back, const SurfaceRegion& region, float r,

@@ -4,6 +4,7 @@
 #include "gather/direct_irradiance_cache.h"
 #include "gather/lobe_techniques.h"
 #include "photonmap/irradiance/irradiance_map.h"
+#include "photonmap/outlying_photons.h"
 #include "photonmap/pilot_surroundings.h"
 #include "sampling/paths/walk.h"
 
@@ -21,6 +22,7 @@ struct GatherMaps {
     const DirectIrradianceCache* direct = nullptr; ///< direct light where `irradiance` is known; null only if that is
     const PilotedMap* caustic = nullptr;
     const PilotSurroundings* caustic_surroundings = nullptr; ///< of its pilots; null only if that is
+    const OutlyingPhotons* outlying = nullptr;               ///< of the caustic map; null: none
     const SurfacePatches* patches = nullptr;
     const GatherCoverage* coverage = nullptr; ///< where light is gathered: of the rest the caustic map knows; null: all
     /// How lobes are asked where rays end; null: by photons, as must be where there is coverage. A ray that is traced
@@ -83,6 +85,8 @@ class GatherRays {
     /// Of light that comes on the side of `normal`.
     Rgb caustic_on_side(const Vertex& v, const Vec3& normal, const Vec3& back, double besides, int longer,
                         SampleSource& source) const;
+    /// Of the photons that light regions of their own.
+    Rgb outlying_on_side(const Vertex& v, const Vec3& normal, const Vec3& back, int longer) const;
     /// With which probability a caustic is worth a look; 0 where there is none.
     double chance_of_caustic(const Vertex& v, const Vec3& back, const SurfaceRegion& region, float r,
                              double besides) const;

@@ -7,11 +7,47 @@
 
 namespace keyhole {
 
-/// Share [0, 1] of the light of a lookup over `region` of radius `r` [m] that lies in a small part of it, where pilot
-/// photons don't confirm that it is so bright: a single photon of large power, or the many that a chain leaves which
-/// stays near one path. It lights the whole region, and is seen as a disc. 0 where light is spread, and where pilot
-/// photons are as dense in the bright part as a caustic's would be. `light(photon)`: the luminance that a main photon
-/// brings.
+/// What lies in a small part of a lookup's region, a spot of a sixteenth of its area.
+struct SpotOfRegion {
+    static constexpr float kSize = 0.25f, kArea = kSize * kSize; // over the region's
+
+    double light = 0, all = 0; ///< luminance that main photons bring there, and to the region
+    double pilots = 0;         ///< share of the region's pilot photons
+
+    /// Share [0, 1] of the region's light that is not there: where most of it lies in the spot, and pilot photons are
+    /// less dense there than a caustic's would be. It came by a single photon of large power, or by the many that a
+    /// chain leaves which stays near one path. 0 where light is spread, and where pilot photons confirm it.
+    double unconfirmed() const {
+        const double share = all > 0 ? light / all : 0;
+        return share > 0.5 && pilots < share / 4 ? share : 0;
+    }
+};
+
+/// The spot around `middle` in a region of radius `r` [m]. `light(photon)`: the luminance that a main photon brings.
+template <class Light>
+SpotOfRegion spot_of_region(const PilotedMap& map, const SurfaceRegion& region, float r, const Vec3& middle,
+                            Light&& light) {
+    const auto in_spot = [&](const Photon& p) {
+        return (p.position() - middle).length2() <= SpotOfRegion::kArea * r * r;
+    };
+    SpotOfRegion spot;
+    map.main_photons().for_each_within(region, r, [&](const Photon& photon) {
+        const double brought = light(photon);
+        spot.all += brought;
+        if (in_spot(photon)) spot.light += brought;
+    });
+    // One pilot photon more, spread over the region: without any, little is known.
+    double pilots = 1, near = static_cast<double>(SpotOfRegion::kArea);
+    map.pilots().for_each_within(region, r, [&](const Photon& pilot) {
+        ++pilots;
+        near += in_spot(pilot) ? 1 : 0;
+    });
+    spot.pilots = near / pilots;
+    return spot;
+}
+
+/// SpotOfRegion::unconfirmed() of the spot with most of a region's light, which is seen as a disc as large as the
+/// region.
 template <class Light>
 double unconfirmed_share(const PilotedMap& map, const SurfaceRegion& region, float r, Light&& light) {
     struct Part {
@@ -33,18 +69,7 @@ double unconfirmed_share(const PilotedMap& map, const SurfaceRegion& region, flo
         middle = part.p;
         if ((passed += part.light) >= all / 2) break;
     }
-    constexpr float kSize = 0.25f, kArea = kSize * kSize; // of the spot over the region's
-    const auto in_spot = [&](const Vec3& p) { return (p - middle).length2() <= kArea * r * r; };
-    double bright = 0;
-    for (const Part& part : parts) bright += in_spot(part.p) ? part.light : 0;
-    // One pilot photon more, spread over the region: without any, little is known.
-    double pilots = 1, near = static_cast<double>(kArea);
-    map.pilots().for_each_within(region, r, [&](const Photon& pilot) {
-        ++pilots;
-        near += in_spot(pilot.position()) ? 1 : 0;
-    });
-    const double share = bright / all;
-    return share > 0.5 && near / pilots < share / 4 ? share : 0;
+    return spot_of_region(map, region, r, middle, light).unconfirmed();
 }
 
 } // namespace keyhole

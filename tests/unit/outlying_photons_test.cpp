@@ -1,83 +1,87 @@
-// Photons that stand for more visible power than so many can tell of: rare ones are cut off, and others left alone.
-#include "photon_energy.h"
+#include "photonmap/outlying_photons.h"
 
-#include "photonmap/emission.h"
-#include "photonmap/power.h"
-#include "scene/emitters/emitters.h"
-#include "support/test_scenes.h"
-#include "support/window_room.h"
+#include "core/rng.h"
 
 #include <gtest/gtest.h>
 
 namespace keyhole {
 namespace {
 
-using namespace energy_test;
+constexpr int kNearest = 60;
+constexpr float kMostRadius = 0.1f, kPower = 1;
 
-EmittedPhotons emit(const Scene& scene, std::int64_t paths, bool cut) {
-    const SurfacePatches patches(scene);
-    const Rule rule{.depth = 6};
-    const Guides guides = make_guides(scene, rule, 1, patches);
-    return emit_photons(scene, guides.both(),
-                        {.paths = paths, .photons = 1 << 20, .rule = rule.storage(), .seed = 3, .cut_outliers = cut},
-                        {});
+Photon photon_at(float x, float y, double power) { return {Vec3(x, y, 0), Vec3(0, 0, 1), Vec3(0, 0, 1), Rgb(power)}; }
+
+/// Photons spread evenly over a square of 2 m.
+PhotonSet even_photons(int count, std::uint64_t seed) {
+    PhotonSet set;
+    Rng rng(seed, StreamPurpose::test, 0);
+    for (int i = 0; i < count; ++i) {
+        const auto x = static_cast<float>(2 * rng.next() - 1), y = static_cast<float>(2 * rng.next() - 1);
+        (i % kPilotEvery == 0 ? set.pilots : set.main_photons).push_back(photon_at(x, y, kPower));
+    }
+    return set;
 }
 
-double power_of(const EmittedPhotons& photons) {
-    double sum = 0;
-    for (const Photon& p : photons.global.main_photons) sum += luminance(p.power());
-    return sum;
+TEST(OutlyingPhotons, AreNoneAmongEvenOnes) {
+    PilotedMap map(even_photons(20'000, 1));
+    const std::size_t before = map.main_photons().photons().size();
+    const OutlyingPhotons outlying(map, kNearest, kMostRadius, 1);
+    EXPECT_EQ(outlying.size(), 0u);
+    EXPECT_EQ(map.main_photons().photons().size(), before);
 }
 
-TEST(OutlyingPhotons, AreNoneWhereAllAreAlike) {
-    const auto scene = test::diffuse_box();
-    const EmittedPhotons cut = emit(*scene, 20'000, true);
-    EXPECT_EQ(cut.cut, 0);
-    EXPECT_EQ(power_of(cut), power_of(emit(*scene, 20'000, false)));
+TEST(OutlyingPhotons, AreNoneInACausticThatPilotPhotonsConfirm) {
+    PhotonSet set = even_photons(4000, 2);
+    Rng rng(3, StreamPurpose::test, 0);
+    for (int i = 0; i < 400; ++i) {
+        const Photon p = photon_at(static_cast<float>(0.004 * rng.next()), static_cast<float>(0.004 * rng.next()), 1);
+        (i % kPilotEvery == 0 ? set.pilots : set.main_photons).push_back(p);
+    }
+    PilotedMap map(std::move(set));
+    EXPECT_EQ(OutlyingPhotons(map, kNearest, kMostRadius, 1).size(), 0u);
 }
 
-TEST(OutlyingPhotons, LoseWhatIsTooMuchUntilThereAreEnough) {
-    // Of a sky all around few paths come through the window, some of them from far off with the power of thousands.
-    auto m = test::room_with_a_window();
-    m.rectangle({-40, -2, -80}, {0, 0, 79.9f}, {80, 0, 0}, make_diffuse(Rgb(0.6)));
-    m.emitter(make_constant_environment(Rgb(1)));
-    m.rectangle({1, 2.49f, 1}, {1, 0, 0}, {0, 0, 1}, make_diffuse(Rgb(0)), Rgb(1)); // and a dim lamp
-    m.camera({1.5f, 1.3f, 2.9f}, {1.5f, 1.2f, 0}, 60).window(32, 24);
-    const auto scene = m.build();
-    const EmittedPhotons few = emit(*scene, 20'000, true), many = emit(*scene, 1'000'000, true);
-    EXPECT_GT(few.cut, 0.05);
-    EXPECT_LT(power_of(few), power_of(emit(*scene, 20'000, false)));
-    EXPECT_LT(many.cut, few.cut / 2) << "it is for want of paths that light is lost";
+/// With the lone photon of great power `power` in the middle: how bright that is there, and all of it.
+struct Lone {
+    double in_the_middle = 0; ///< [W/m^2]
+    double power = 0;         ///< that all regions of lookups get [W]
+    double reach = 0;         ///< [m]
+};
+Lone lone_photon(PhotonSet set, double power) {
+    set.main_photons.push_back(photon_at(0, 0, power));
+    PilotedMap map(std::move(set));
+    const OutlyingPhotons outlying(map, kNearest, kMostRadius, 1);
+    EXPECT_EQ(outlying.size(), 1u);
+    Lone lone;
+    constexpr int n = 200;
+    constexpr double step = 2.0 / n;
+    for (int i = 0; i < n; ++i) {
+        for (int j = 0; j < n; ++j) {
+            const Vec3 p(static_cast<float>((i + 0.5) * step - 1), static_cast<float>((j + 0.5) * step - 1), 0);
+            outlying.for_each_reaching({p, Vec3(0, 0, 1)}, [&](const Photon& photon, float r) {
+                const double light = photon.power().x / (kPi * static_cast<double>(r) * r);
+                lone.in_the_middle = std::max(lone.in_the_middle, light);
+                lone.power += light * step * step;
+                lone.reach = std::max(lone.reach, static_cast<double>(p.length()));
+            });
+        }
+    }
+    return lone;
 }
 
-Photon of_power(const Rgb& power, bool caustic = false) {
-    return {Vec3(0), Vec3(0, 1, 0), Vec3(0, 1, 0), power, {.caustic = caustic}};
+TEST(OutlyingPhotons, LightAsMuchSurfaceAsMakesThemNoBrighterThanTheOthers) {
+    constexpr int count = 20'000;
+    const double others = 0.75 * count * kPower / 4; // [W/m^2]
+    const Lone lone = lone_photon(even_photons(count, 4), 400 * kPower);
+    EXPECT_LT(lone.in_the_middle, 1.5 * others);
+    EXPECT_NEAR(lone.power, 400 * kPower, 0.03 * 400);
 }
 
-TEST(OutlyingPower, IsCutToWhatTheOthersAllow) {
-    constexpr std::size_t kPhotons = 10'000;
-    std::vector<Photon> photons(kPhotons, of_power(Rgb(1.0)));
-    EXPECT_EQ(cut_outlying_power(photons), 0);
-    // One is brighter by far than all others together: it is not to raise the bound that it is cut by.
-    photons[17] = of_power(Rgb(1e6, 2e6, 0), true);
-    const double power = luminance(photons[17].power());
-    const double lost = cut_outlying_power(photons), bound = 2 * std::sqrt(kPhotons);
-    const double left = luminance(photons[17].power());
-    EXPECT_NEAR(left, bound, 0.05 * bound);
-    EXPECT_NEAR(lost, (power - left) / (power + kPhotons - 1), 1e-6);
-    EXPECT_NEAR(photons[17].power()[1] / photons[17].power()[0], 2, 0.02) << "another hue";
-    EXPECT_TRUE(photons[17].caustic());
-    EXPECT_EQ(photons[16], of_power(Rgb(1.0)));
-}
-
-TEST(OutlyingPower, IsNoneWhereItIsFrequent) {
-    std::vector<Photon> photons(10'000, of_power(Rgb(1.0)));
-    for (std::size_t i = 0; i < photons.size(); i += 100) photons[i] = of_power(Rgb(150.0));
-    const std::vector<Photon> before = photons;
-    EXPECT_EQ(cut_outlying_power(photons), 0);
-    EXPECT_EQ(photons, before);
-    std::vector<Photon> none;
-    EXPECT_EQ(cut_outlying_power(none), 0);
+TEST(OutlyingPhotons, InTheDarkLightFourTimesTheRadiusOfALookup) {
+    const Lone lone = lone_photon({}, kPower);
+    EXPECT_NEAR(lone.reach, 4 * kMostRadius, 0.02);
+    EXPECT_NEAR(lone.power, kPower, 0.03);
 }
 
 } // namespace

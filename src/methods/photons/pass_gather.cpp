@@ -57,6 +57,7 @@ PassGather::PassGather(const SamplerContext& c, const RenderPlan& plan, std::int
     if (plan.photons) {
         const StageClock clock(stats, stages::irradiance);
         estimate_irradiance(c, radii, seed, stats, context);
+        outlying_ = OutlyingPhotons(caustic_, static_cast<int>(s.nearest), radii.caustic, radii.shrink);
         caustic_surroundings_.emplace(caustic_.pilots(), c.patches, static_cast<int>(s.nearest), radii.caustic,
                                       radii.shrink);
         stats.photon_bytes = std::max<std::uint64_t>(
@@ -67,8 +68,9 @@ PassGather::PassGather(const SamplerContext& c, const RenderPlan& plan, std::int
     GatherMaps maps{.global = null_if_empty(global_),
                     .irradiance = irradiance_ ? &*irradiance_ : nullptr,
                     .direct = direct_irradiance_ ? &*direct_irradiance_ : nullptr,
-                    .caustic = null_if_empty(caustic_),
+                    .caustic = outlying_.size() > 0 ? &caustic_ : null_if_empty(caustic_),
                     .caustic_surroundings = caustic_surroundings_ ? &*caustic_surroundings_ : nullptr,
+                    .outlying = &outlying_,
                     .patches = &c.patches,
                     .coverage = c.coverage};
     const auto rays = [&] { return GatherRays(c.scene, maps, lookups(s, radii), static_cast<int>(s.max_depth)); };

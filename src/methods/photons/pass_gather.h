@@ -54,6 +54,7 @@ class PassGather {
     std::uint64_t seed_;
     const GatherCoverage* coverage_;
     PilotedMap global_, caustic_;
+    OutlyingPhotons outlying_;
     std::optional<IrradianceMap> irradiance_;
     std::optional<DirectIrradianceCache> direct_irradiance_;
     std::optional<PilotSurroundings> caustic_surroundings_;
