@@ -30,12 +30,22 @@ void scale(Image& image, int exponent) {
 
 /// Pixels around one over which its noise is averaged, and over which the filter is judged.
 constexpr int kReachOfNoise = 2, kReachOfJudgement = 3;
-/// And over which that of a pixel of one sample is: of its neighbours, one in sixteen may have another.
-constexpr int kReachOfSingle = 6;
+/// And over which noise is where fewer pixels than this have two samples: one in sixteen may, in the second round.
+constexpr int kReachAmongSingle = 8;
+constexpr float kFewestOfTwo = 16;
+
+/// Which half of the samples has which pixel: a pixel of one sample is in one of them, by chance, so that either has
+/// about as many.
+struct HalvesSeen {
+    std::array<Plane, 2> there; ///< what a pixel counts in a half: 1, or 2 and 0, so that all count the same in both
+    bool whole;                 ///< no pixel has one sample
+
+    bool both(int x, int y) const { return there[0](x, y) * there[1](x, y) > 0; }
+};
 
 /// Pixels that have one sample: something is seen there, and in no layer does a half differ from the other. Two samples
 /// meet no surface at the same distance; where nothing is seen, an even background has no noise.
-std::vector<bool> pixels_of_one_sample(const Picture& picture) {
+HalvesSeen halves_seen(const Picture& picture, int border) {
     const std::vector<float>& depth = picture.layers.at("depth").data;
     std::vector<bool> single(depth.size());
     std::transform(depth.begin(), depth.end(), single.begin(), [](float z) { return z > 0; });
@@ -44,43 +54,47 @@ std::vector<bool> pixels_of_one_sample(const Picture& picture) {
         for (std::size_t i = 0; i < image.data.size(); ++i)
             if (image.data[i] != 0) single[i / static_cast<std::size_t>(image.channels)] = false;
     }
-    return single;
+    const auto there = [&](bool first) {
+        return Plane(picture.width, picture.height, border, [&](int x, int y) {
+            const std::size_t i =
+                static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) + static_cast<std::size_t>(x);
+            if (!single[i]) return 1.0f;
+            return (Rng(0, StreamPurpose::filter, i).next() < 0.5) == first ? 2.0f : 0.0f;
+        });
+    };
+    return {{there(true), there(false)}, std::ranges::count(single, true) == 0};
+}
+
+/// The mean of value(x, y) over the pixels of two samples within `reach`, or kReachAmongSingle where these are few; 0
+/// without any.
+template <class Value> Plane mean_of_two(const HalvesSeen& seen, int border, int reach, Value&& value) {
+    const int width = seen.there[0].width(), height = seen.there[0].height();
+    if (seen.whole) return box_mean(width, height, border, reach, value);
+    const auto sums = [&](int within) {
+        const auto share = [&](int x, int y) { return seen.both(x, y) ? 1.0f : 0.0f; };
+        const auto term = [&](int x, int y) { return seen.both(x, y) ? value(x, y) : 0.0f; };
+        return std::pair(box_mean(width, height, 0, within, term), box_mean(width, height, 0, within, share));
+    };
+    const auto [near, share] = sums(reach);
+    const auto [far, share_of_far] = sums(kReachAmongSingle);
+    const float fewest = kFewestOfTwo / static_cast<float>((2 * reach + 1) * (2 * reach + 1));
+    return {width, height, border, [&](int x, int y) {
+                if (share(x, y) >= fewest) return near(x, y) / share(x, y);
+                return share_of_far(x, y) > 0 ? far(x, y) / share_of_far(x, y) : 0;
+            }};
 }
 
 /// The sum of some layers of three channels, and of their noise.
 struct FilterPart {
     Image mean, noise;
-    const std::vector<bool>& single; ///< by pixel: of one sample
 
-    /// `of_one_sample` must outlive it.
-    FilterPart(const Picture& picture, std::initializer_list<const char*> layers,
-               const std::vector<bool>& of_one_sample)
-        : mean(picture.width, picture.height, 3), noise(mean), single(of_one_sample) {
+    FilterPart(const Picture& picture, std::initializer_list<const char*> layers)
+        : mean(picture.width, picture.height, 3), noise(mean) {
         for (const std::string layer : layers) {
             add(picture.layers.at(layer), mean);
             add(picture.layers.at(noise_layer(layer)), noise);
         }
     }
-
-    /// Gives pixels of one sample halves that differ as much as those of their neighbours would: who stopped a render
-    /// in the middle of a round of samples shall not see where.
-    void assume_noise_of_single() {
-        const Image known = noise;
-        parallel_for(noise.height, [&](std::int64_t row) {
-            const int y = static_cast<int>(row);
-            for (int x = 0; x < noise.width; ++x) {
-                if (!is_single(x, y)) continue;
-                // That of neighbours is of two samples.
-                const Rgb squares = mean_square(known, x, y) * 2.0;
-                // By chance, so that pixels seem alike on average.
-                const bool up = Rng(0, StreamPurpose::filter, index(x, y)).next() < 0.5;
-                for (int c = 0; c < 3; ++c)
-                    noise.at(x, y)[c] = static_cast<float>((up ? 1 : -1) * std::sqrt(squares[c]));
-            }
-        });
-    }
-
-    bool is_single(int x, int y) const { return single[index(x, y)]; }
 
     /// Brings its mean near 1, so that squares are numbers, whatever the unit of light. Returns the exponent of the
     /// power of two that it was.
@@ -95,22 +109,6 @@ struct FilterPart {
     }
 
   private:
-    std::size_t index(int x, int y) const {
-        return static_cast<std::size_t>(y) * static_cast<std::size_t>(mean.width) + static_cast<std::size_t>(x);
-    }
-    /// Over pixels near (x, y) that have more than one sample; 0 without any.
-    Rgb mean_square(const Image& noise, int x, int y) const {
-        Rgb sum(0.0);
-        int count = 0;
-        for (int j = std::max(0, y - kReachOfSingle); j <= std::min(noise.height - 1, y + kReachOfSingle); ++j)
-            for (int i = std::max(0, x - kReachOfSingle); i <= std::min(noise.width - 1, x + kReachOfSingle); ++i) {
-                if (is_single(i, j)) continue;
-                const float* p = noise.at(i, j);
-                sum += Rgb(p[0], p[1], p[2]) * Rgb(p[0], p[1], p[2]);
-                ++count;
-            }
-        return count > 0 ? sum / count : sum;
-    }
     static void add(const Image& layer, Image& sum) {
         std::ranges::transform(layer.data, sum.data, sum.data.begin(), std::plus());
     }
@@ -147,7 +145,7 @@ float mean_of_most(const Plane& luminance, int x, int y, int reach, std::vector<
 /// Finds pixels so bright that each, spread over those within `reach`, would make a disc of half their brightness more:
 /// a lamp smaller than a pixel, or a sample out of thousands. Puts the mean of the others into their place, without
 /// noise.
-std::vector<Outlier> take_out_outliers(FilterPart& part, int reach) {
+std::vector<Outlier> take_out_outliers(FilterPart& part, const HalvesSeen& seen, int reach) {
     const int width = part.mean.width, height = part.mean.height;
     const Plane luminance(width, height, 0, [&](int x, int y) { return luminance_at(part.mean, x, y); });
     const Plane mean = box_mean(width, height, 0, reach, luminance);
@@ -161,7 +159,7 @@ std::vector<Outlier> take_out_outliers(FilterPart& part, int reach) {
             if (light <= kMostAdded * rest * static_cast<float>(window.size())) continue;
             float *p = part.mean.at(x, y), *noise = part.noise.at(x, y);
             const bool confirmed =
-                !part.is_single(x, y) && std::abs(luminance_at(part.noise, x, y)) < (1 - kLeastInHalf) * light;
+                seen.both(x, y) && std::abs(luminance_at(part.noise, x, y)) < (1 - kLeastInHalf) * light;
             found.push_back({x, y, {p[0], p[1], p[2]}, confirmed});
             for (int c = 0; c < 3; ++c) p[c] *= rest / light;
             std::fill_n(noise, 3, 0.0f);
@@ -179,7 +177,7 @@ double pixels_within(int reach) { return 3.14 * (reach + 0.5) * (reach + 0.5) + 
 float squared(float x) { return x * x; }
 
 /// The mean of both filtered halves, blended with the part as it was.
-Image judged(const FilterPart& part, const std::array<Image, 2>& smooth) {
+Image judged(const FilterPart& part, const HalvesSeen& seen, const std::array<Image, 2>& smooth) {
     const int width = part.mean.width, height = part.mean.height;
     Image mean_of_both = smooth[0];
     std::ranges::transform(mean_of_both.data, smooth[1].data, mean_of_both.data.begin(),
@@ -200,10 +198,10 @@ Image judged(const FilterPart& part, const std::array<Image, 2>& smooth) {
         return sum / 3;
     };
     constexpr std::array<float, 3> kBlack{};
-    const Plane variance = box_mean(width, height, 0, kReachOfJudgement, [&](int x, int y) {
+    const Plane variance = mean_of_two(seen, 0, kReachOfJudgement, [&](int x, int y) {
         return squares(kBlack.data(), kBlack.data(), 1, part.noise.at(x, y)) / unit(x, y);
     });
-    const Plane distance = box_mean(width, height, 0, kReachOfJudgement, [&](int x, int y) {
+    const Plane distance = mean_of_two(seen, 0, kReachOfJudgement, [&](int x, int y) {
         const float *mean = part.mean.at(x, y), *noise = part.noise.at(x, y);
         return (squares(smooth[0].at(x, y), mean, -1, noise) + squares(smooth[1].at(x, y), mean, 1, noise)) / 2 /
                unit(x, y);
@@ -213,9 +211,10 @@ Image judged(const FilterPart& part, const std::array<Image, 2>& smooth) {
         const int y = static_cast<int>(row);
         for (int x = 0; x < width; ++x) {
             const float noise = 2 * variance(x, y), error = std::max(0.0f, distance(x, y) - noise);
-            // Of the mean of two filtered halves half of the error of each is left, if it is noise: the weights of
-            // least error are as 1 / variance.
-            const float share = noise / (noise + error);
+            // Of the mean of two filtered halves half of the error of each is left, if it is noise, as of the mean of
+            // two samples; but not of one. The weights of least error are as 1 / variance.
+            const float of_mean = seen.both(x, y) ? noise : 2 * noise;
+            const float share = of_mean / (of_mean + error);
             if (!(share > 0)) continue; // without noise
             float* p = result.at(x, y);
             for (int c = 0; c < 3; ++c) p[c] = std::lerp(p[c], mean_of_both.at(x, y)[c], share);
@@ -225,15 +224,16 @@ Image judged(const FilterPart& part, const std::array<Image, 2>& smooth) {
 }
 
 /// The part filtered, if it has noise that is known.
-Image filtered(FilterPart part, const FilterGuides& guides, int reach, const StopToken* stop) {
+Image filtered(FilterPart part, const HalvesSeen& seen, const FilterGuides& guides, int reach, const StopToken* stop) {
     if (std::ranges::all_of(part.noise.data, [](float d) { return d == 0; })) return part.mean;
     const int exponent = part.normalise();
-    part.assume_noise_of_single();
-    const std::vector<Outlier> outliers = take_out_outliers(part, reach);
+    const std::vector<Outlier> outliers = take_out_outliers(part, seen, reach);
     const int width = part.mean.width, height = part.mean.height, border = reach + kPatch;
-    const auto channel = [&](float sign, int c) {
-        return Plane(width, height, border,
-                     [&](int x, int y) { return part.mean.at(x, y)[c] + sign * part.noise.at(x, y)[c]; });
+    const auto channel = [&](std::size_t half, int c) {
+        const float sign = half == 0 ? 1 : -1;
+        return Plane(width, height, border, [&, sign, half, c](int x, int y) {
+            return seen.there[half](x, y) * (part.mean.at(x, y)[c] + sign * part.noise.at(x, y)[c]);
+        });
     };
     const auto half_luminance = [&](float sign) {
         return Plane(width, height, border, [&](int x, int y) {
@@ -241,11 +241,13 @@ Image filtered(FilterPart part, const FilterGuides& guides, int reach, const Sto
         });
     };
     const HalfPictures halves{
-        {std::array{channel(1, 0), channel(1, 1), channel(1, 2)}, {channel(-1, 0), channel(-1, 1), channel(-1, 2)}},
+        seen.there,
+        seen.whole,
+        {std::array{channel(0, 0), channel(0, 1), channel(0, 2)}, {channel(1, 0), channel(1, 1), channel(1, 2)}},
         {half_luminance(1), half_luminance(-1)},
-        box_mean(width, height, border, kReachOfNoise,
-                 [&](int x, int y) { return 2 * squared(luminance_at(part.noise, x, y)); })};
-    Image result = judged(part, filter_crosswise(halves, guides, reach, stop));
+        mean_of_two(seen, border, kReachOfNoise,
+                    [&](int x, int y) { return 2 * squared(luminance_at(part.noise, x, y)); })};
+    Image result = judged(part, seen, filter_crosswise(halves, guides, reach, stop));
     for (const Outlier& o : outliers)
         if (o.confirmed) std::ranges::copy(o.mean, result.at(o.x, o.y));
     scale(result, exponent);
@@ -272,9 +274,9 @@ std::optional<Image> denoise(const Picture& picture, int reach, const StopToken*
     for (const std::string layer : {"direct", "indirect", "caustic", "albedo", "normal", "depth"})
         if (!picture.layers.contains(layer) || !picture.layers.contains(noise_layer(layer))) return std::nullopt;
     const FilterGuides guides(picture, reach + kPatch);
-    const std::vector<bool> single = pixels_of_one_sample(picture);
-    Image sum = filtered(FilterPart(picture, {"direct"}, single), guides, reach, stop);
-    const Image rest = filtered(FilterPart(picture, {"indirect", "caustic"}, single), guides, reach, stop);
+    const HalvesSeen seen = halves_seen(picture, reach + kPatch);
+    Image sum = filtered(FilterPart(picture, {"direct"}), seen, guides, reach, stop);
+    const Image rest = filtered(FilterPart(picture, {"indirect", "caustic"}), seen, guides, reach, stop);
     if (stop != nullptr && stop->requested()) return std::nullopt;
     std::ranges::transform(sum.data, rest.data, sum.data.begin(),
                            [](float a, float b) { return std::max(0.0f, a + b); });

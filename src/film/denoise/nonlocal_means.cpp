@@ -2,6 +2,7 @@
 
 #include "core/parallel.h"
 
+#include <cmath>
 #include <limits>
 
 namespace keyhole {
@@ -53,8 +54,9 @@ class Tile {
                 const auto& unlike = unlike_[1 - half][static_cast<std::size_t>(row)];
                 Sums& sums = sums_[half][static_cast<std::size_t>(row)];
                 for (std::size_t i = 0; i < kAcross; ++i) weight[i] = most * kernel(std::max(unlike[i], apart[i]));
+                const float* there = halves_.there[half].at(x_ + dx, y_ + row + dy);
                 for (int i = left; i < right; ++i)
-                    sums.weights[static_cast<std::size_t>(i)] += weight[static_cast<std::size_t>(i)];
+                    sums.weights[static_cast<std::size_t>(i)] += weight[static_cast<std::size_t>(i)] * there[i];
                 for (std::size_t c = 0; c < 3; ++c) {
                     const float* colour = halves_.colours[half][c].at(x_ + dx, y_ + row + dy);
                     for (int i = left; i < right; ++i)
@@ -67,10 +69,17 @@ class Tile {
     void write(std::array<Image, 2>& filtered) const {
         for (std::size_t half = 0; half < 2; ++half)
             for (int row = 0; row < height_; ++row) {
-                const Sums& sums = sums_[half][static_cast<std::size_t>(row)];
-                for (std::size_t i = 0; i < static_cast<std::size_t>(width_); ++i)
-                    for (std::size_t c = 0; c < 3; ++c)
-                        filtered[half].at(x_ + static_cast<int>(i), y_ + row)[c] = sums.colours[c][i] / sums.weights[i];
+                const Sums &sums = sums_[half][static_cast<std::size_t>(row)],
+                           &other = sums_[1 - half][static_cast<std::size_t>(row)];
+                for (std::size_t i = 0; i < static_cast<std::size_t>(width_); ++i) {
+                    // A pixel that is there weighs 1 itself.
+                    const float lacking = std::max(0.0f, 1 - sums.weights[i]);
+                    for (std::size_t c = 0; c < 3; ++c) {
+                        float sum = sums.colours[c][i];
+                        if (lacking > 0) sum += lacking * other.colours[c][i] / other.weights[i];
+                        filtered[half].at(x_ + static_cast<int>(i), y_ + row)[c] = sum / (sums.weights[i] + lacking);
+                    }
+                }
             }
     }
 
@@ -79,43 +88,64 @@ class Tile {
         std::array<float, kAcross> weights{};
         std::array<std::array<float, kAcross>, 3> colours{};
     };
+    using Row = std::array<float, kAcross + 2 * kPatch>; // and kPatch more on either side
+    using Rows = std::array<std::array<float, kAcross>, kDown>;
 
-    /// The mean distance of patches, by pixel: of luminance, squared, beyond its noise and in units of that.
-    void find_likeness(std::size_t half, int dx, int dy) {
-        constexpr int kColumns = kAcross + 2 * kPatch, kRows = kDown + 2 * kPatch;
-        const Plane &luminance = halves_.luminances[half], &variance = halves_.variance;
-        std::array<std::array<float, kAcross>, kRows> across; // sums over the columns of a patch
+    /// sums[row][i]: of the terms over the patch around a pixel. fill(x, y, n, terms) sets those of a row.
+    template <class Fill> void sum_patches(Rows& sums, Fill&& fill) const {
+        std::array<std::array<float, kAcross>, kDown + 2 * kPatch> across; // sums over the columns of a patch
         for (int row = 0; row < height_ + 2 * kPatch; ++row) {
-            const int x = x_ - kPatch, y = y_ + row - kPatch, n = width_ + 2 * kPatch;
-            const float *here = luminance.at(x, y), *there = luminance.at(x + dx, y + dy);
-            const float *noise = variance.at(x, y), *other_noise = variance.at(x + dx, y + dy);
-            std::array<float, kColumns> distance{};
-            for (int i = 0; i < n; ++i) {
-                const float difference = here[i] - there[i];
-                const float beyond = difference * difference - (noise[i] + std::min(noise[i], other_noise[i]));
-                const float unit = kBandwidth * kBandwidth * (noise[i] + other_noise[i]);
-                distance[static_cast<std::size_t>(i)] =
-                    std::min(kMostUnlike, beyond / (unit + std::numeric_limits<float>::min()));
-            }
-            auto& sums = across[static_cast<std::size_t>(row)];
+            Row terms{};
+            fill(x_ - kPatch, y_ + row - kPatch, width_ + 2 * kPatch, terms.data());
             for (std::size_t i = 0; i < kAcross; ++i) {
                 float sum = 0;
-                for (std::size_t k = 0; k < kPatchSize; ++k) sum += distance[i + k];
-                sums[i] = sum;
+                for (std::size_t k = 0; k < kPatchSize; ++k) sum += terms[i + k];
+                across[static_cast<std::size_t>(row)][i] = sum;
             }
         }
         for (std::size_t row = 0; row < static_cast<std::size_t>(height_); ++row)
             for (std::size_t i = 0; i < kAcross; ++i) {
                 float sum = 0;
                 for (std::size_t k = 0; k < kPatchSize; ++k) sum += across[row + k][i];
-                unlike_[half][row][i] = sum / (kPatchSize * kPatchSize);
+                sums[row][i] = sum;
             }
+    }
+
+    /// The mean distance of patches, by pixel: of luminance, squared, beyond its noise and in units of that. Over
+    /// pixels that the half has in both patches. The fewer these are, the more does chance decide: it is scaled to
+    /// spread as that of all pixels does. Without any, patches pass for alike, and guides decide.
+    void find_likeness(std::size_t half, int dx, int dy) {
+        const Plane &luminance = halves_.luminances[half], &variance = halves_.variance, &seen = halves_.there[half];
+        sum_patches(unlike_[half], [&](int x, int y, int n, float* distance) {
+            const float *here = luminance.at(x, y), *there = luminance.at(x + dx, y + dy);
+            const float *noise = variance.at(x, y), *other_noise = variance.at(x + dx, y + dy);
+            for (int i = 0; i < n; ++i) {
+                const float difference = here[i] - there[i];
+                const float beyond = difference * difference - (noise[i] + std::min(noise[i], other_noise[i]));
+                const float unit = kBandwidth * kBandwidth * (noise[i] + other_noise[i]);
+                distance[i] = std::min(kMostUnlike, beyond / (unit + std::numeric_limits<float>::min()));
+            }
+            if (halves_.whole) return;
+            const float *is_here = seen.at(x, y), *is_there = seen.at(x + dx, y + dy);
+            for (int i = 0; i < n; ++i) distance[i] *= is_here[i] * is_there[i] > 0 ? 1.0f : 0.0f;
+        });
+        Rows pixels;
+        if (halves_.whole)
+            for (auto& row : pixels) row.fill(kPatchSize * kPatchSize);
+        else
+            sum_patches(pixels, [&](int x, int y, int n, float* both) {
+                const float *is_here = seen.at(x, y), *is_there = seen.at(x + dx, y + dy);
+                for (int i = 0; i < n; ++i) both[i] = is_here[i] * is_there[i] > 0 ? 1.0f : 0.0f;
+            });
+        for (std::size_t row = 0; row < static_cast<std::size_t>(height_); ++row)
+            for (std::size_t i = 0; i < kAcross; ++i)
+                unlike_[half][row][i] /= kPatchSize * std::sqrt(std::max(1.0f, pixels[row][i]));
     }
 
     const HalfPictures& halves_;
     const FilterGuides& guides_;
     int x_, y_, width_, height_;
-    std::array<std::array<std::array<float, kAcross>, kDown>, 2> unlike_{};
+    std::array<Rows, 2> unlike_{};
     std::array<std::array<Sums, kDown>, 2> sums_{};
 };
 

@@ -83,9 +83,12 @@ class FilterGuides {
 /// Pixels around a pixel whose likeness counts for that of the pixel.
 constexpr int kPatch = 2;
 
-/// Two independent pictures of the same, of three channels, and the variance of the luminance of either.
+/// Two independent pictures of the same, of three channels, and the variance of the luminance of either. A pixel of one
+/// sample is in one of them alone; at least one of them has it.
 struct HalfPictures {
-    std::array<std::array<Plane, 3>, 2> colours; ///< border: as Plane variance's
+    std::array<Plane, 2> there; ///< what a pixel counts, 0 where a half lacks it; border: as Plane variance's
+    bool whole;                 ///< both have all pixels
+    std::array<std::array<Plane, 3>, 2> colours; ///< times `there`
     std::array<Plane, 2> luminances;
     Plane variance; ///< border: the filter's reach and kPatch
 };
@@ -93,7 +96,8 @@ struct HalfPictures {
 /// Each of the halves as a mean over pixels up to `reach` away, weighed by how near they are, and by how alike their
 /// surroundings look in the other half, beyond noise, and by guides: Rousselle, Knaus and Zwicker 2012, "Adaptive
 /// rendering with non-local means filtering". Weights and what they weigh are independent, so that a bright sample
-/// doesn't decide about itself.
+/// doesn't decide about itself. A pixel that one half lacks is a mean of other pixels there; as far as these weigh less
+/// than it would itself, what it is in the other half stands in.
 /// @returns three channels each; of no use if `stop` is requested meanwhile. May be null.
 std::array<Image, 2> filter_crosswise(const HalfPictures& halves, const FilterGuides& guides, int reach,
                                       const StopToken* stop);
