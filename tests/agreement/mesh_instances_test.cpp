@@ -58,13 +58,15 @@ std::unique_ptr<Scene> room(bool instances, std::uint32_t columns = kColumns) {
 Settings base_settings() {
     Settings base;
     base.max_depth = 12;
-    base.spp = 16;
+    base.spp = 8;
     base.light_paths = 100'000;
     base.photons = 60'000;
     base.importons = 30'000;
-    base.brightness_samples = 300'000;
+    base.brightness_samples = 30'000;
+    base.brightness_error = 0; // the mean of all runs' counts
+    base.mutations = 300'000;
     base.chains = 200;
-    base.cache_rays = 200;
+    base.cache_rays = 100;
     return base;
 }
 
@@ -73,12 +75,13 @@ void expect_light_of_meshes(Scene& copies, Scene& meshes, const std::vector<cons
     const Settings base = base_settings();
     Settings reference = base;
     reference.method = &methods::bdpt;
-    reference.spp = 100;
+    reference.spp = 20;
     reference.seed = 1000;
-    const test::Blocks expected = test::render_blocks(meshes, reference, 3);
+    const test::Blocks expected = test::render_blocks(meshes, reference, 8);
     for (Settings s : test::by_methods(base, methods)) {
-        if (!s.method->keeps_photons) s.spp = 100;
-        const test::Disagreement d = test::compare(test::render_blocks(copies, s, 3), expected, 0.03);
+        const bool photons = s.method->keeps_photons;
+        if (!photons) s.spp = 20;
+        const test::Disagreement d = test::compare(test::render_blocks(copies, s, photons ? 4 : 8), expected, 0.03);
         EXPECT_EQ(d.rejected, 0) << name_of(*s.method) << "\n" << d.report;
         EXPECT_NEAR(d.ratio, 1, std::max(0.03, 4 * d.ratio_error)) << name_of(*s.method);
         fmt::print("{}: ratio {:.4f} +- {:.4f}, worst {:.4f}\n", name_of(*s.method), d.ratio, d.ratio_error, d.worst);
