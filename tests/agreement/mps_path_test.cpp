@@ -26,11 +26,11 @@ TEST_P(Mps_AgreesWithPathTracing, BlockByBlock) {
     scene.set_window({96, 64, 0});
     Settings paths; // from both ends: through a door those from the eye alone would be noise
     paths.method = &methods::bdpt;
-    paths.spp = 16;
+    paths.spp = 5;
     paths.seed = 1000;
-    Settings mps = test::settings_from(
-        "method=mps spp=4 brightness_samples=60k importons=60k mutations=120k photons=40k cache_rays=200");
-    const test::Blocks reference = test::render_blocks(scene, paths, 4);
+    Settings mps = test::settings_from("method=mps spp=4 brightness_samples=40k brightness_error=0 importons=60k "
+                                       "mutations=120k photons=40k cache_rays=200");
+    const test::Blocks reference = test::render_blocks(scene, paths, 10);
     const test::Disagreement d = test::compare(test::render_blocks(scene, mps, 4), reference, 0.03);
     std::cout << "quiet ratio " << d.quiet_ratio << ", whole " << d.ratio << ", noisy " << d.noisy << "\n";
     EXPECT_EQ(d.rejected, 0) << d.report << "mean brightness ratio " << d.ratio;
