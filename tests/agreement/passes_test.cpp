@@ -24,7 +24,7 @@ class Passes : public testing::TestWithParam<const char*> {
 
 TEST_P(Passes, ConvergeToPathTracing) {
     const auto scene = test::diffuse_box();
-    Settings path = test::settings_from("method=path spp=48 seed=1k");
+    Settings path = test::settings_from("method=path spp=16 seed=1k");
     Settings passes = settings();
     passes.passes = 3;
     // With a quarter of the photons mps is 1 % too dark: they leave the dark corners of the box to chance.
@@ -32,7 +32,7 @@ TEST_P(Passes, ConvergeToPathTracing) {
     passes.light_paths *= 4;
     passes.mutations *= 4;
     const test::Disagreement d =
-        test::compare(test::render_blocks(*scene, passes, 8), test::render_blocks(*scene, path, 8), 0.01);
+        test::compare(test::render_blocks(*scene, passes, 8), test::render_blocks(*scene, path, 16), 0.01);
     EXPECT_EQ(d.rejected, 0) << d.report << "mean brightness ratio " << d.ratio;
 }
 
