@@ -25,8 +25,9 @@ std::unique_ptr<Scene> room_behind_glass() {
 }
 
 Settings few_scatterings(std::int64_t depth) {
-    Settings s = test::settings_from("spp=16 brightness_samples=50k importons=20k mutations=200k light_paths=50k "
-                                     "photons=30k chains=200 cache_rays=200");
+    Settings s = test::settings_from(
+        "spp=16 brightness_samples=50k brightness_error=0 importons=20k mutations=200k light_paths=50k "
+        "photons=30k chains=200 cache_rays=200");
     s.max_depth = depth;
     return s;
 }
@@ -37,9 +38,9 @@ class ShortPaths : public testing::TestWithParam<std::int64_t> {};
 void expect_same_light(Scene& scene, const Settings& base, const std::string& layer) {
     Settings paths = base;
     paths.method = &methods::path;
-    paths.spp = 256;
+    paths.spp = 48;
     paths.seed = 1000;
-    const test::Blocks expected = test::render_blocks(scene, paths, 3, layer);
+    const test::Blocks expected = test::render_blocks(scene, paths, 8, layer);
     std::vector<Settings> photons = test::by_methods(base, {"pm", "ipm", "mps", "ipm"});
     photons.back().irradiance_cache = false; // gather rays of each sample know how long their way is
     for (const Settings& s : photons) {
