@@ -36,7 +36,8 @@ TEST(Reach_AgreesWithBidirectionalTracing, BlockByBlock) {
 /// What is seen through a slit is a strip, narrower than the importons around a place lie apart. Whether there is a
 /// mirror somewhere, so that the eye may have other ways there, must not matter.
 TEST(LightSeenThroughASlit_Brightness, IsTheSameWithAMirrorThatNobodySees) {
-    Settings s = test::settings_from("plan=all spp=4 brightness_samples=30k importons=5k mutations=30k photons=20k");
+    Settings s = test::settings_from(
+        "plan=all spp=4 brightness_samples=30k brightness_error=0 importons=5k mutations=30k photons=20k");
     s.method = &method_named("mps");
     s.cache_rays = 4; // the other layers don't count
     RunningStats without, with;
