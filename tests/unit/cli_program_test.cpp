@@ -26,7 +26,7 @@ TEST_F(Program, RenderWritesPicturesWithTheirHistory) {
     EXPECT_EQ(p.metadata.at("seed"), "5");
     EXPECT_EQ(p.metadata.at("scene"), "scene.yaml");
     EXPECT_THAT(p.metadata.at("settings"),
-                HasSubstr("method=path plan=auto gather_coverage=true spp=2 adaptive=false seed=5"));
+                HasSubstr("method=path plan=auto gather_coverage=true spp=2 keep_spp=false adaptive=false seed=5"));
     for (const char* key : {"program", "rays", "seconds", "peak memory", "stage path tracing"})
         EXPECT_TRUE(p.metadata.contains(key)) << key;
     EXPECT_TRUE(exists("scene.png"));
@@ -265,6 +265,18 @@ TEST_F(Program, InfoTellsWhatASceneConsistsOf) {
     ASSERT_EQ(run("info info.yaml"), 0);
     EXPECT_THAT(read("out"), testing::AllOf(HasSubstr("4 triangles"), HasSubstr("1 glass"), HasSubstr("area: 60 W"),
                                             HasSubstr("wall.pfm"), HasSubstr("2 instances")));
+}
+
+TEST_F(Program, SamplesThatAreNamedAreKeptWhateverAutoTakes) {
+    const auto samples = [&](const std::string& options) {
+        EXPECT_EQ(run("render scene.yaml --no-png -o a.exr --method auto -D max_depth=1 " + options), 0) << read("err");
+        return std::stod(read_exr(scratch.path("a.exr")).metadata.at("samples"));
+    };
+    EXPECT_EQ(samples("--spp 3"), 3);
+    EXPECT_THAT(read("err"), testing::Not(HasSubstr("samples a pixel instead")));
+    EXPECT_GT(samples("-D plan=auto"), 2) << "of the scene";
+    EXPECT_THAT(read("err"), HasSubstr(" samples a pixel instead of 2 take the work that the settings ask for"));
+    EXPECT_EQ(samples("-D keep_spp=true"), 2);
 }
 
 TEST_F(Program, InfoReadsPbrtAndPassesItsWarningsOn) {

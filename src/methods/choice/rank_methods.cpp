@@ -51,6 +51,8 @@ double predict(const TriedMethod& t, const TrialContext& c, double left, const R
     // Of what photons err, part is common to passes, part goes with their number: half of it by powers.
     if (t.method->keeps_photons)
         return hidden * predict_by_trial(t, c, left / limits.passes) / std::sqrt(limits.passes);
+    if (t.method->samples_pixels)
+        left = std::min(left, limits.samples * t.of.per_sample(c.scene.camera().window().size()));
     return hidden * predict_by_trial(t, c, left);
 }
 

@@ -3,12 +3,14 @@
 
 #include "methods/choice/method_trials.h"
 
+#include <limits>
 #include <vector>
 
 namespace keyhole {
 
 /// What a render has to keep to besides its time.
 struct RankLimits {
+    double samples = std::numeric_limits<double>::infinity(); ///< of a pixel, of methods without photons that take them
     double passes = 1; ///< that the time is cut into: maps of a pass have its photons alone
 };
 
