@@ -240,6 +240,18 @@ TEST_F(GltfScene, BrokenFilesAreErrors) {
     EXPECT_THAT(whole(R"({"asset": {"version": "2.0"}})"), testing::Not(HasSubstr("no error")));
 }
 
+TEST_F(GltfScene, NamesOfNodesNeedNotDiffer) {
+    const LoadedScene scene = read(R"("materials": [{}], "scenes": [{"nodes": [0, 1, 2, 3]}],
+      "nodes": [{"mesh": 0, "name": "a", "skin": 0}, {"name": "a", "camera": 0},
+                {"name": "a", "extensions": {"KHR_lights_punctual": {"light": 0}}}, {"name": "a", "mesh": 0}],
+      "skins": [{"skeleton": 1, "name": "a"}], "cameras": [{"perspective": {"yfov": 1}, "name": "a"}],
+      "extensions": {"KHR_lights_punctual": {"lights": [{"type": "spot", "name": "a"}]}})");
+    EXPECT_EQ(scene.description.shapes.size(), 2u);
+    EXPECT_EQ(scene.description.emitters.size(), 1u);
+    EXPECT_THAT(warnings_, testing::Not(Contains(HasSubstr("found no camera"))));
+    EXPECT_THAT(warnings_, Contains(HasSubstr("skins are left out")));
+}
+
 TEST_F(GltfScene, MatricesOfNodesAreAffine) {
     const auto nodes = [](const char* last) {
         return fmt::format(R"("scenes": [{{"nodes": [0, 1]}}], "nodes": [{{"mesh": 0}}, {{"mesh": 0,
