@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <string>
+#include <set>
 
 namespace keyhole {
 namespace {
@@ -65,6 +66,7 @@ int check(const CheckOptions& options) {
     for (const UserPathSpec& spec : all.user_paths.paths) widest = std::max(widest, spec.name.size());
     std::string first;
     fmt::print("{:<{}}  {:>6}  {:>9}  {:<14}  {}\n", "path", widest, "weight", "snapped", "vertices", "joined to");
+    std::set<std::string> told; // entries
     for (const UserPathSpec& spec : all.user_paths.paths) {
         try {
             const UserPath path = bind_user_path(*all.scene, spec);
@@ -73,6 +75,8 @@ int check(const CheckOptions& options) {
                        path.seen ? "the current path, or the eye" : "the current path");
         } catch (const InputError& e) {
             fmt::print("{:<{}}  {}\n", spec.name, widest, e.what());
+            // Paths of an entry, which differ in bounces, have the same mistake.
+            if (spec.where.line > 0 && !told.insert(spec.where.to_string()).second) continue;
             if (bad++ == 0) first = e.what();
         }
     }

@@ -267,6 +267,16 @@ TEST_F(Program, InfoTellsWhatASceneConsistsOf) {
                                             HasSubstr("wall.pfm"), HasSubstr("2 instances")));
 }
 
+TEST_F(Program, AMistakeOfAnEntryWithBouncesIsToldOnce) {
+    scratch.write("paths.yaml", "paths:\n  - points: [[0, 3, 0], {bounces: [1, 10]}, {through: {corner: [2, 0, 0], "
+                                "u: [0, 1, 0], v: [0, 0, 1]}}, [0, -3, 0]]\n");
+    EXPECT_EQ(run("paths check scene.yaml paths.yaml"), 2);
+    const std::string out = read("out");
+    EXPECT_EQ(out.find("point 4: found"), out.rfind("point 4: found"));
+    EXPECT_THAT(out, HasSubstr("from the middle of the opening"));
+    EXPECT_THAT(read("err"), testing::Not(HasSubstr("more)")));
+}
+
 TEST_F(Program, SamplesThatAreNamedAreKeptWhateverAutoTakes) {
     const auto samples = [&](const std::string& options) {
         EXPECT_EQ(run("render scene.yaml --no-png -o a.exr --method auto -D max_depth=1 " + options), 0) << read("err");
