@@ -267,6 +267,16 @@ TEST_F(Program, InfoTellsWhatASceneConsistsOf) {
                                             HasSubstr("wall.pfm"), HasSubstr("2 instances")));
 }
 
+TEST_F(Program, ABlackPictureIsCalledBlackByPhotonsToo) {
+    std::string text = kScene;
+    text.insert(text.find("render:"), "  - {type: box, material: white, min: [-2, 2, -2], max: [2, 4, 2]}\n");
+    scratch.write("dark.yaml", text);
+    for (const char* method : {"path", "ipm", "pm"}) {
+        ASSERT_EQ(run("render dark.yaml --no-png -o a.exr -D light_paths=2k --method " + std::string(method)), 0);
+        EXPECT_THAT(read("err"), HasSubstr("the picture is black")) << method;
+    }
+}
+
 TEST_F(Program, AMistakeOfAnEntryWithBouncesIsToldOnce) {
     scratch.write("paths.yaml", "paths:\n  - points: [[0, 3, 0], {bounces: [1, 10]}, {through: {corner: [2, 0, 0], "
                                 "u: [0, 1, 0], v: [0, 0, 1]}}, [0, -3, 0]]\n");
