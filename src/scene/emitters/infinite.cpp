@@ -304,7 +304,9 @@ std::unique_ptr<Emitter> make_image_environment(EnvironmentImage image, const Rg
     const auto size = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
     if (size == 0 || image.radiance.size() != size) throw InputError("an environment's picture has no pixels");
     if (image.layout == SphereLayout::octahedral && image.width != image.height)
-        throw InputError("an environment's octahedral picture is not square");
+        throw InputError(
+            fmt::format("found an octahedral picture of {} x {} pixels for an environment, expected a square",
+                        image.width, image.height));
     if (!is_rotation(to_world)) throw InputError("an environment's transform is more than a rotation");
     return std::make_unique<ImageEnvironment>(std::move(image), scale, to_world);
 }
