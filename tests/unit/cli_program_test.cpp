@@ -267,6 +267,26 @@ TEST_F(Program, InfoTellsWhatASceneConsistsOf) {
                                             HasSubstr("wall.pfm"), HasSubstr("2 instances")));
 }
 
+TEST_F(Program, InfoListsPicturesOfLampsAndCountsLampsWithoutMaterialOnce) {
+    std::string lamps, floats = "PF\n2 2\n-1.0\n";
+    for (int i = 0; i < 12; ++i) floats.append("\0\0\x80\x3f", 4);
+    scratch.write("gobo.pfm", floats);
+    scratch.write("sky.pfm", floats);
+    for (const char* x : {"0", "2", "4"})
+        lamps += std::string("  - {type: sphere, center: [") + x + ", 5, 0], radius: 0.1, emission: {power: 1}}\n";
+    scratch.write("lamps.yaml",
+                  kScene + std::string("emitters:\n  - {type: projection, position: [0, 2, 2], power: 1, image: "
+                                       "gobo.pfm}\n  - {type: environment, image: sky.pfm}\n"));
+    std::string text = read("lamps.yaml");
+    scratch.write("lamps.yaml", text.insert(text.find("render:"), lamps));
+    ASSERT_EQ(run("info lamps.yaml --json"), 0) << read("err");
+    const auto info = nlohmann::json::parse(read("out"));
+    EXPECT_EQ(info["materials"], (nlohmann::json{{"diffuse", 2}}));
+    ASSERT_EQ(info["textures"].size(), 2u);
+    EXPECT_THAT(info["textures"][0]["file"].get<std::string>(), HasSubstr("gobo.pfm"));
+    EXPECT_EQ(info["textures"][0]["width"], 2);
+}
+
 TEST_F(Program, ABlackPictureIsCalledBlackByPhotonsToo) {
     std::string text = kScene;
     text.insert(text.find("render:"), "  - {type: box, material: white, min: [-2, 2, -2], max: [2, 4, 2]}\n");

@@ -3,6 +3,7 @@
 #include "scene/emitters/emitters.h"
 #include "scene/images/image.h"
 #include "scene/load/properties.h"
+#include "scene/texture.h"
 #include "scene/warp.h"
 
 #include <fmt/format.h>
@@ -297,6 +298,7 @@ EnvironmentImage read_environment_image(const std::string& path, SphereLayout la
     };
     if (std::ranges::any_of(out.radiance, impossible))
         throw InputError(path + ": found a pixel that is negative or not finite, expected radiance");
+    out.file = note_picture({path, out.width, out.height, image->channels, pixels * sizeof(Vec3), image->hash});
     return out;
 }
 

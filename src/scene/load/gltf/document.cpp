@@ -178,6 +178,7 @@ std::string Document::image_file(std::size_t index) {
     const std::string file = (scratch_ / ("image-" + std::to_string(index) + ending_of(bytes))).string();
     if (!std::ofstream(file, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size())))
         fail("found no room for the images in the file");
+    name_image(file, fmt::format("{}, image {}", path_, index));
     return written_[index] = file;
 }
 

@@ -78,6 +78,8 @@ class SceneBuilder {
         const std::string content = gltf::importable(document_);
         gltf::LightsAndCamera scene_lights = gltf::read_nodes(document_); // before the importer, which says less of it
         scene.description.shapes = shapes(content);
+        scene.instances = static_cast<std::size_t>(std::ranges::count_if(
+            scene.description.shapes, [](const Shape& s) { return std::holds_alternative<MeshInstance>(s.geometry); }));
         scene.description.emitters = std::move(scene_lights.emitters);
         light_up(scene.description);
         if (!scene_lights.view) {
