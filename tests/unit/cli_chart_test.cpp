@@ -142,6 +142,10 @@ TEST_F(Program, PlanTellsWhatIsLeftOutAndWhy) {
     EXPECT_EQ(paths["method"], "path");
     EXPECT_NEAR(paths["cpu_seconds"], 3, 1.5);
     for (const auto& choice : paths["choices"]) EXPECT_EQ(choice["on"], false) << choice["name"];
+    ASSERT_EQ(run("plan scene.yaml --json --method auto --cpu-time 3"), 0) << read("err");
+    const auto timed = nlohmann::json::parse(read("out"));
+    EXPECT_GT(timed["stages"]["trials"], 0) << "which are within the time";
+    EXPECT_NEAR(timed["cpu_seconds"], 3, 1.5);
     ASSERT_EQ(run("plan scene.yaml -D light_paths=20k"), 0);
     EXPECT_THAT(read("out"), HasSubstr("off         caustic map and proposals: "));
 }
