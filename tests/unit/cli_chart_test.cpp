@@ -116,7 +116,7 @@ TEST_F(Program, SaysThatPixelsAreNoiseAlone) {
 TEST_F(Program, SuggestsNoPathsFromTheSky) {
     scratch.write("sky.yaml", "camera: {from: [0, 0, 3], to: [0, 0, 0]}\nmaterials: {white: {type: diffuse}}\n"
                               "shapes: [{type: sphere, material: white}]\nemitters: [{type: environment}]\n");
-    EXPECT_EQ(run("paths suggest sky.yaml"), 2);
+    EXPECT_EQ(run("paths suggest sky.yaml -t 1"), 2);
     EXPECT_THAT(read("err"), HasSubstr("sky.yaml: found light from infinitely far away alone, expected emitters"));
 }
 
