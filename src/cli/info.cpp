@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <map>
 #include <set>
 #include <sys/resource.h>
@@ -87,7 +88,8 @@ Json scene_info(const std::string& path) {
     const double build = seconds_since(middle);
 
     const std::vector<Shape>& shapes = scene.shapes();
-    const std::vector<LoadedImage> images = loaded_images();
+    std::vector<LoadedImage> images = loaded_images();
+    std::ranges::copy(loaded_pictures(), std::back_inserter(images));
     std::size_t held = 0;
     for (const TriangleMesh* mesh : held_meshes(shapes)) held += mesh->triangles.size();
     const auto count = [&](auto test) { return std::ranges::count_if(shapes, test); };

@@ -4,6 +4,7 @@
 #include "cli/program.h"
 #include "cli/words/tell.h"
 #include "core/error.h"
+#include "core/parallel.h"
 #include "film/drawing.h"
 #include "film/files/atomic_file.h"
 #include "film/files/png.h"
@@ -18,6 +19,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <string>
 
 namespace keyhole {
@@ -64,6 +66,7 @@ int check(const CheckOptions& options) {
     std::size_t widest = 4, bad = 0;
     for (const UserPathSpec& spec : all.user_paths.paths) widest = std::max(widest, spec.name.size());
     std::string first;
+    std::set<std::string> told; // entries
     fmt::print("{:<{}}  {:>6}  {:>9}  {:<14}  {}\n", "path", widest, "weight", "snapped", "vertices", "joined to");
     for (const UserPathSpec& spec : all.user_paths.paths) {
         try {
@@ -72,6 +75,8 @@ int check(const CheckOptions& options) {
                        1000 * largest_miss(spec, path), path.signature(),
                        path.seen ? "the current path, or the eye" : "the current path");
         } catch (const InputError& e) {
+            // Paths of an entry, which differ in bounces, have the same mistake.
+            if (spec.where.line > 0 && !told.insert(spec.where.to_string()).second) continue;
             fmt::print("{:<{}}  {}\n", spec.name, widest, e.what());
             if (bad++ == 0) first = e.what();
         }
@@ -191,9 +196,10 @@ struct SuggestCommand {
     std::string scene, output;
     std::vector<std::string> overrides;
     SuggestOptions options;
+    int threads = 0;
 };
 
-int suggest(const SuggestCommand& o) {
+void suggest(const SuggestCommand& o) {
     LoadedScene loaded = load(o.scene, o.overrides);
     check_apart({{"--output", o.output}}, files_of_scene());
     const Scene scene(std::move(loaded.description));
@@ -219,7 +225,6 @@ int suggest(const SuggestCommand& o) {
         fmt::print("{}", text);
     else
         write_file_atomically(o.output, text);
-    return kSuccess;
 }
 
 void add_paths_suggest_command(CLI::App& paths, Action& action) {
@@ -232,7 +237,13 @@ void add_paths_suggest_command(CLI::App& paths, Action& action) {
         ->check(real_range(1e-4, 1.0));
     command->add_option("-D", o->overrides, "any setting of render, KEY=VALUE; may be repeated")
         ->allow_extra_args(false);
-    command->callback([&action, o] { action = [o] { return suggest(*o); }; });
+    command->add_option("-t,--threads", o->threads, "threads; 0: one for each core")->check(CLI::Range(0, 4096));
+    command->callback([&action, o] {
+        action = [o] {
+            with_threads(o->threads, [&] { suggest(*o); });
+            return kSuccess;
+        };
+    });
 }
 
 // keyhole paths trace: follows a ray from a light, and prints the points that it meets, as a user path to paste.

@@ -150,11 +150,9 @@ RenderResult render_scene(LoadedScene& loaded, RenderOptions& options, std::vect
         const auto progress = make_progress(options.quiet, stop);
         if (options.writes()) view.watch(share);
         const RunContext context{&stop, progress.get()};
-        // Parts of a render have to agree on its settings: none can follow from the time. And where passes end by
-        // something else, they do.
+        // Parts of a render have to agree on its settings: none can follow from the time.
         const bool alone = options.group == nullptr && !options.checkpoints.asked();
-        const bool ends_by_time = loaded.settings.passes > 0 && loaded.settings.target_error == 0;
-        result = options.in_time() && alone && ends_by_time && loaded.settings.load_map.empty()
+        result = options.in_time() && alone && loaded.settings.load_map.empty()
                      ? render_in_time(scene, loaded.settings, named_settings(options.overrides), context,
                                       loaded.user_paths, share)
                      : render(scene, loaded.settings, context, loaded.user_paths, share);
@@ -170,16 +168,13 @@ RenderResult render_scene(LoadedScene& loaded, RenderOptions& options, std::vect
     return result;
 }
 
-/// Passes that should fit into a time where a checkpoint keeps whole ones alone: several, because scenes may be as many
-/// times slower than others.
-constexpr double kPassesInTime = 8;
 /// From this effort on a pass takes no less than by the settings' defaults.
 constexpr double kEffortOfDefaults = 3;
 
 /// Settings whose passes are short enough for the time.
 Settings with_short_passes(const Settings& settings, const ImageWindow& window, const RenderOptions& options,
                            const std::set<std::string>& named) {
-    if (settings.method->samples_pixels) return settings; // whose units are rounds
+    if (settings.method->samples_pixels && settings.target_error == 0) return settings; // whose units are rounds
     const double seconds =
         options.cpu_time ? *options.cpu_time : cpu_time_of(options.timeout.value_or(0), options.threads);
     const double effort = seconds / (kSecondsOfEffort * kPassesInTime);
@@ -226,10 +221,15 @@ LoadedScene load_for(const RenderOptions& options, std::vector<std::string>& war
         named.insert("passes"); // an effort has no say in it
     }
     const std::vector<std::string> older = options.checkpoints.found(options.outputs.exr);
-    if (options.checkpoints.resume && !older.empty())
+    const bool goes_on = options.checkpoints.resume && !older.empty();
+    const ImageWindow& window = loaded.description.window;
+    if (goes_on)
         loaded.settings = with_effort_of(older.front(), loaded.settings, options, named);
     else if (in_passes)
-        loaded.settings = with_short_passes(loaded.settings, loaded.description.window, options, named);
+        loaded.settings = with_short_passes(loaded.settings, window, options, named);
+    if (!goes_on && loaded.settings.passes == 0 && loaded.settings.target_error > 0 && options.quality.empty())
+        loaded.settings = with_effort_at_most(loaded.settings, effort_of_pass(loaded.settings.target_error),
+                                              static_cast<std::int64_t>(window.size()), named);
     loaded.settings = with_quality_of(loaded.settings, options.quality, named);
     for (const auto& [option, file] : {std::pair{"--save-map", &options.save_map}, {"--load-map", &options.load_map}})
         if (!file->empty() && !loaded.settings.method->keeps_photons)

@@ -72,6 +72,7 @@ struct Settings {
     Plan plan = Plan::fitting;
     bool gather_coverage = true;
     std::int64_t spp = 16;
+    bool keep_spp = false;
     bool adaptive = false;
     std::uint64_t seed = 1;
     std::int64_t max_depth = 24;
@@ -126,6 +127,8 @@ template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
     visit("gather_coverage", s.gather_coverage,
           "store light that few gather rays could find where it is seen, if there is much of it");
     visit("spp", s.spp, I{1}, I{1} << 24, "samples per pixel");
+    visit("keep_spp", s.keep_spp,
+          "auto keeps spp where it takes path or bdpt, instead of as many as ipm's work is enough for; set by --spp");
     visit("adaptive", s.adaptive, "more samples for noisy pixels, in renders of one pass; spp is the mean");
     visit("seed", s.seed, I{0}, I{1} << 53, "seed of all random streams");
     visit("max_depth", s.max_depth, I{1}, I{126}, "most scatterings between light and eye");

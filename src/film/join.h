@@ -24,9 +24,9 @@ struct NamedPicture {
 };
 
 /// What follows from an effort: settings by which renders that end by time differ.
-inline constexpr std::array<std::string_view, 10> kSettingsOfEffort{
+inline constexpr std::array<std::string_view, 11> kSettingsOfEffort{
     "passes",    "spp",         "photons",         "light_paths", "mutations", "brightness_samples",
-    "importons", "cache_error", "cache_min_reach", "cache_rays"};
+    "importons", "cache_error", "cache_min_reach", "cache_rays",  "keep_spp"};
 
 /// How alike two renders have to be: in all settings; in all but the seed and how many samples were taken.
 enum class SameRender { seed, method };

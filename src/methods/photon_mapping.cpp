@@ -232,6 +232,7 @@ RenderResult render_photons(const RenderTask& task) {
     warn_of_photons(stats, work.passes(), settings.max_depth);
     passes.pixels().report(stats);
     report_eye_samples(passes.pixels().luminances(), scene, stats);
+    report_black(passes.pixels().luminances(), scene, stats, true);
     result.picture = work.finish(stats);
     return result;
 }

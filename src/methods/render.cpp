@@ -8,7 +8,10 @@
 #include "methods/method.h"
 #include "methods/render_paths.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <utility>
 
 namespace keyhole {
 
@@ -29,7 +32,13 @@ Settings choose(const TrialContext& c, std::string& choice) {
     choice = describe_choice(tried);
     if (c.findings.plan && !c.findings.plan->photons)
         choice += "; no photon maps: " + c.findings.plan->items.front().why;
-    return settings_of_same_work(c, tried);
+    Settings chosen = settings_of_same_work(c, tried);
+    for (const auto& [member, what] :
+         {std::pair{&Settings::spp, "samples a pixel"}, std::pair{&Settings::mutations, "mutations"}})
+        if (chosen.*member != c.settings.*member)
+            choice += fmt::format("; {} {} instead of {} take the work that the settings ask for", chosen.*member, what,
+                                  c.settings.*member);
+    return chosen;
 }
 
 } // namespace

@@ -73,14 +73,17 @@ void report_eye_samples(const RunningStats& luminance, const Scene& scene, Rende
     report_small_emitters(luminance, scene, stats);
 }
 
-void report_black(const RunningStats& luminance, const Scene& scene, RenderStats& stats) {
+void report_black(const RunningStats& luminance, const Scene& scene, RenderStats& stats, bool photons) {
     if (luminance.count() > 0 && !(luminance.mean() > 0))
-        stats.warn(Doubt::samples,
-                   scene.emitters().empty()
-                       ? "the picture is black: nothing in the scene emits light"
-                       : "no sample carried light: the picture is black. If light reaches what is seen, it comes where "
-                         "paths from the eye don't find it: try ipm or mps. Surfaces emit on their outside alone: "
-                         "'flip' turns them, 'two_sided' makes both sides emit");
+        stats.warn(
+            Doubt::samples,
+            scene.emitters().empty()
+                ? "the picture is black: nothing in the scene emits light"
+                : fmt::format("no sample carried light: the picture is black. If light reaches what is seen, {}. "
+                              "Surfaces emit on their outside alone: 'flip' turns them, 'two_sided' makes both "
+                              "sides emit",
+                              photons ? "no photon found the way: try more of them, or user paths"
+                                      : "it comes where paths from the eye don't find it: try ipm or mps"));
 }
 
 void report_lost_caustics(const Scene& scene, RenderStats& stats) {

@@ -15,8 +15,9 @@ void report_samples(const RunningStats& luminance, RenderStats& stats);
 /// meets them: of such the samples themselves know nothing.
 void report_eye_samples(const RunningStats& luminance, const Scene& scene, RenderStats& stats);
 
-/// Warns where methods that find all light by paths traced from the eye, joined to the light or not, found none.
-void report_black(const RunningStats& luminance, const Scene& scene, RenderStats& stats);
+/// Warns where paths traced from the eye, joined to the light or not, found none, and no photons either if there are
+/// any.
+void report_black(const RunningStats& luminance, const Scene& scene, RenderStats& stats, bool photons = false);
 
 /// Warns of light that methods can't find whose paths are traced from the eye or joined to it: what comes from emitters
 /// without extent through specular surfaces, if not from everywhere, then onto what is seen in others.

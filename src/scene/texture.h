@@ -113,6 +113,12 @@ struct LoadedImage {
 
 /// The images that textures hold at the moment, by path.
 std::vector<LoadedImage> loaded_images();
+/// Gives an image whose file lasts no longer than loading another name than its path.
+void name_image(const std::string& path, const std::string& name);
+
+/// The pictures that emitters hold at the moment: those that note_picture() returned and somebody keeps.
+std::vector<LoadedImage> loaded_pictures();
+std::shared_ptr<const LoadedImage> note_picture(LoadedImage picture);
 
 /// A number in [0,1) that belongs to a place: the same however a ray came there, unrelated to that of places more than
 /// about 2^-16 in texture coordinates away, and to that of the same place for another `salt`.

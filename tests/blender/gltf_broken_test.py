@@ -46,6 +46,6 @@ def broken_files_are_errors():
     broken(put("accessors", 0, "count", value=4000), "out of range", "json")
     broken(put("accessors", 0, "bufferView", value=77), "index 77", "json")
     broken(put("meshes", 0, "primitives", 0, "material", value=9), "index 9", "json")
-    broken(put("nodes", 0, "camera", value=9), "index 9", "json")
-    broken(put("nodes", 1, "mesh", value=9), "index 9", "json")
+    broken(put("nodes", 0, "camera", value=9), "no entry 9 of 'cameras'", "json")
+    broken(put("nodes", 1, "mesh", value=9), "no entry 9 of 'meshes'", "json")
     broken(put("nodes", 1, "children", value=[1]), "recursive", "json")

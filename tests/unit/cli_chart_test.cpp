@@ -116,7 +116,7 @@ TEST_F(Program, SaysThatPixelsAreNoiseAlone) {
 TEST_F(Program, SuggestsNoPathsFromTheSky) {
     scratch.write("sky.yaml", "camera: {from: [0, 0, 3], to: [0, 0, 0]}\nmaterials: {white: {type: diffuse}}\n"
                               "shapes: [{type: sphere, material: white}]\nemitters: [{type: environment}]\n");
-    EXPECT_EQ(run("paths suggest sky.yaml"), 2);
+    EXPECT_EQ(run("paths suggest sky.yaml -t 1"), 2);
     EXPECT_THAT(read("err"), HasSubstr("sky.yaml: found light from infinitely far away alone, expected emitters"));
 }
 
@@ -142,6 +142,10 @@ TEST_F(Program, PlanTellsWhatIsLeftOutAndWhy) {
     EXPECT_EQ(paths["method"], "path");
     EXPECT_NEAR(paths["cpu_seconds"], 3, 1.5);
     for (const auto& choice : paths["choices"]) EXPECT_EQ(choice["on"], false) << choice["name"];
+    ASSERT_EQ(run("plan scene.yaml --json --method auto --cpu-time 3"), 0) << read("err");
+    const auto timed = nlohmann::json::parse(read("out"));
+    EXPECT_GT(timed["stages"]["trials"], 0) << "which are within the time";
+    EXPECT_NEAR(timed["cpu_seconds"], 3, 1.5);
     ASSERT_EQ(run("plan scene.yaml -D light_paths=20k"), 0);
     EXPECT_THAT(read("out"), HasSubstr("off         caustic map and proposals: "));
 }

@@ -232,6 +232,36 @@ TEST_F(LongRender, ATargetThatIsMissedIsAWarning) {
     EXPECT_EQ(run("render scene.yaml -q --no-png -o b.exr -D target_error=0"), 0) << "none";
 }
 
+TEST_F(LongRender, PassesToAnErrorFitIntoTheTime) {
+    for (const char* method : {"auto", "path", "ipm", "mlt"}) {
+        ASSERT_EQ(run("render " KEYHOLE_SOURCE_DIR
+                      "/scenes/box.yaml --resolution 48x36 --no-png -o a.exr --stats s.json "
+                      "--target-error 1e-4 --cpu-time 2 -D max_depth=12 --method " +
+                      std::string(method)),
+                  0)
+            << read("err");
+        EXPECT_THAT(read("err"), HasSubstr("not 0.01 % as was asked for")) << method;
+        EXPECT_THAT(read("err"), HasSubstr("48 x 36 pixels, relative error ")) << method;
+        EXPECT_GE(nlohmann::json::parse(read("s.json"))["values"]["passes"], 4) << method;
+        EXPECT_EQ(read_exr(scratch.path("a.exr")).metadata.at("complete"), "no") << method;
+    }
+}
+
+TEST_F(LongRender, SamplesOfTheFileAreTheMostOfAPassToAnError) {
+    std::string text = kScene;
+    text.replace(text.find("spp: 2"), 6, "spp: 400");
+    scratch.write("fine.yaml", text);
+    const auto samples_of_a_pass = [&](const std::string& options) {
+        EXPECT_EQ(run("render " + options + " -q --no-png -o a.exr --stats s.json --method path"), 0) << read("err");
+        return std::stod(read_exr(scratch.path("a.exr")).metadata.at("samples")) /
+               nlohmann::json::parse(read("s.json"))["values"]["passes"].get<double>();
+    };
+    EXPECT_LT(samples_of_a_pass("fine.yaml --target-error 0.3"), 100) << "a loose one is reached early";
+    EXPECT_EQ(samples_of_a_pass("scene.yaml --target-error 0.3"), 2);
+    EXPECT_EQ(samples_of_a_pass("fine.yaml --target-error 0.3 --spp 130"), 130) << "named";
+    EXPECT_EQ(samples_of_a_pass("fine.yaml --target-error 0.3 --spp 3 --cpu-time 5"), 3);
+}
+
 TEST_F(LongRender, ReachesAnErrorByWhateverEffort) {
     ASSERT_EQ(run("render scene.yaml -q --no-png -o a.exr --quality draft --target-error 0.9 --stats s.json"), 0)
         << read("err");

@@ -26,7 +26,7 @@ TEST_F(Program, RenderWritesPicturesWithTheirHistory) {
     EXPECT_EQ(p.metadata.at("seed"), "5");
     EXPECT_EQ(p.metadata.at("scene"), "scene.yaml");
     EXPECT_THAT(p.metadata.at("settings"),
-                HasSubstr("method=path plan=auto gather_coverage=true spp=2 adaptive=false seed=5"));
+                HasSubstr("method=path plan=auto gather_coverage=true spp=2 keep_spp=false adaptive=false seed=5"));
     for (const char* key : {"program", "rays", "seconds", "peak memory", "stage path tracing"})
         EXPECT_TRUE(p.metadata.contains(key)) << key;
     EXPECT_TRUE(exists("scene.png"));
@@ -265,6 +265,58 @@ TEST_F(Program, InfoTellsWhatASceneConsistsOf) {
     ASSERT_EQ(run("info info.yaml"), 0);
     EXPECT_THAT(read("out"), testing::AllOf(HasSubstr("4 triangles"), HasSubstr("1 glass"), HasSubstr("area: 60 W"),
                                             HasSubstr("wall.pfm"), HasSubstr("2 instances")));
+}
+
+TEST_F(Program, InfoListsPicturesOfLampsAndCountsLampsWithoutMaterialOnce) {
+    std::string lamps, floats = "PF\n2 2\n-1.0\n";
+    for (int i = 0; i < 12; ++i) floats.append("\0\0\x80\x3f", 4);
+    scratch.write("gobo.pfm", floats);
+    scratch.write("sky.pfm", floats);
+    for (const char* x : {"0", "2", "4"})
+        lamps += std::string("  - {type: sphere, center: [") + x + ", 5, 0], radius: 0.1, emission: {power: 1}}\n";
+    scratch.write("lamps.yaml",
+                  kScene + std::string("emitters:\n  - {type: projection, position: [0, 2, 2], power: 1, image: "
+                                       "gobo.pfm}\n  - {type: environment, image: sky.pfm}\n"));
+    std::string text = read("lamps.yaml");
+    scratch.write("lamps.yaml", text.insert(text.find("render:"), lamps));
+    ASSERT_EQ(run("info lamps.yaml --json"), 0) << read("err");
+    const auto info = nlohmann::json::parse(read("out"));
+    EXPECT_EQ(info["materials"], (nlohmann::json{{"diffuse", 2}}));
+    ASSERT_EQ(info["textures"].size(), 2u);
+    EXPECT_THAT(info["textures"][0]["file"].get<std::string>(), HasSubstr("gobo.pfm"));
+    EXPECT_EQ(info["textures"][0]["width"], 2);
+}
+
+TEST_F(Program, ABlackPictureIsCalledBlackByPhotonsToo) {
+    std::string text = kScene;
+    text.insert(text.find("render:"), "  - {type: box, material: white, min: [-2, 2, -2], max: [2, 4, 2]}\n");
+    scratch.write("dark.yaml", text);
+    for (const char* method : {"path", "ipm", "pm"}) {
+        ASSERT_EQ(run("render dark.yaml --no-png -o a.exr -D light_paths=2k --method " + std::string(method)), 0);
+        EXPECT_THAT(read("err"), HasSubstr("the picture is black")) << method;
+    }
+}
+
+TEST_F(Program, AMistakeOfAnEntryWithBouncesIsToldOnce) {
+    scratch.write("paths.yaml", "paths:\n  - points: [[0, 3, 0], {bounces: [1, 10]}, {through: {corner: [2, 0, 0], "
+                                "u: [0, 1, 0], v: [0, 0, 1]}}, [0, -3, 0]]\n");
+    EXPECT_EQ(run("paths check scene.yaml paths.yaml"), 2);
+    const std::string out = read("out");
+    EXPECT_EQ(out.find("point 4: found"), out.rfind("point 4: found"));
+    EXPECT_THAT(out, HasSubstr("from the middle of the opening"));
+    EXPECT_THAT(read("err"), testing::Not(HasSubstr("more)")));
+}
+
+TEST_F(Program, SamplesThatAreNamedAreKeptWhateverAutoTakes) {
+    const auto samples = [&](const std::string& options) {
+        EXPECT_EQ(run("render scene.yaml --no-png -o a.exr --method auto -D max_depth=1 " + options), 0) << read("err");
+        return std::stod(read_exr(scratch.path("a.exr")).metadata.at("samples"));
+    };
+    EXPECT_EQ(samples("--spp 3"), 3);
+    EXPECT_THAT(read("err"), testing::Not(HasSubstr("samples a pixel instead")));
+    EXPECT_GT(samples("-D plan=auto"), 2) << "of the scene";
+    EXPECT_THAT(read("err"), HasSubstr(" samples a pixel instead of 2 take the work that the settings ask for"));
+    EXPECT_EQ(samples("-D keep_spp=true"), 2);
 }
 
 TEST_F(Program, InfoReadsPbrtAndPassesItsWarningsOn) {

@@ -236,8 +236,30 @@ TEST_F(GltfScene, BrokenFilesAreErrors) {
     EXPECT_THAT(whole("{}"), HasSubstr("found the glTF version ''"));
     EXPECT_THAT(whole(R"({"asset": {"version": "1.0"}})"), HasSubstr("found the glTF version '1.0'"));
     EXPECT_THAT(whole(std::string("glTF\2\0\0\0\x20\0\0\0\xFF\xFF\xFF\x7FJSON{}  ", 24)),
-                HasSubstr("found a broken GLB file"));
+                HasSubstr("found a broken GLB file of 24 bytes, expected 2147483667 at least for its JSON"));
+    EXPECT_THAT(whole(std::string("glTF\2\0\0\0\xFF\0\0\0", 12)),
+                HasSubstr("found a broken GLB file of 12 bytes, expected more than 20"));
     EXPECT_THAT(whole(R"({"asset": {"version": "2.0"}})"), testing::Not(HasSubstr("no error")));
+}
+
+TEST_F(GltfScene, NamesOfNodesNeedNotDiffer) {
+    const LoadedScene scene = read(R"("materials": [{}], "scenes": [{"nodes": [0, 1, 2, 3]}],
+      "nodes": [{"mesh": 0, "name": "a", "skin": 0}, {"name": "a", "camera": 0},
+                {"name": "a", "extensions": {"KHR_lights_punctual": {"light": 0}}}, {"name": "a", "mesh": 0}],
+      "skins": [{"skeleton": 1, "name": "a"}], "cameras": [{"perspective": {"yfov": 1}, "name": "a"}],
+      "extensions": {"KHR_lights_punctual": {"lights": [{"type": "spot", "name": "a"}]}})");
+    EXPECT_EQ(scene.description.shapes.size(), 2u);
+    EXPECT_EQ(scene.description.emitters.size(), 1u);
+    EXPECT_THAT(warnings_, testing::Not(Contains(HasSubstr("found no camera"))));
+    EXPECT_THAT(warnings_, Contains(HasSubstr("skins are left out")));
+}
+
+TEST_F(GltfScene, WhatIsReferredToHasToBeThere) {
+    EXPECT_THAT(error_of(R"("scenes": [{"nodes": [7]}], "nodes": [{"mesh": 0}])"),
+                HasSubstr("scene.gltf: found no entry 7 of 'nodes', which is referred to"));
+    EXPECT_THAT(error_of(R"("scenes": [], "nodes": [{"mesh": 0}])"), HasSubstr("found no entry 0 of 'scenes'"));
+    EXPECT_THAT(error_of(R"("scenes": [{"nodes": [0]}], "nodes": [{"mesh": 5}])"),
+                HasSubstr("found no entry 5 of 'meshes'"));
 }
 
 TEST_F(GltfScene, MatricesOfNodesAreAffine) {

@@ -254,6 +254,11 @@ std::vector<Mistake> mistakes() {
         in_section("render: {spp: @0}", "found '0' for 'spp', expected a whole number from 1 to 16777216"),
         in_section("render: {spp: @1.5}", "expected a whole number"),
         in_section("render: {spp: @[4]}", "found a list of 1"),
+        in_section("user_paths: @no.yaml", "no.yaml: found no such file, expected a file of user paths"),
+        in_section("materials: {a: {type: diffuse, reflectance: {type: image, file: @junk.ply}}}",
+                   "junk.ply: found no image that can be read (OpenImageIO "),
+        in_section("emitters: [{type: environment, image: @wide.pfm, layout: octahedral}]",
+                   "found an octahedral picture of 2 x 1 pixels for an environment, expected a square"),
         in_section(
             "render: {method: @mpss}",
             "expected one of auto, path, bdpt, ipm, mmlt, mps, cps, mlt, pssmlt, rjmlt, pm; did you mean 'mps'?"),
@@ -286,6 +291,7 @@ class SceneYamlErrors : public testing::Test {
         directory.write("cornerless.ply", kPlyHead + "0 0 0\n1 0 0\n0 1 0\n0\n");
         directory.write("nan.ply", kPlyHead + "0 0 nan\n1 0 0\n0 1 0\n3 0 1 2\n");
         directory.write("index.ply", kPlyHead + "0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n");
+        directory.write("wide.pfm", std::string("PF\n2 1\n-1.0\n") + std::string(2 * 3 * sizeof(float), '\0'));
         directory.write("white.yaml", "materials: {white: {type: diffuse}}\n");
     }
     ScratchDirectory directory;

@@ -62,6 +62,23 @@ Settings with_effort(const Settings& settings, double effort, std::int64_t pixel
     return s;
 }
 
+Settings with_effort_at_most(const Settings& settings, double effort, std::int64_t pixels,
+                             const std::set<std::string>& given) {
+    Settings s = with_effort(settings, effort, pixels, given);
+    for (const auto member : {&Settings::spp, &Settings::light_paths, &Settings::mutations,
+                              &Settings::brightness_samples, &Settings::importons, &Settings::cache_rays})
+        s.*member = std::min(s.*member, settings.*member);
+    if (settings.photons > 0) s.photons = std::min(s.photons, settings.photons);
+    s.cache_error = std::max(s.cache_error, settings.cache_error);
+    s.cache_min_reach = std::max(s.cache_min_reach, settings.cache_min_reach);
+    return s;
+}
+
+double effort_of_pass(double target_error) {
+    constexpr double kErrorOfUnit = 0.04; // what a unit of effort leaves, about, in scenes that are not easy
+    return std::pow(kErrorOfUnit / target_error, 2);
+}
+
 Settings with_quality(const Settings& settings, Quality quality, const std::set<std::string>& given) {
     const double effort = quality == Quality::draft ? 0.5 : quality == Quality::good ? 4 : 24;
     Settings s = with_effort(settings, effort, static_cast<std::int64_t>(kPixels), given);

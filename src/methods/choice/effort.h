@@ -25,6 +25,18 @@ constexpr double kSecondsOfEffort = 5;
 Settings with_effort(const Settings& settings, double effort, std::int64_t pixels, const std::set<std::string>& given,
                      const StageBalance& balance = {});
 
+/// The same, but nothing more or finer than in `settings`: for passes that are to be short.
+Settings with_effort_at_most(const Settings& settings, double effort, std::int64_t pixels,
+                             const std::set<std::string>& given);
+
+/// Passes that should fit into a time, where as many are made as do: several, because four tell an error, and scenes
+/// may be as many times slower than others, or than their trials.
+constexpr double kPassesInTime = 8;
+
+/// Effort of a pass of a render to a relative error, of which there are four at least: where that much is noise the
+/// first few are to be enough.
+double effort_of_pass(double target_error);
+
 /// What `--quality` names: the effort that makes a draft, a good picture, or a final one, at any size of the picture.
 enum class Quality { draft, good, final };
 constexpr auto words_of(Quality) { return std::to_array<std::string_view>({"draft", "good", "final"}); }

@@ -45,6 +45,8 @@ double ExpectedCost::cpu_seconds() const {
 
 ExpectedCost expect_cost(Scene& scene, const Settings& settings, const UserPathFile& user_paths, Findings& findings,
                          std::optional<double> time, const std::set<std::string>& given) {
+    const double start = cpu_seconds();
+    double trials = 0; // CPU seconds of those that a render makes as well
     const UserPaths paths = bind_user_paths(scene, user_paths);
     const RunContext none;
     Settings s = settings;
@@ -59,6 +61,7 @@ ExpectedCost expect_cost(Scene& scene, const Settings& settings, const UserPathF
             if (ipm) seconds = ipm->cost.predict(s, pixels);
         }
         const auto tried = with_time(c, seconds, [](const TrialContext& t) { return try_methods(t, kAll); });
+        trials = cpu_seconds() - start;
         if (!tried.empty()) {
             expected.remarks.push_back(describe_choice(tried));
             if (time)
@@ -69,7 +72,12 @@ ExpectedCost expect_cost(Scene& scene, const Settings& settings, const UserPathF
     }
     expected.method = s.method->name;
     const auto cost = cost_of(c, *s.method);
-    if (cost && time) s = settings_in_time(*cost, s, given, pixels, *time);
+    if (cost && time) {
+        // A render has its trials within the time, and makes none where somebody named a method that samples pixels.
+        if (settings.method != &methods::automatic && !s.method->samples_pixels) trials = cpu_seconds() - start;
+        if (trials > 0) expected.stages.emplace_back(stages::trials.name, std::min(trials, *time));
+        s = settings_in_time(*cost, s, given, pixels, *time - expected.cpu_seconds());
+    }
     if (cost)
         for (const auto& [stage, taken] : cost->cost.stages)
             expected.stages.emplace_back(stage->name, cost->cost.predict(*stage, taken, s, pixels));

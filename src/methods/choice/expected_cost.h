@@ -13,9 +13,10 @@
 namespace keyhole {
 
 struct ExpectedCost {
-    std::string method;                                 ///< the setting's, or what `auto` stands for
-    std::vector<std::pair<std::string, double>> stages; ///< name, CPU seconds; empty: too slow to tell
-    std::uint64_t photon_bytes = 0;                     ///< at most, for photons, their index and importance maps
+    std::string method; ///< the setting's, or what `auto` stands for
+    /// Name, CPU seconds; empty: too slow to tell. With a time trials are among them.
+    std::vector<std::pair<std::string, double>> stages;
+    std::uint64_t photon_bytes = 0; ///< at most, for photons, their index and importance maps
     std::vector<std::string> remarks;
 
     double cpu_seconds() const;

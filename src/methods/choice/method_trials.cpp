@@ -278,7 +278,8 @@ std::vector<TriedMethod> try_methods(const TrialContext& c, double most) {
         const double taken = start - c.context.stop->seconds_left() - before;
         if (method->keeps_photons) beyond += std::max(0.0, taken - part);
     }
-    rank_methods(tried, c, c.context.stop->seconds_left());
+    const bool in_passes = c.settings.passes == 0 || c.settings.target_error > 0;
+    rank_methods(tried, c, c.context.stop->seconds_left(), {.passes = in_passes ? kPassesInTime : 1});
     return tried;
 }
 
@@ -301,7 +302,9 @@ std::vector<TriedMethod> try_methods_by_work(const TrialContext& c) {
                 tried.push_back(std::move(*t));
         }
     }
-    if (!tried.empty()) rank_methods(tried, c, work_asked_for(c, tried));
+    RankLimits limits;
+    if (c.settings.keep_spp) limits.samples = static_cast<double>(c.settings.spp);
+    if (!tried.empty()) rank_methods(tried, c, work_asked_for(c, tried), limits);
     return tried;
 }
 
@@ -311,7 +314,7 @@ Settings settings_of_same_work(const TrialContext& c, std::span<const TriedMetho
     s.method = best.method;
     const double pixels = c.scene.camera().window().size(), work = work_asked_for(c, tried);
     if (best.method->samples_pixels) {
-        s.spp = std::max(s.spp, static_cast<std::int64_t>(work / best.of.per_sample(pixels)));
+        if (!s.keep_spp) s.spp = std::max(s.spp, static_cast<std::int64_t>(work / best.of.per_sample(pixels)));
     } else if (!best.method->keeps_photons) {
         const double effort = affordable_effort(best.of.cost, s, {}, {}, pixels, work);
         const Settings same = with_effort(s, effort, static_cast<std::int64_t>(pixels), {});

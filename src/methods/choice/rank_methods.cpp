@@ -36,7 +36,7 @@ double predict_by_trial(const TriedMethod& t, const TrialContext& c, double left
     s.method = t.method;
     double effort = 0;
     s = t.of.settings_for(s, c.given, pixels, left, effort);
-    const double samples = static_cast<double>(s.spp * s.passes) / t.of.samples;
+    const double samples = static_cast<double>(s.spp * std::max<std::int64_t>(1, s.passes)) / t.of.samples;
     const double growth = effort / t.of.cost.effort;
     const double of_samples = grain_that_counts(c.settings, *t.method) * t.by_samples / samples;
     return t.method->trial.doubt *
@@ -46,8 +46,13 @@ double predict_by_trial(const TriedMethod& t, const TrialContext& c, double left
 
 /// The squared error in the time that is left, told from that of a trial. What isn't led through the openings that were
 /// found misses most of the light in a short one: its picture is dark and quiet, and its error larger than it seems.
-double predict(const TriedMethod& t, const TrialContext& c, double left) {
+double predict(const TriedMethod& t, const TrialContext& c, double left, const RankLimits& limits) {
     const double hidden = t.method->follows_user_paths ? 1 : std::sqrt(c.findings.gain_by_openings);
+    // Of what photons err, part is common to passes, part goes with their number: half of it by powers.
+    if (t.method->keeps_photons)
+        return hidden * predict_by_trial(t, c, left / limits.passes) / std::sqrt(limits.passes);
+    if (t.method->samples_pixels)
+        left = std::min(left, limits.samples * t.of.per_sample(c.scene.camera().window().size()));
     return hidden * predict_by_trial(t, c, left);
 }
 
@@ -70,7 +75,7 @@ double blur_of(const TriedMethod& photons, std::span<const TriedMethod> tried) {
 
 } // namespace
 
-void rank_methods(std::vector<TriedMethod>& tried, const TrialContext& c, double left) {
+void rank_methods(std::vector<TriedMethod>& tried, const TrialContext& c, double left, const RankLimits& limits) {
     std::vector<TrialPictures> pictures;
     for (const TriedMethod& t : tried) {
         pictures.push_back(t.pictures);
@@ -84,7 +89,7 @@ void rank_methods(std::vector<TriedMethod>& tried, const TrialContext& c, double
         double& grain = tried[i].error.grain;
         if (tried[i].method->keeps_photons || tried[i].method->samples_pixels)
             grain = std::max(kLeastGrain * grain, grain - within / tried[i].of.samples);
-        tried[i].predicted = predict(tried[i], c, left);
+        tried[i].predicted = predict(tried[i], c, left, limits);
     }
     std::ranges::stable_sort(tried, {}, &TriedMethod::predicted);
 }

@@ -91,12 +91,14 @@ class RenderInTime {
 
   private:
     double left() const { return context_.stop->seconds_left(); }
+    /// Whether the time goes into passes of one length.
+    bool in_passes() const { return settings_.passes == 0 || settings_.target_error > 0; }
     TrialContext trial_context() { return {scene_, settings_, given_, context_, paths_->paths(), findings_}; }
     /// Whether two methods are so close that a longer look is worth its time. Several small photon maps are worse than
     /// a large one, and what they show of it is little.
     bool is_close() const {
-        return tried_.size() > 1 && tried_[1].predicted < kClose * tried_[0].predicted && fits_part(tried_[0]) &&
-               fits_part(tried_[1]);
+        return !in_passes() && tried_.size() > 1 && tried_[1].predicted < kClose * tried_[0].predicted &&
+               fits_part(tried_[0]) && fits_part(tried_[1]);
     }
     /// Whether a part of the time shows anything of the method: of one that samples pixels, a sample of each at least.
     bool fits_part(const TriedMethod& t) const {
@@ -108,12 +110,13 @@ class RenderInTime {
     void choose() {
         if (settings_.method != &methods::automatic) {
             use(*settings_.method);
-            if (method_->samples_pixels) return;
+            if (method_->samples_pixels && !in_passes()) return;
             const StageClock clock(trials_, stages::trials);
-            cost_ = try_cost(trial_context(), *method_, std::min(kTrialShare * start_, kTrialSeconds),
-                             kLongestTrial * start_);
+            const double seconds = std::min(kTrialShare * start_, kTrialSeconds);
+            cost_ = try_cost(trial_context(), *method_, seconds,
+                             method_->samples_pixels ? seconds : kLongestTrial * start_);
             forget_rough_findings();
-            if (!cost_) throw Interrupted();
+            if (!cost_ && !method_->samples_pixels) throw Interrupted();
             return;
         }
         const StageClock clock(trials_, stages::trials);
@@ -186,6 +189,7 @@ class RenderInTime {
     /// Settings that use so many seconds, and of a method whose last stage goes on as long as there is time: more than
     /// that. All of these are good at any length.
     Settings settings_for(double seconds, bool open_ended) {
+        if (in_passes()) return settings_of_passes(seconds);
         Settings s = settings_;
         s.method = method_;
         if (!given_.contains("adaptive")) s.adaptive = true;
@@ -203,6 +207,28 @@ class RenderInTime {
         } else if (open_ended && s.passes == 1 && !given_.contains("spp")) {
             s.spp = 1 << 24;
         }
+        return s;
+    }
+
+    /// Settings of passes that are good for an error, too: none longer than its share of the time, nor than it would be
+    /// without one.
+    Settings settings_of_passes(double seconds) {
+        Settings s = settings_;
+        s.method = method_;
+        const bool counted = given_.contains("passes") && s.passes > 0;
+        s.passes = counted ? s.passes : 1;
+        seconds *= kUse / (counted ? 1 : kPassesInTime);
+        if (!method_->samples_pixels) {
+            std::set<std::string> given = given_;
+            given.insert("passes");
+            seconds = std::min(seconds, cost_->cost.predict(s, pixels_));
+            s = cost_->settings_for(s, given, pixels_, seconds, effort_);
+        } else if (!given_.contains("spp")) {
+            const double most = cost_ ? seconds / static_cast<double>(s.passes) / cost_->per_sample(pixels_) : 1;
+            s.spp = std::max<std::int64_t>(1, std::min(s.spp, static_cast<std::int64_t>(most)));
+        }
+        planned_spp_ = s.spp;
+        if (!counted) s.passes = 0;
         return s;
     }
 
@@ -244,6 +270,7 @@ class RenderInTime {
         result.settings = chosen;
         if (cost_ && (method_->keeps_photons || result.stats.complete))
             cost_->cost = Experience(chosen, effort_, pixels_, result.stats, start - left());
+        used_up_ = used_up_ || in_passes();
         return Part{std::move(result), start - left()};
     }
 
@@ -262,6 +289,7 @@ class RenderInTime {
                                          method_->name, start_));
         remarks_.push_back("paths are traced: " + std::string(method_->name) + " was not done in its time");
         use(methods::path);
+        cost_.reset();
         render_rest();
         return mean_.empty() ? look_first() : finish();
     }
@@ -273,7 +301,7 @@ class RenderInTime {
 
     RenderResult finish() {
         RenderResult result = mean_.take();
-        const bool by_number = method_->samples_pixels && given_.contains("spp");
+        const bool by_number = in_passes() || (method_->samples_pixels && given_.contains("spp"));
         result.stats.complete = !context_.stop->requested() && (result.stats.complete || !by_number);
         if (result.stats.passes == 0) result.stats.passes.reset();
         result.stats.remarks.insert(result.stats.remarks.begin(), remarks_.begin(), remarks_.end());

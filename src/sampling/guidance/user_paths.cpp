@@ -48,10 +48,21 @@ class Binder {
     [[noreturn]] void fail(std::size_t i, const std::string& message) const {
         throw InputError(spec_.points[i].where, fmt::format("path '{}', point {}: {}", spec_.name, number(i), message));
     }
-    /// Of a point in the file, from 1: bounces are none. Of a bounce that of the point before it.
-    std::ptrdiff_t number(std::size_t i) const {
-        return std::count_if(spec_.points.begin(), spec_.points.begin() + static_cast<std::ptrdiff_t>(i) + 1,
-                             [](const UserPathPoint& p) { return !p.bounce; });
+    /// Place of a point in the file's list, from 1, in which openings and bounces have one as well.
+    int number(std::size_t i) const {
+        int number = 0;
+        for (std::size_t k = 0; k <= i; ++k) {
+            const UserPathPoint& p = spec_.points[k];
+            if (!p.bounce)
+                number += p.through ? 2 : 1;
+            else if (k == 1) // one entry for all of them
+                ++number;
+        }
+        return number;
+    }
+    /// Where the segment to a point begins, in words.
+    std::string start(std::size_t i) const {
+        return spec_.points[i - 1].bounce ? "the middle of the opening" : fmt::format("point {}", number(i - 1));
     }
 
     SurfacePoint find_light();
@@ -101,29 +112,27 @@ SurfacePoint Binder::find_light() {
 void Binder::aim(std::size_t i) {
     const Vertex& from = found_.back();
     if (miss(i, from.point.p) <= 1e-6 * (scene_.upper() - scene_.lower()).length())
-        fail(i, fmt::format("found the same place as point {}, expected another one", number(i - 1)));
+        fail(i, fmt::format("found the same place as {}, expected another one", start(i)));
     const auto opening = portal(i);
     if (!opening && !(spec_.beta[i - 1] > 0))
-        fail(i, fmt::format("found a cone of no width for the segment from point {}, expected beta above 0",
-                            number(i - 1)));
+        fail(i, fmt::format("found a cone of no width for the segment from {}, expected beta above 0", start(i)));
     const Vec3 w = (given(i) - from.point.p).normalized();
     const bool anywhere = spec_.points[i - 1].bounce;
     if (opening && !anywhere && !(opening->density(from.point.p, w) > 0))
-        fail(i, fmt::format("found that the segment from point {} passes beside its opening", number(i - 1)));
+        fail(i, fmt::format("found that the segment from {} passes beside its opening", start(i)));
     if (i == 1 && is_black(scene_.emitter(from.point.emitter).radiance(from.point, w)))
-        fail(0, "found an emitter that sends no light towards point 2");
+        fail(0, fmt::format("found an emitter that sends no light towards point {}", number(1)));
     const auto hit = next_vertex(scene_, from, w);
-    if (!hit || hit->point.site != Site::surface)
-        fail(i, fmt::format("found no surface on the way from point {}", number(i - 1)));
+    if (!hit || hit->point.site != Site::surface) fail(i, fmt::format("found no surface on the way from {}", start(i)));
     const double off = miss(i, hit->point.p);
     if (off > tolerance_) {
         const bool before = Vec3(hit->point.p - from.point.p).length() < Vec3(given(i) - from.point.p).length();
         if (before)
-            fail(i, fmt::format("found the segment from point {} blocked at {}, {} before this point", number(i - 1),
+            fail(i, fmt::format("found the segment from {} blocked at {}, {} before this point", start(i),
                                 text(hit->point.p), text(off)));
-        fail(i, fmt::format("found it in the air: the surface on the way from point {} is {} behind it, at {}; "
+        fail(i, fmt::format("found it in the air: the surface on the way from {} is {} behind it, at {}; "
                             "expected one within {}",
-                            number(i - 1), text(off), text(hit->point.p), text(tolerance_)));
+                            start(i), text(off), text(hit->point.p), text(tolerance_)));
     }
     add(i, *hit);
 }
@@ -172,8 +181,7 @@ void Binder::check_scattering(std::size_t i, const Vec3& to_eye) const {
     if (v.specular()) return;
     const Vec3 to_light = direction(v.point, found_[i - 1].point);
     if (is_black(scatter(v.point, v.bsdf, Event::finite, to_light, to_eye).value))
-        fail(i, fmt::format("found a surface that scatters no light from point {} to point {}", number(i - 1),
-                            number(i + 1)));
+        fail(i, fmt::format("found a surface that scatters no light from {} to point {}", start(i), number(i + 1)));
 }
 
 bool Binder::is_seen() const {

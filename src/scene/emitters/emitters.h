@@ -14,6 +14,8 @@
 
 namespace keyhole {
 
+struct LoadedImage;
+
 /// Emission from the surface of `shape`, whose `emission` is set; points are uniform by area, directions follow the
 /// power. Of an invisible light no ray finds any. `shape` must outlive the emitter; `index` is its place in the scene.
 /// @throws InputError for a shape without area.
@@ -65,6 +67,7 @@ struct EnvironmentImage {
     int width = 0, height = 0;  ///< an octahedral picture is square
     std::vector<Vec3> radiance; ///< [W/(m^2 sr)] row by row from the top; each pixel is constant
     SphereLayout layout = SphereLayout::lat_long;
+    std::shared_ptr<const LoadedImage> file{}; ///< that it comes from, as scenes tell about themselves
 
     /// Index of the pixel at a place of the picture.
     std::size_t pixel_at(const Vec2d& place) const {

@@ -3,6 +3,7 @@
 #include "scene/emitters/emitters.h"
 #include "scene/images/image.h"
 #include "scene/load/properties.h"
+#include "scene/texture.h"
 #include "scene/warp.h"
 
 #include <fmt/format.h>
@@ -297,6 +298,7 @@ EnvironmentImage read_environment_image(const std::string& path, SphereLayout la
     };
     if (std::ranges::any_of(out.radiance, impossible))
         throw InputError(path + ": found a pixel that is negative or not finite, expected radiance");
+    out.file = note_picture({path, out.width, out.height, image->channels, pixels * sizeof(Vec3), image->hash});
     return out;
 }
 
@@ -304,7 +306,9 @@ std::unique_ptr<Emitter> make_image_environment(EnvironmentImage image, const Rg
     const auto size = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
     if (size == 0 || image.radiance.size() != size) throw InputError("an environment's picture has no pixels");
     if (image.layout == SphereLayout::octahedral && image.width != image.height)
-        throw InputError("an environment's octahedral picture is not square");
+        throw InputError(
+            fmt::format("found an octahedral picture of {} x {} pixels for an environment, expected a square",
+                        image.width, image.height));
     if (!is_rotation(to_world)) throw InputError("an environment's transform is more than a rotation");
     return std::make_unique<ImageEnvironment>(std::move(image), scale, to_world);
 }

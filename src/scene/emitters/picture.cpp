@@ -5,6 +5,8 @@
 #include "scene/emitters/at_a_point.h"
 #include "scene/load/properties.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -58,7 +60,8 @@ template <class View> class PictureEmitter final : public EmitterAtAPoint {
           from_world_(frame.to_world.inverse()), scale_(scale) {
         if (!is_rotation(frame.to_world)) throw InputError("a light's transform is more than a rotation");
         if (image_.layout == SphereLayout::octahedral && image_.width != image_.height)
-            throw InputError("a light's octahedral picture is not square");
+            throw InputError(fmt::format("found an octahedral picture of {} x {} pixels for a light, expected a square",
+                                         image_.width, image_.height));
         std::vector<double> weights(image_.radiance.size());
         for (std::size_t i = 0; i < weights.size(); ++i) weights[i] = luminance(pixel(i)) * pixel_solid_angle(i);
         for (const double w : weights) power_ += w;

@@ -20,6 +20,8 @@ namespace {
 struct Cache {
     std::mutex mutex;
     std::map<std::pair<std::string, ImagePart>, std::weak_ptr<const TextureImage>> images;
+    std::map<std::string, std::string> names; ///< by canonical path, of those that have one
+    std::vector<std::weak_ptr<const LoadedImage>> pictures;
 };
 
 Cache& cache() {
@@ -84,9 +86,33 @@ std::vector<LoadedImage> loaded_images() {
     std::vector<LoadedImage> list;
     const std::lock_guard lock(cache().mutex);
     for (const auto& [key, entry] : cache().images)
-        if (const auto image = entry.lock())
-            list.push_back({key.first, image->width, image->height, image->channels, image->bytes(), image->hash});
+        if (const auto image = entry.lock()) {
+            const auto name = cache().names.find(key.first);
+            list.push_back({name != cache().names.end() ? name->second : key.first, image->width, image->height,
+                            image->channels, image->bytes(), image->hash});
+        }
     return list;
+}
+
+void name_image(const std::string& path, const std::string& name) {
+    std::error_code error;
+    const std::lock_guard lock(cache().mutex);
+    cache().names[std::filesystem::weakly_canonical(path, error).string()] = name;
+}
+
+std::vector<LoadedImage> loaded_pictures() {
+    std::vector<LoadedImage> list;
+    const std::lock_guard lock(cache().mutex);
+    for (const auto& entry : cache().pictures)
+        if (const auto picture = entry.lock()) list.push_back(*picture);
+    return list;
+}
+
+std::shared_ptr<const LoadedImage> note_picture(LoadedImage picture) {
+    auto noted = std::make_shared<const LoadedImage>(std::move(picture));
+    const std::lock_guard lock(cache().mutex);
+    cache().pictures.emplace_back(noted);
+    return noted;
 }
 
 } // namespace keyhole

@@ -47,7 +47,13 @@ TextureImage read_other_image(const std::string& path, ImagePart part) {
     static ReadImage* const read = load_module();
     TextureImage image;
     std::string error;
-    if (!read(path, part, image, error)) throw InputError(path + ": " + error);
+    if (!read(path, part, image, error)) {
+        if (!error.starts_with("found"))
+            error = fmt::format("found no image that can be read ({}), expected EXR, PFM, TGA, JPEG or one that "
+                                "OpenImageIO reads, such as PNG",
+                                error);
+        throw InputError(path + ": " + error);
+    }
     return image;
 }
 

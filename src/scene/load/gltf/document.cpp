@@ -73,16 +73,22 @@ std::string ending_of(const std::string& bytes) {
 
 Document::Document(const std::string& path, Warnings& warnings) : path_(path), warnings_(warnings) {
     std::string text = read_bytes(path);
-    if (text.size() >= 20 && word_at(text, 0) == kMagic) {
+    if (text.starts_with("glTF")) {
         packed_ = true;
+        constexpr std::size_t kStart = 20; // of its JSON
+        if (text.size() < kStart)
+            fail(fmt::format("found a broken GLB file of {} bytes, expected more than {}", text.size(), kStart));
         if (const std::uint32_t version = word_at(text, 4); version != kVersion)
             fail(fmt::format("found version {} of GLB, expected {}", version, kVersion));
         const std::size_t json = word_at(text, 12);
-        if (word_at(text, 16) != kJsonChunk || json > text.size() - 20) fail("found a broken GLB file");
-        const std::size_t second = 20 + json;
+        if (word_at(text, 16) != kJsonChunk) fail("found a broken GLB file, expected JSON as its first part");
+        if (json > text.size() - kStart)
+            fail(fmt::format("found a broken GLB file of {} bytes, expected {} at least for its JSON", text.size(),
+                             kStart + json));
+        const std::size_t second = kStart + json;
         if (second + 8 <= text.size() && word_at(text, second + 4) == kBinaryChunk)
             binary_ = text.substr(second + 8, word_at(text, second));
-        text = text.substr(20, json);
+        text = text.substr(kStart, json);
     }
     try {
         root_ = Json::parse(text, [this](int depth, Json::parse_event_t, const Json&) {
@@ -172,6 +178,7 @@ std::string Document::image_file(std::size_t index) {
     const std::string file = (scratch_ / ("image-" + std::to_string(index) + ending_of(bytes))).string();
     if (!std::ofstream(file, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size())))
         fail("found no room for the images in the file");
+    name_image(file, fmt::format("{}, image {}", path_, index));
     return written_[index] = file;
 }
 

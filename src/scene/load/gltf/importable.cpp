@@ -46,6 +46,7 @@ class Rewriter {
 
     std::string rewrite() {
         check_extensions(document_);
+        keep_meshes();
         number_materials();
         for (Json& mesh : list_of(root_, "meshes"))
             for (Json& primitive : list_of(mesh, "primitives")) {
@@ -66,6 +67,19 @@ class Rewriter {
     Json& list_of(Json& object, const char* key) {
         const auto found = object.is_object() ? object.find(key) : object.end();
         return found != object.end() && found->is_array() ? *found : none_;
+    }
+
+    /// Without what is read elsewhere, or not at all: Assimp finds the nodes of lights, cameras and bones by their
+    /// names, which others may have in glTF, and refuses the file then.
+    void keep_meshes() {
+        constexpr const char* kLights = "KHR_lights_punctual";
+        for (const char* key : {"cameras", "skins", "animations"}) root_.erase(key);
+        if (extension(root_, kLights) != nullptr) root_["extensions"].erase(kLights);
+        for (Json& node : list_of(root_, "nodes")) {
+            if (!node.is_object()) continue;
+            for (const char* key : {"camera", "skin"}) node.erase(key);
+            if (extension(node, kLights) != nullptr) node["extensions"].erase(kLights);
+        }
     }
 
     void number_materials() {

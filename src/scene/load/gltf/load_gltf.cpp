@@ -75,8 +75,11 @@ class SceneBuilder {
 
     LoadedScene build() {
         LoadedScene scene;
-        scene.description.shapes = shapes();
-        gltf::LightsAndCamera scene_lights = gltf::read_nodes(document_);
+        const std::string content = gltf::importable(document_);
+        gltf::LightsAndCamera scene_lights = gltf::read_nodes(document_); // before the importer, which says less of it
+        scene.description.shapes = shapes(content);
+        scene.instances = static_cast<std::size_t>(std::ranges::count_if(
+            scene.description.shapes, [](const Shape& s) { return std::holds_alternative<MeshInstance>(s.geometry); }));
         scene.description.emitters = std::move(scene_lights.emitters);
         light_up(scene.description);
         if (!scene_lights.view) {
@@ -90,9 +93,8 @@ class SceneBuilder {
     }
 
   private:
-    std::vector<Shape> shapes() {
+    std::vector<Shape> shapes(const std::string& content) {
         std::vector<Shape> shapes;
-        const std::string content = gltf::importable(document_);
         for (MeshPart& part : import_parts(path_, &content)) {
             const std::size_t material = number_of(part.material);
             const gltf::VertexColors colors = gltf::vertex_colors(part);

@@ -57,6 +57,7 @@ class Walker {
         for (const std::size_t index : nodes) {
             const Json& node = document_.entry("nodes", index);
             const Transform to_world = transform_of(node) * parent;
+            if (node.contains("mesh")) document_.entry("meshes", node["mesh"].get<std::size_t>());
             if (node.contains("camera") && !things_.view) read_camera(node["camera"].get<std::size_t>(), to_world);
             if (const Json* light = extension(node, "KHR_lights_punctual"))
                 read_light(light->at("light").get<std::size_t>(), to_world);

@@ -74,10 +74,11 @@ class SceneReader {
         open_.pop_back();
     }
 
-    static std::string read_text(const std::string& path, const YamlNode* includer) {
+    static std::string read_text(const std::string& path, const YamlNode* includer,
+                                 std::string_view what = "a scene file") {
         if (includer == nullptr) return read_text_file(path);
         try {
-            return read_text_file(path);
+            return read_text_file(path, what);
         } catch (const InputError& e) {
             fail(*includer, e.what());
         }
@@ -130,7 +131,9 @@ class SceneReader {
         section("emitters", [&](const YamlNode& node) { read_emitters(node); });
         section("render", [&](const YamlNode& node) { read_settings(node); });
         section("user_paths", [&](const YamlNode& node) {
-            user_paths_ = load_user_paths(resolve_path(node, "the path of a file of user paths"));
+            const std::string path = resolve_path(node, "the path of a file of user paths");
+            read_text(path, &node, "a file of user paths"); // where there is none, this line says so
+            user_paths_ = load_user_paths(path);
         });
     }
 

@@ -161,6 +161,7 @@ void apply_override(Settings& settings, const std::string& key_equals_value, std
     const auto error =
         set_setting(settings, key_equals_value.substr(0, equals), key_equals_value.substr(equals + 1), &warning);
     if (error) throw InputError(error->message);
+    if (key_equals_value.starts_with("spp=")) settings.keep_spp = true; // who names them means them
     if (!warning.empty() && warnings != nullptr) warnings->push_back(warning);
 }
 

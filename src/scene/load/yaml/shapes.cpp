@@ -162,7 +162,8 @@ void ShapeReader::read_shape(const YamlNode& node, const Placement& placement) {
     shape.material_name = std::move(own.material_name);
     if (!shape.material) {
         if (emission == nullptr) fail(node, fmt::format("found a {} without 'material', expected that key", type));
-        shape.material = make_diffuse(Rgb(0.0)); // a lamp that reflects nothing
+        static const MaterialPtr black = make_diffuse(Rgb(0.0)); // one for all lamps that reflect nothing
+        shape.material = black;
     }
     constexpr NumberRange kOpacity{"an opacity", 0, 1};
     const SurfaceDefaults surface = shape.material->surface();
