@@ -76,6 +76,8 @@ def constants():
 
 def known():
     """What the table says so far of each constant's source."""
+    if TABLE.exists() and not TABLE.stat().st_size:
+        sys.exit(f"found an empty {TABLE.relative_to(ROOT)}, expected the table so far: write to another file, and move that")
     sources, file = {}, ""
     for line in TABLE.read_text().splitlines() if TABLE.exists() else ():
         if line.startswith("## "):
