@@ -25,8 +25,10 @@ struct Tuning : testing::Test {
     }
     /// What all kinds that a diffuse scene has get together.
     static double sum(const Settings& s) {
-        return s.proposals[proposals::bidirectional.weight] + s.proposals[proposals::lens_subpath.weight] +
-               s.proposals[proposals::lens_perturbation.weight] + s.proposals[proposals::photon_map.weight];
+        double sum = 0;
+        for (const ProposalKind* kind : proposal_kinds())
+            if (!kind->needs_specular && !kind->needs_user_paths) sum += s.proposals[kind->weight];
+        return sum;
     }
 };
 
