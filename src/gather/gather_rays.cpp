@@ -248,19 +248,14 @@ Rgb GatherRays::caustic_on_side(const Vertex& v, const Vec3& normal, const Vec3&
 Rgb GatherRays::outlying_on_side(const Vertex& v, const Vec3& normal, const Vec3& back, int longer) const {
     Rgb sum(0.0);
     if (maps_.outlying == nullptr) return sum;
-    const PhotonQuery query = query_at(v, normal, options_.caustic_radius, options_);
+    const SurfaceRegion region{v.point.p, normal};
     const PhotonReflection reflected(v, back, longer);
-    maps_.outlying->for_each_reaching(query.region, [&](const Photon& photon, float r) {
-        if (in_sight(scene_, query.region, sight_lift(r), photon.position()))
-            sum += reflected(photon) * photon.power() / (kPi * static_cast<double>(r) * r);
+    maps_.outlying->for_each_reaching(region, [&](const Photon& photon, const OutlyingPhotons::Lit& lit) {
+        const Rgb light = reflected(photon) * photon.power();
+        if (!is_black(light) && in_sight(scene_, region, sight_lift(lit.radius), photon.position()))
+            sum += light / lit.area;
     });
-    if (is_black(sum)) return sum;
-    // At an edge of the surface as much of a wide region is missing as of a lookup's. In folds and on small things that
-    // tells nothing of it.
-    const PilotedRegion piloted = piloted_region(maps_.caustic->pilots(), query);
-    const double area = maps_.caustic_surroundings->around(query.region, piloted).area;
-    const double disc = kPi * static_cast<double>(piloted.radius) * piloted.radius;
-    return sum / std::clamp(disc > 0 ? area / disc : 1.0, 0.5, 1.0);
+    return sum;
 }
 
 double GatherRays::chance_of_caustic(const Vertex& v, const Vec3& back, const SurfaceRegion& region, float r,

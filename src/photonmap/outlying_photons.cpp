@@ -2,10 +2,11 @@
 
 #include "core/parallel.h"
 #include "photonmap/confirmation.h"
+#include "photonmap/surface/density_in_sight.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <functional>
 
 namespace keyhole {
 namespace {
@@ -17,6 +18,9 @@ constexpr double kLeastPower = 2;
 /// Share of the light of the spot around it that a photon has. Spots of many photons come by chains, which would need
 /// to move on.
 constexpr double kLeastOfSpot = 0.25;
+/// Photons at most, of the brightest discs: where all light is sparse nearly each photon stands alone, and lookups
+/// would have to ask many.
+constexpr std::size_t kMost = 256;
 /// How much wider a region may be than that of a lookup: its light is fainter by the square.
 constexpr double kMostWider = 4;
 
@@ -33,35 +37,57 @@ bool may_outshine(std::span<const Photon> photons, std::size_t i, float max_radi
     return near <= kBeside || luminance(photons[i].power()) * near > kLeastPower * sum;
 }
 
-/// Radius of the region that a photon lights [m]; 0: that of lookups will do.
-float wide_radius(const Photon& photon, const PilotedMap& map, PhotonQuery query) {
+/// What a photon lights where it stands alone.
+struct Disc {
+    float radius = 0;      ///< of the region that it should light [m]; 0: that of a lookup will do
+    double brightness = 0; ///< if it lit that of a lookup [W/m^2, without pi]
+};
+
+Disc disc_of(const Photon& photon, const PilotedMap& map, PhotonQuery query) {
     query.region = {photon.position(), photon.normal().decode()};
     const float r = piloted_radius(map.pilots(), query);
     const SpotOfRegion spot =
         spot_of_region(map, query.region, r, photon.position(), [](const Photon& p) { return luminance(p.power()); });
     const bool by_others = luminance(photon.power()) < kLeastOfSpot * spot.light;
-    if (by_others || !(spot.unconfirmed() > 0)) return 0;
+    if (by_others || !(spot.unconfirmed() > 0)) return {};
     const double others = std::max(spot.all - spot.light, spot.light / (kMostWider * kMostWider));
-    return r * static_cast<float>(std::sqrt(spot.light / others));
+    return {r * static_cast<float>(std::sqrt(spot.light / others)), spot.light / (static_cast<double>(r) * r)};
+}
+
+/// What no more than kMost of the discs exceed; 0 where there are no more.
+double brightness_of_most(const std::vector<Disc>& discs) {
+    std::vector<double> sorted;
+    for (const Disc& d : discs)
+        if (d.radius > 0) sorted.push_back(d.brightness);
+    if (sorted.size() <= kMost) return 0;
+    std::ranges::nth_element(sorted, sorted.begin() + kMost, std::greater());
+    return sorted[kMost];
 }
 
 } // namespace
 
-OutlyingPhotons::OutlyingPhotons(PilotedMap& map, int k, float max_radius, float shrink) : OutlyingPhotons() {
+OutlyingPhotons::OutlyingPhotons(PilotedMap& map, int k, float max_radius, float shrink, const SurfacePatches* patches)
+    : OutlyingPhotons() {
     const std::span<const Photon> all = map.main_photons().photons();
     const PhotonQuery query{{}, max_radius, k, shrink};
-    std::vector<float> radii(all.size());
+    std::vector<Disc> discs(all.size());
     parallel_for(static_cast<std::int64_t>(all.size()), [&](std::int64_t i) {
         const auto at = static_cast<std::size_t>(i);
-        if (may_outshine(all, at, shrink * max_radius)) radii[at] = wide_radius(all[at], map, query);
+        if (may_outshine(all, at, shrink * max_radius)) discs[at] = disc_of(all[at], map, query);
     });
+    const double bound = brightness_of_most(discs);
     std::vector<Photon> outlying, others;
-    for (std::size_t i = 0; i < all.size(); ++i) (radii[i] > 0 ? outlying : others).push_back(all[i]);
+    for (std::size_t i = 0; i < all.size(); ++i) (discs[i].brightness > bound ? outlying : others).push_back(all[i]);
     if (outlying.empty()) return;
     photons_ = PhotonMap(std::move(outlying));
     for (const Photon& photon : photons_.photons()) {
-        radii_.push_back(wide_radius(photon, map, query)); // in the order of their tree
-        most_ = std::max(most_, radii_.back());
+        const float r = disc_of(photon, map, query).radius; // in the order of their tree
+        const SurfaceRegion region{photon.position(), photon.normal().decode()};
+        const double disc = kPi * static_cast<double>(r) * r;
+        const double area =
+            patches != nullptr ? surroundings_of(*patches, region, r, patches->obstructed(region, r)).area : disc;
+        lit_.push_back({r, area > 0 ? area : disc});
+        most_ = std::max(most_, r);
     }
     map.set_main_photons(std::move(others));
 }

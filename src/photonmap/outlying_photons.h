@@ -15,25 +15,30 @@ class OutlyingPhotons {
     /// None.
     OutlyingPhotons() : photons_({}) {}
     /// Takes them out of `map`. Regions of lookups are those of queries for `k` photons within `max_radius` [m] that
-    /// shrink by `shrink` (PhotonQuery). The same on any number of threads.
-    OutlyingPhotons(PilotedMap& map, int k, float max_radius, float shrink);
+    /// shrink by `shrink` (PhotonQuery). `patches`: whose area is lit; null: discs. The same on any number of threads.
+    OutlyingPhotons(PilotedMap& map, int k, float max_radius, float shrink, const SurfacePatches* patches);
 
-    std::size_t size() const { return radii_.size(); }
-    std::size_t bytes() const { return photons_.bytes() + radii_.size() * sizeof(float); }
+    /// The region that a photon lights.
+    struct Lit {
+        float radius = 0; ///< [m]
+        double area = 0;  ///< of surface in it [m^2]
+    };
 
-    /// Calls visit(photon, radius) for those whose regions, of radius `radius` [m], reach the middle of `region`.
+    std::size_t size() const { return lit_.size(); }
+
+    /// Calls visit(photon, lit) for those whose regions reach the middle of `region`.
     template <class Visit> void for_each_reaching(const SurfaceRegion& region, const Visit& visit) const {
-        if (radii_.empty()) return;
+        if (lit_.empty()) return;
         photons_.for_each_within(region, most_, [&](const Photon& photon) {
-            const float r = radii_[static_cast<std::size_t>(&photon - photons_.photons().data())];
-            if (region.distance2(photon.position()) <= r * r) visit(photon, r);
+            const Lit& lit = lit_[static_cast<std::size_t>(&photon - photons_.photons().data())];
+            if (region.distance2(photon.position()) <= lit.radius * lit.radius) visit(photon, lit);
         });
     }
 
   private:
     PhotonMap photons_;
-    std::vector<float> radii_; ///< [m]
-    float most_ = 0;
+    std::vector<Lit> lit_; ///< by each
+    float most_ = 0;       ///< radius [m]
 };
 
 } // namespace keyhole

@@ -26,7 +26,7 @@ PhotonSet even_photons(int count, std::uint64_t seed) {
 TEST(OutlyingPhotons, AreNoneAmongEvenOnes) {
     PilotedMap map(even_photons(20'000, 1));
     const std::size_t before = map.main_photons().photons().size();
-    const OutlyingPhotons outlying(map, kNearest, kMostRadius, 1);
+    const OutlyingPhotons outlying(map, kNearest, kMostRadius, 1, nullptr);
     EXPECT_EQ(outlying.size(), 0u);
     EXPECT_EQ(map.main_photons().photons().size(), before);
 }
@@ -39,7 +39,7 @@ TEST(OutlyingPhotons, AreNoneInACausticThatPilotPhotonsConfirm) {
         (i % kPilotEvery == 0 ? set.pilots : set.main_photons).push_back(p);
     }
     PilotedMap map(std::move(set));
-    EXPECT_EQ(OutlyingPhotons(map, kNearest, kMostRadius, 1).size(), 0u);
+    EXPECT_EQ(OutlyingPhotons(map, kNearest, kMostRadius, 1, nullptr).size(), 0u);
 }
 
 /// With the lone photon of great power `power` in the middle: how bright that is there, and all of it.
@@ -51,7 +51,7 @@ struct Lone {
 Lone lone_photon(PhotonSet set, double power) {
     set.main_photons.push_back(photon_at(0, 0, power));
     PilotedMap map(std::move(set));
-    const OutlyingPhotons outlying(map, kNearest, kMostRadius, 1);
+    const OutlyingPhotons outlying(map, kNearest, kMostRadius, 1, nullptr);
     EXPECT_EQ(outlying.size(), 1u);
     Lone lone;
     constexpr int n = 200;
@@ -59,8 +59,8 @@ Lone lone_photon(PhotonSet set, double power) {
     for (int i = 0; i < n; ++i) {
         for (int j = 0; j < n; ++j) {
             const Vec3 p(static_cast<float>((i + 0.5) * step - 1), static_cast<float>((j + 0.5) * step - 1), 0);
-            outlying.for_each_reaching({p, Vec3(0, 0, 1)}, [&](const Photon& photon, float r) {
-                const double light = photon.power().x / (kPi * static_cast<double>(r) * r);
+            outlying.for_each_reaching({p, Vec3(0, 0, 1)}, [&](const Photon& photon, const OutlyingPhotons::Lit& lit) {
+                const double light = photon.power().x / lit.area;
                 lone.in_the_middle = std::max(lone.in_the_middle, light);
                 lone.power += light * step * step;
                 lone.reach = std::max(lone.reach, static_cast<double>(p.length()));
