@@ -21,6 +21,9 @@ constexpr double kLeastOfSpot = 0.25;
 /// Photons at most, of the brightest discs: where all light is sparse nearly each photon stands alone, and lookups
 /// would have to ask many.
 constexpr std::size_t kMost = 256;
+/// Of a disc's area, that is lit: in a corner it is a quarter. On small things and in folds less of the light is shown,
+/// for what lies around them would be as bright.
+constexpr double kLeastArea = 0.25;
 /// How much wider a region may be than that of a lookup: its light is fainter by the square.
 constexpr double kMostWider = 4;
 
@@ -86,7 +89,7 @@ OutlyingPhotons::OutlyingPhotons(PilotedMap& map, int k, float max_radius, float
         const double disc = kPi * static_cast<double>(r) * r;
         const double area =
             patches != nullptr ? surroundings_of(*patches, region, r, patches->obstructed(region, r)).area : disc;
-        lit_.push_back({r, area > 0 ? area : disc});
+        lit_.push_back({r, std::clamp(area, kLeastArea * disc, disc)});
         most_ = std::max(most_, r);
     }
     map.set_main_photons(std::move(others));
