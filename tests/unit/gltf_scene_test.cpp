@@ -257,6 +257,8 @@ TEST_F(GltfScene, NamesOfNodesNeedNotDiffer) {
 TEST_F(GltfScene, WhatIsReferredToHasToBeThere) {
     EXPECT_THAT(error_of(R"("scenes": [{"nodes": [7]}], "nodes": [{"mesh": 0}])"),
                 HasSubstr("scene.gltf: found no entry 7 of 'nodes', which is referred to"));
+    EXPECT_THAT(error_of(R"("scenes": [{"nodes": [0]}], "nodes": [{"children": [1]}, {"children": [0]}])"),
+                HasSubstr("found node 0 below itself, expected no recursive nodes"));
     EXPECT_THAT(error_of(R"("scenes": [], "nodes": [{"mesh": 0}])"), HasSubstr("found no entry 0 of 'scenes'"));
     EXPECT_THAT(error_of(R"("scenes": [{"nodes": [0]}], "nodes": [{"mesh": 5}])"),
                 HasSubstr("found no entry 5 of 'meshes'"));

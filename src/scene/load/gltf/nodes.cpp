@@ -13,7 +13,7 @@
 namespace keyhole::gltf {
 namespace {
 
-constexpr int kMostDepth = 256;
+constexpr std::size_t kMostDepth = 256;
 constexpr int kPlainWidth = 640, kPlainHeight = 480;
 
 /// From the node to its parent.
@@ -46,15 +46,17 @@ class Walker {
         const Json& root = document_.root();
         if (root.contains("scenes")) {
             const Json& scene = document_.entry("scenes", value_or<std::size_t>(root, "scene", 0));
-            visit_all(value_or(scene, "nodes", std::vector<std::size_t>{}), Transform(), 0);
+            visit_all(value_or(scene, "nodes", std::vector<std::size_t>{}), Transform());
         }
         return std::move(things_);
     }
 
   private:
-    void visit_all(const std::vector<std::size_t>& nodes, const Transform& parent, int depth) {
-        if (depth > kMostDepth) document_.fail(fmt::format("found nodes nested more than {} deep", kMostDepth));
+    void visit_all(const std::vector<std::size_t>& nodes, const Transform& parent) {
+        if (above_.size() > kMostDepth) document_.fail(fmt::format("found nodes nested more than {} deep", kMostDepth));
         for (const std::size_t index : nodes) {
+            if (std::ranges::find(above_, index) != above_.end())
+                document_.fail(fmt::format("found node {} below itself, expected no recursive nodes", index));
             const Json& node = document_.entry("nodes", index);
             const Transform to_world = transform_of(node) * parent;
             if (node.contains("mesh")) document_.entry("meshes", node["mesh"].get<std::size_t>());
@@ -62,7 +64,9 @@ class Walker {
             if (const Json* light = extension(node, "KHR_lights_punctual"))
                 read_light(light->at("light").get<std::size_t>(), to_world);
             if (node.contains("skin")) document_.warn("skins are left out: meshes stand as they are bound");
-            visit_all(value_or(node, "children", std::vector<std::size_t>{}), to_world, depth + 1);
+            above_.push_back(index);
+            visit_all(value_or(node, "children", std::vector<std::size_t>{}), to_world);
+            above_.pop_back();
         }
     }
 
@@ -114,6 +118,7 @@ class Walker {
 
     const Document& document_;
     LightsAndCamera things_;
+    std::vector<std::size_t> above_; ///< nodes that hold the one that is read
 };
 
 } // namespace
