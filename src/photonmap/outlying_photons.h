@@ -12,16 +12,16 @@ namespace keyhole {
 /// there outshine it, or that it is faint. Immutable and thread-safe.
 class OutlyingPhotons {
   public:
-    /// None.
     OutlyingPhotons() : photons_({}) {}
-    /// Takes them out of `map`. Regions of lookups are those of queries for `k` photons within `max_radius` [m] that
-    /// shrink by `shrink` (PhotonQuery). `patches`: whose area is lit; null: discs. The same on any number of threads.
+    /// Takes their power from `map`. Regions of lookups are those of queries for `k` photons within `max_radius` [m]
+    /// that shrink by `shrink` (PhotonQuery). `patches`: whose area is lit; null: discs. The same on any number of
+    /// threads.
     OutlyingPhotons(PilotedMap& map, int k, float max_radius, float shrink, const SurfacePatches* patches);
 
     /// The region that a photon lights.
     struct Lit {
-        float radius = 0; ///< [m]
-        double area = 0;  ///< of surface in it [m^2]
+        float radius; ///< [m]
+        double area;  ///< of surface in it [m^2]
     };
 
     std::size_t size() const { return lit_.size(); }

@@ -191,6 +191,8 @@ std::span<const std::uint32_t> PhotonMap::within(const SurfaceRegion& region, fl
     return found;
 }
 
+void PhotonMap::put_out(std::uint32_t i) { index_->photons[i].set_power(Rgb(0.0)); }
+
 Neighbourhood PhotonMap::nearest(const PhotonQuery& query) const {
     assert(query.k > 0 && std::isfinite(query.max_radius));
     thread_local std::vector<Neighbour> heap;

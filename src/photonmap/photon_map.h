@@ -39,8 +39,8 @@ struct Neighbourhood {
     float radius2; ///< squared radius of the region [m^2]
 };
 
-/// Photons in the order of the leaves of a kd-tree. Immutable and thread-safe; the same photons in the same order give
-/// the same map.
+/// Photons in the order of the leaves of a kd-tree. Thread-safe but for put_out(); the same photons in the same order
+/// give the same map.
 class PhotonMap {
   public:
     /// What most questions will ask for.
@@ -74,6 +74,9 @@ class PhotonMap {
     /// The nearest of those that `accept` accepts. It is asked only about photons that are nearer than the best so far.
     std::optional<Neighbour> nearest_accepted(const SurfaceRegion& region, float max_radius,
                                               const std::function<bool(const Photon&)>& accept) const;
+
+    /// Takes a photon's power. Not while others ask.
+    void put_out(std::uint32_t i);
 
     std::span<const Photon> photons() const;
     const Photon& operator[](std::uint32_t i) const { return photons()[i]; }

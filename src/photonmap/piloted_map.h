@@ -12,7 +12,7 @@
 
 namespace keyhole {
 
-/// The index of a PhotonSet. Thread-safe while it stays as it is.
+/// The index of a PhotonSet. Thread-safe but for put_out().
 class PilotedMap {
   public:
     explicit PilotedMap(PhotonSet photons)
@@ -20,8 +20,8 @@ class PilotedMap {
 
     const PhotonMap& pilots() const { return pilots_; }
     const PhotonMap& main_photons() const { return main_photons_; }
-    /// Others in place of the main photons.
-    void set_main_photons(std::vector<Photon> photons) { main_photons_ = PhotonMap(std::move(photons)); }
+    /// Takes the power of a main photon. Not while others ask.
+    void put_out(std::uint32_t i) { main_photons_.put_out(i); }
     std::size_t size() const { return pilots_.photons().size() + main_photons_.photons().size(); }
     std::size_t bytes() const { return pilots_.bytes() + main_photons_.bytes(); }
 

@@ -86,5 +86,32 @@ TEST(CausticLookup, TellsWhatFallsOnTheFloorBesideAWall) {
     }
 }
 
+/// Its region is four times as wide as that of a lookup, and ends before the floor and the wall do.
+TEST(CausticLookup, FindsAllThePowerOfAPhotonThatStandsAlone) {
+    const auto scene = fine_floor();
+    const SurfacePatches patches(*scene);
+    const Vec3 up(0, 1, 0);
+    PilotedMap map({.pilots = {}, .main_photons = {Photon({0.25f, 0, 0.5f}, up, up, Rgb(3.0))}});
+    const OutlyingPhotons outlying(map, 40, 0.05f, 1, &patches);
+    ASSERT_EQ(outlying.size(), 1u);
+    const PilotSurroundings surroundings(map.pilots(), patches, 40, 0.05f, 1);
+    const GatherRays rays(
+        *scene, {.caustic = &map, .caustic_surroundings = &surroundings, .outlying = &outlying, .patches = &patches},
+        {.nearest = 40, .max_radius = 0.05f, .caustic_radius = 0.05f}, 5);
+    Rng rng = make_rng(1);
+    constexpr int kPoints = 200; // across the floor
+    double sum = 0;
+    for (int i = 0; i < kPoints * kPoints; ++i) {
+        SurfacePoint above;
+        above.site = Site::point;
+        above.p = {(static_cast<float>(i % kPoints) + 0.5f) / kPoints, 1,
+                   (static_cast<float>(i / kPoints) + 0.5f) / kPoints};
+        const auto seen = next_vertex(*scene, above, -up);
+        if (seen->point.ng.y < 0.5f && seen->point.ng.y > -0.5f) continue; // the wall's edge
+        sum += luminance(rays.caustic(seen.value(), up, 0, 1, rng)) / (kPoints * kPoints);
+    }
+    EXPECT_NEAR(sum, 0.5 / kPi * 3, 0.02 * 0.5 / kPi * 3);
+}
+
 } // namespace
 } // namespace keyhole

@@ -68,7 +68,7 @@ PassGather::PassGather(const SamplerContext& c, const RenderPlan& plan, std::int
     GatherMaps maps{.global = null_if_empty(global_),
                     .irradiance = irradiance_ ? &*irradiance_ : nullptr,
                     .direct = direct_irradiance_ ? &*direct_irradiance_ : nullptr,
-                    .caustic = outlying_.size() > 0 ? &caustic_ : null_if_empty(caustic_),
+                    .caustic = null_if_empty(caustic_),
                     .caustic_surroundings = caustic_surroundings_ ? &*caustic_surroundings_ : nullptr,
                     .outlying = &outlying_,
                     .patches = &c.patches,
