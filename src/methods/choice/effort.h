@@ -33,6 +33,9 @@ Settings with_effort_at_most(const Settings& settings, double effort, std::int64
 /// may be as many times slower than others, or than their trials.
 constexpr double kPassesInTime = 8;
 
+/// Whether a time goes into as many passes as fit, all alike.
+inline bool fills_passes(const Settings& settings) { return settings.passes == 0 || settings.target_error > 0; }
+
 /// Effort of a pass of a render to a relative error, of which there are four at least: where that much is noise the
 /// first few are to be enough.
 double effort_of_pass(double target_error);

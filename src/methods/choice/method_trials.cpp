@@ -278,8 +278,7 @@ std::vector<TriedMethod> try_methods(const TrialContext& c, double most) {
         const double taken = start - c.context.stop->seconds_left() - before;
         if (method->keeps_photons) beyond += std::max(0.0, taken - part);
     }
-    const bool in_passes = c.settings.passes == 0 || c.settings.target_error > 0;
-    rank_methods(tried, c, c.context.stop->seconds_left(), {.passes = in_passes ? kPassesInTime : 1});
+    rank_methods(tried, c, c.context.stop->seconds_left(), {.passes = fills_passes(c.settings) ? kPassesInTime : 1});
     return tried;
 }
 

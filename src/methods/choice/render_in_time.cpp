@@ -91,13 +91,11 @@ class RenderInTime {
 
   private:
     double left() const { return context_.stop->seconds_left(); }
-    /// Whether the time goes into passes of one length.
-    bool in_passes() const { return settings_.passes == 0 || settings_.target_error > 0; }
     TrialContext trial_context() { return {scene_, settings_, given_, context_, paths_->paths(), findings_}; }
     /// Whether two methods are so close that a longer look is worth its time. Several small photon maps are worse than
     /// a large one, and what they show of it is little.
     bool is_close() const {
-        return !in_passes() && tried_.size() > 1 && tried_[1].predicted < kClose * tried_[0].predicted &&
+        return !fills_passes(settings_) && tried_.size() > 1 && tried_[1].predicted < kClose * tried_[0].predicted &&
                fits_part(tried_[0]) && fits_part(tried_[1]);
     }
     /// Whether a part of the time shows anything of the method: of one that samples pixels, a sample of each at least.
@@ -110,7 +108,7 @@ class RenderInTime {
     void choose() {
         if (settings_.method != &methods::automatic) {
             use(*settings_.method);
-            if (method_->samples_pixels && !in_passes()) return;
+            if (method_->samples_pixels && !fills_passes(settings_)) return;
             const StageClock clock(trials_, stages::trials);
             const double seconds = std::min(kTrialShare * start_, kTrialSeconds);
             cost_ = try_cost(trial_context(), *method_, seconds,
@@ -189,7 +187,7 @@ class RenderInTime {
     /// Settings that use so many seconds, and of a method whose last stage goes on as long as there is time: more than
     /// that. All of these are good at any length.
     Settings settings_for(double seconds, bool open_ended) {
-        if (in_passes()) return settings_of_passes(seconds);
+        if (fills_passes(settings_)) return settings_of_passes(seconds);
         Settings s = settings_;
         s.method = method_;
         if (!given_.contains("adaptive")) s.adaptive = true;
@@ -270,7 +268,7 @@ class RenderInTime {
         result.settings = chosen;
         if (cost_ && (method_->keeps_photons || result.stats.complete))
             cost_->cost = Experience(chosen, effort_, pixels_, result.stats, start - left());
-        used_up_ = used_up_ || in_passes();
+        used_up_ = used_up_ || fills_passes(settings_);
         return Part{std::move(result), start - left()};
     }
 
@@ -301,7 +299,7 @@ class RenderInTime {
 
     RenderResult finish() {
         RenderResult result = mean_.take();
-        const bool by_number = in_passes() || (method_->samples_pixels && given_.contains("spp"));
+        const bool by_number = fills_passes(settings_) || (method_->samples_pixels && given_.contains("spp"));
         result.stats.complete = !context_.stop->requested() && (result.stats.complete || !by_number);
         if (result.stats.passes == 0) result.stats.passes.reset();
         result.stats.remarks.insert(result.stats.remarks.begin(), remarks_.begin(), remarks_.end());
