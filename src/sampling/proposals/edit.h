@@ -96,4 +96,9 @@ inline bool can_keep_eye(const Path& x, int i) { return !x.x[i].specular(); }
 /// are what a transition density has to be a density of.
 Cut cut_between(const Scene& scene, const Path& x, const Path& y);
 
+/// Whether nothing of y came from x.
+inline bool is_all_new(const Scene& scene, const Path& x, const Path& y) {
+    return cut_between(scene, x, y) == Cut{-1, x.vertices()};
+}
+
 } // namespace keyhole

@@ -24,7 +24,7 @@ class GuidedPathProposal final : public Proposal<Path> {
         return y;
     }
     double transition_density(const Path& x, const Path& y) const override {
-        return cut_between(scene_, x, y) == Cut{-1, x.vertices()} ? guides_.draw_density(y) : 0.0;
+        return is_all_new(scene_, x, y) ? guides_.draw_density(y) : 0.0;
     }
 
   private:

@@ -25,10 +25,9 @@ class LightTracing final : public Proposal<Path> {
   private:
     /// Whether the walk may end at vertex i of a path, or of a light sub-path: not where what comes straight from the
     /// emitter makes a path outside the set, nor where nothing can be joined.
-    bool may_end(const auto& x, int i) const {
-        const auto at = [&x](int k) -> const Vertex& { return x[static_cast<std::size_t>(k)]; };
-        if (i < 1 || !at(i).bsdf.traits().finite) return false;
-        return set_.everything || i > 2 || (i == 2 && at(1).specular());
+    bool may_end(const SubPath& x, int i) const {
+        if (i < 1 || !x[i].bsdf.traits().finite) return false;
+        return set_.everything || i > 2 || (i == 2 && x[1].specular());
     }
     bool trace(SubPath& light, Rng& rng, Failure& why) const;
 
@@ -57,7 +56,7 @@ std::optional<Path> LightTracing::propose(const Path& /*x*/, Rng& rng, Failure& 
 }
 
 double LightTracing::transition_density(const Path& x, const Path& y) const {
-    if (cut_between(scene_, x, y) != Cut{-1, x.vertices()}) return 0;
+    if (!is_all_new(scene_, x, y)) return 0;
     const int last = y.vertices() - 2;
     if (!may_end(y.x, last) || y.x[last].specular()) return 0;
     double density = kEnd * y.x[last].pdf_from_light * y.x[last + 1].pdf_from_eye;
