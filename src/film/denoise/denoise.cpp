@@ -242,7 +242,6 @@ Image filtered(FilterPart part, const HalvesSeen& seen, const FilterGuides& guid
     };
     const HalfPictures halves{
         seen.there,
-        seen.whole,
         {std::array{channel(0, 0), channel(0, 1), channel(0, 2)}, {channel(1, 0), channel(1, 1), channel(1, 2)}},
         {half_luminance(1), half_luminance(-1)},
         mean_of_two(seen, border, kReachOfNoise,

@@ -2,6 +2,7 @@
 
 #include "core/parallel.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -38,9 +39,10 @@ float nearness(int dx, int dy, int reach) {
 /// A tile's pixels, and the sums that are made of them.
 class Tile {
   public:
-    Tile(const HalfPictures& halves, const FilterGuides& guides, int x, int y)
+    /// `border`: pixels around it that the filter looks at.
+    Tile(const HalfPictures& halves, const FilterGuides& guides, int x, int y, int border)
         : halves_(halves), guides_(guides), x_(x), y_(y), width_(std::min(kAcross, halves.variance.width() - x)),
-          height_(std::min(kDown, halves.variance.height() - y)) {}
+          height_(std::min(kDown, halves.variance.height() - y)), whole_(is_whole(border)) {}
 
     /// Adds for every pixel the one that is (dx, dy) away, if there is one, with a weight of at most `most`.
     void add(int dx, int dy, float most) {
@@ -88,6 +90,15 @@ class Tile {
         std::array<float, kAcross> weights{};
         std::array<std::array<float, kAcross>, 3> colours{};
     };
+    /// Whether both halves have all pixels up to `border` away.
+    bool is_whole(int border) const {
+        for (int y = y_ - border; y < y_ + height_ + border; ++y) {
+            const float* there = halves_.there[0].at(x_ - border, y);
+            if (std::any_of(there, there + width_ + 2 * border, [](float share) { return share != 1; })) return false;
+        }
+        return true;
+    }
+
     using Row = std::array<float, kAcross + 2 * kPatch>; // and kPatch more on either side
     using Rows = std::array<std::array<float, kAcross>, kDown>;
 
@@ -125,18 +136,20 @@ class Tile {
                 const float unit = kBandwidth * kBandwidth * (noise[i] + other_noise[i]);
                 distance[i] = std::min(kMostUnlike, beyond / (unit + std::numeric_limits<float>::min()));
             }
-            if (halves_.whole) return;
+            if (whole_) return;
             const float *is_here = seen.at(x, y), *is_there = seen.at(x + dx, y + dy);
             for (int i = 0; i < n; ++i) distance[i] *= is_here[i] * is_there[i] > 0 ? 1.0f : 0.0f;
         });
+        if (whole_) {
+            for (auto& row : unlike_[half])
+                for (float& d : row) d /= kPatchSize * kPatchSize;
+            return;
+        }
         Rows pixels;
-        if (halves_.whole)
-            for (auto& row : pixels) row.fill(kPatchSize * kPatchSize);
-        else
-            sum_patches(pixels, [&](int x, int y, int n, float* both) {
-                const float *is_here = seen.at(x, y), *is_there = seen.at(x + dx, y + dy);
-                for (int i = 0; i < n; ++i) both[i] = is_here[i] * is_there[i] > 0 ? 1.0f : 0.0f;
-            });
+        sum_patches(pixels, [&](int x, int y, int n, float* both) {
+            const float *is_here = seen.at(x, y), *is_there = seen.at(x + dx, y + dy);
+            for (int i = 0; i < n; ++i) both[i] = is_here[i] * is_there[i] > 0 ? 1.0f : 0.0f;
+        });
         for (std::size_t row = 0; row < static_cast<std::size_t>(height_); ++row)
             for (std::size_t i = 0; i < kAcross; ++i)
                 unlike_[half][row][i] /= kPatchSize * std::sqrt(std::max(1.0f, pixels[row][i]));
@@ -145,6 +158,7 @@ class Tile {
     const HalfPictures& halves_;
     const FilterGuides& guides_;
     int x_, y_, width_, height_;
+    bool whole_; ///< every pixel that it looks at is in both halves
     std::array<Rows, 2> unlike_{};
     std::array<std::array<Sums, kDown>, 2> sums_{};
 };
@@ -214,7 +228,8 @@ std::array<Image, 2> filter_crosswise(const HalfPictures& halves, const FilterGu
     const int across = (width + kAcross - 1) / kAcross, down = (height + kDown - 1) / kDown;
     parallel_for(std::int64_t{across} * down, [&](std::int64_t i) {
         if (stop != nullptr && stop->requested()) return;
-        Tile tile(halves, guides, static_cast<int>(i % across) * kAcross, static_cast<int>(i / across) * kDown);
+        Tile tile(halves, guides, static_cast<int>(i % across) * kAcross, static_cast<int>(i / across) * kDown,
+                  reach + kPatch);
         for (int dy = -reach; dy <= reach; ++dy)
             for (int dx = -reach; dx <= reach; ++dx)
                 if (const float near = nearness(dx, dy, reach); near > 0) tile.add(dx, dy, near);

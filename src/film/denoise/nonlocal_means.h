@@ -87,7 +87,6 @@ constexpr int kPatch = 2;
 /// sample is in one of them alone; at least one of them has it.
 struct HalfPictures {
     std::array<Plane, 2> there; ///< what a pixel counts, 0 where a half lacks it; border: as Plane variance's
-    bool whole;                 ///< both have all pixels
     std::array<std::array<Plane, 3>, 2> colours; ///< times `there`
     std::array<Plane, 2> luminances;
     Plane variance; ///< border: the filter's reach and kPatch
