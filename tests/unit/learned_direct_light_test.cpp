@@ -16,6 +16,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -164,15 +165,68 @@ TEST(NestedHistogram, KnowsOfThePartOfAWindowThatItsOwnRaysMissed) {
     std::vector<DirectionHistogram::Ray> some;
     for (const auto& ray : all)
         if ((ray.p + ray.w * ((-0.5f - ray.p.z) / ray.w.z)).x < -0.25f) some.push_back(ray);
-    const auto wider = std::make_shared<const DirectionHistogram>(all, plane);
-    const DirectionHistogram own(some, plane);
+    const std::array<DirectionMixture::Group, 1> group{{{plane.center, true, plane}}};
+    const auto wider = std::make_shared<const DirectionMixture>(all, group);
+    const DirectionMixture own(some, group);
     const NestedHistogram nested(own, wider), alone(own, nullptr);
     const Vec3 p(0.8f, 0, 0.3f), missed = (Vec3(0.3f, 2, -0.5f) - p).normalized();
-    EXPECT_GT(wider->pdf(p, missed), 100 * own.pdf(p, missed));
-    EXPECT_EQ(alone.pdf(p, missed), own.pdf(p, missed));
-    EXPECT_GT(nested.pdf(p, missed), 0.2 * wider->pdf(p, missed));
+    const DirectionHistogram::Place on_map = DirectionHistogram::place_on_map(missed);
+    EXPECT_GT(wider->pdf(p, missed, on_map), 100 * own.pdf(p, missed, on_map));
+    EXPECT_EQ(alone.pdf(p, missed), own.pdf(p, missed, on_map));
+    EXPECT_GT(nested.pdf(p, missed), 0.2 * wider->pdf(p, missed, on_map));
     expect_density_of_samples(nested, p);
     expect_density_of_samples(alone, p);
+}
+
+/// A window to the left of the floor as well, so that rays meet in no plane.
+TEST(DirectionMixture, FindsWindowsInTwoWalls) {
+    auto rays = rays_through_a_window(200, 0);
+    for (DirectionHistogram::Ray ray : rays_through_a_window(200, 1)) {
+        const Vec3 at = ray.p + ray.w * ((-0.5f - ray.p.z) / ray.w.z); // on the other window, turned about the floor
+        ray.p = {ray.p.x, 0, ray.p.z};
+        ray.w = (Vec3(-1.5f, at.y - 0.5f, 1 + at.x) - ray.p).normalized();
+        rays.push_back(ray);
+    }
+    const auto groups = DirectionMixture::groups_of(rays);
+    ASSERT_GE(groups.size(), 2u);
+    const DirectionMixture mixture(rays, groups);
+    const NestedHistogram two(mixture, nullptr),
+        one({rays,
+             std::vector<DirectionMixture::Group>{{Vec3(0, 0, 1), false, DirectionHistogram::meeting_plane(rays)}}},
+            nullptr);
+    const Vec3 p(0.3f, 0, 0.8f);
+    const auto through = [&](const NestedHistogram& directions) {
+        Rng rng(12, StreamPurpose::test, 0);
+        int n = 0;
+        for (int i = 0; i < 10'000; ++i) {
+            const double u0 = rng.next();
+            const Vec3 w = directions.sample(p, u0, rng.next());
+            const Vec3 ahead = p + w * ((-0.5f - p.z) / w.z), left = p + w * ((-1.5f - p.x) / w.x);
+            n += w.z < 0 && std::abs(ahead.x) < 0.5f && std::abs(ahead.y - 2) < 0.25f ? 1 : 0;
+            n += w.x < 0 && std::abs(left.z - 1) < 0.5f && std::abs(left.y - 1.5f) < 0.25f ? 1 : 0;
+        }
+        return n;
+    };
+    EXPECT_GT(through(two), 5500);
+    EXPECT_GT(through(two), 1.5 * through(one));
+    for (const Vec3& at : {p, Vec3(9, 2, -0.4f), Vec3(-1.5f, 1, 3), Vec3(-4, 1.5f, -0.45f)}) {
+        expect_density_of_samples(two, at);
+        expect_density_of_samples(one, at);
+    }
+}
+
+TEST(DirectionMixture, OfRaysThroughOneWindowIsItsHistogram) {
+    const auto rays = rays_through_a_window(60, 0);
+    const auto groups = DirectionMixture::groups_of(rays);
+    ASSERT_EQ(groups.size(), 1u);
+    const DirectionMixture mixture(rays, groups);
+    const DirectionHistogram histogram(rays, groups[0].plane);
+    const Vec3 p(0.8f, 0, 0.3f);
+    for (const auto& ray : rays) {
+        const Vec3 w = (ray.p + ray.w * 3.0f - p).normalized();
+        EXPECT_NEAR(mixture.pdf(p, w, DirectionHistogram::place_on_map(w)), histogram.pdf(p, w), 1e-6);
+    }
+    EXPECT_TRUE(DirectionMixture(std::span(rays).first(1), groups).empty());
 }
 
 TEST(DirectionHistogram, KeepsDirectionsWhereRaysDoNotMeet) {

@@ -31,7 +31,7 @@ std::vector<PlaneHistogram::Point> clustered_points(int n) {
 
 TEST(PlaneHistogram, HasTheDensityOfItsSamples) {
     auto points = clustered_points(500);
-    const PlaneHistogram histogram(points, {{0, 0}, {1, 3}});
+    const PlaneHistogram histogram(points, 8, {{0, 0}, {1, 3}});
     ASSERT_FALSE(histogram.empty());
     constexpr int kCells = 12, kSamples = 100'000, kQuadrature = 20;
     test::Histogram h;
@@ -62,7 +62,7 @@ TEST(PlaneHistogram, HasTheDensityOfItsSamples) {
 
 TEST(PlaneHistogram, IsEmptyWithoutAnArea) {
     std::vector<PlaneHistogram::Point> line{{{0, 1}, 1}, {{1, 1}, 1}, {{2, 1}, 1}};
-    EXPECT_TRUE(PlaneHistogram(line).empty());
+    EXPECT_TRUE(PlaneHistogram(line, 8).empty());
     EXPECT_TRUE(PlaneHistogram().empty());
 }
 

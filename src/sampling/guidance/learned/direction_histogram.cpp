@@ -13,10 +13,13 @@
 namespace keyhole {
 namespace {
 
-constexpr std::size_t kPointsOfLeaf = 8;
-constexpr int kMostDepth = 12;
-/// Of a node's share, what is divided by area.
-constexpr double kEven = 0.1;
+constexpr std::size_t kPointsOfLeaf = 12;
+/// Of the map of directions behind a plane, which only tells of those that are flat to it.
+constexpr std::size_t kPointsOfCoarseLeaf = 48;
+/// Width of a node's box beyond its points over that of where it may lie, at least.
+constexpr double kThinnest = 0.01;
+/// Of a node's share, what is spread over all of its box.
+constexpr float kEven = 0.05f;
 /// Of all samples, those that are spread evenly over the bounding box and so much of its width on each side of it.
 constexpr double kEvenly = 0.15, kAround = 0.2;
 
@@ -28,6 +31,19 @@ double area(const Imath::Box2d& box) {
 double weight_of(std::span<const PlaneHistogram::Point> points) {
     return std::accumulate(points.begin(), points.end(), 0.0,
                            [](double sum, const PlaneHistogram::Point& p) { return sum + p.weight; });
+}
+
+/// Around points that lie within `limits`: evenly spread ones end short of where they may lie by their mean distance.
+Imath::Box2d box_around(std::span<const PlaneHistogram::Point> points, const Imath::Box2d& limits) {
+    Imath::Box2d box;
+    for (const PlaneHistogram::Point& p : points) box.extendBy(p.x);
+    for (int k = 0; k < 2; ++k) {
+        const double more =
+            std::max(box.size()[k] / static_cast<double>(points.size() - 1), kThinnest * limits.size()[k]);
+        box.min[k] = std::max(box.min[k] - more, limits.min[k]);
+        box.max[k] = std::min(box.max[k] + more, limits.max[k]);
+    }
+    return area(box) > 0 ? box : limits;
 }
 
 /// Fewer rays than this on either half tell nothing of where they meet.
@@ -44,25 +60,6 @@ constexpr float kLeastCosine = 0.25f;
 constexpr float kFarther[] = {1.15f, 1.3f, 1.5f, 1.8f};
 /// Of the octahedral map, per solid angle.
 constexpr double kDensityOfOctahedron = kInvPi / 4;
-
-/// The point that has the least sum of squared distances to the rays.
-std::optional<Vec3> meeting_point(std::span<const DirectionHistogram::Ray> rays) {
-    Imath::M33d a(0.0);
-    Imath::V3d b(0.0);
-    for (const auto& ray : rays) {
-        const Imath::V3d w(ray.w), p(ray.p);
-        const Imath::V3d across = p - w * w.dot(p);
-        for (int i = 0; i < 3; ++i) {
-            for (int k = 0; k < 3; ++k) a[i][k] += (i == k ? 1.0 : 0.0) - w[i] * w[k];
-            b[i] += across[i];
-        }
-    }
-    const double n = static_cast<double>(rays.size());
-    if (!(a.determinant() > 1e-9 * n * n * n)) return std::nullopt; // parallel
-    const Imath::V3d x = b * a.inverse();                           // a is symmetric
-    if (!std::isfinite(x.length2())) return std::nullopt;
-    return Vec3(x);
-}
 
 /// Where the line through `p` along `w` meets a plane: there, there in the plane's frame, and how far along the line.
 struct Crossing {
@@ -94,21 +91,22 @@ std::vector<Vec3> likely_normals(std::span<const DirectionHistogram::Ray> rays) 
 
 } // namespace
 
-PlaneHistogram::PlaneHistogram(std::span<Point> points, const Imath::Box2d& limits) {
-    for (const Point& p : points) box_.extendBy(p.x);
-    if (points.size() < 2 || !(area(box_) > 0) || !(weight_of(points) > 0)) return;
+PlaneHistogram::PlaneHistogram(std::span<Point> points, std::size_t leaf, const Imath::Box2d& limits) {
+    Imath::Box2d box;
+    for (const Point& p : points) box.extendBy(p.x);
+    if (points.size() < 2 || !(area(box) > 0) || !(weight_of(points) > 0)) return;
     for (int k = 0; k < 2; ++k) {
-        const double more = kAround * box_.size()[k];
-        around_.min[k] = std::max(box_.min[k] - more, limits.min[k]);
-        around_.max[k] = std::min(box_.max[k] + more, limits.max[k]);
+        const double more = kAround * box.size()[k];
+        around_.min[k] = std::max(box.min[k] - more, limits.min[k]);
+        around_.max[k] = std::min(box.max[k] + more, limits.max[k]);
     }
-    build(points, box_, 0);
+    build(points, box, leaf);
 }
 
-void PlaneHistogram::build(std::span<Point> points, const Imath::Box2d& box, int depth) {
+void PlaneHistogram::build(std::span<Point> points, const Imath::Box2d& box, std::size_t leaf) {
     const std::size_t self = nodes_.size();
-    nodes_.emplace_back();
-    if (points.size() < 2 * kPointsOfLeaf || depth == kMostDepth) return;
+    nodes_.push_back({.box = {Imath::V2f(box.min), Imath::V2f(box.max)}, .density = static_cast<float>(1 / area(box))});
+    if (points.size() < 2 * leaf) return;
     const int axis = box.size().y > box.size().x ? 1 : 0;
     const auto middle = points.begin() + static_cast<std::ptrdiff_t>(points.size() / 2);
     std::ranges::nth_element(points, middle, {}, [&](const Point& p) { return p.x[axis]; });
@@ -117,13 +115,14 @@ void PlaneHistogram::build(std::span<Point> points, const Imath::Box2d& box, int
     Imath::Box2d left = box, right = box;
     left.max[axis] = right.min[axis] = split;
     const auto lower = points.first(points.size() / 2), upper = points.subspan(points.size() / 2);
-    const double below = weight_of(lower), all = below + weight_of(upper), by_area = area(left) / area(box);
-    nodes_[self].left_share = (1 - kEven) * (all > 0 ? below / all : by_area) + kEven * by_area;
-    nodes_[self].split = split;
-    nodes_[self].axis = static_cast<std::uint8_t>(axis);
-    build(lower, left, depth + 1);
-    nodes_[self].right = static_cast<std::uint32_t>(nodes_.size());
-    build(upper, right, depth + 1);
+    const double below = weight_of(lower), all = below + weight_of(upper);
+    nodes_[self].density *= kEven;
+    nodes_[self].left_share = all > 0 ? static_cast<float>(below / all) : 0.5f;
+    nodes_[self].split = static_cast<float>(split);
+    nodes_[self].axis = static_cast<unsigned>(axis) & 1U;
+    build(lower, box_around(lower, left), leaf);
+    nodes_[self].right = static_cast<std::uint32_t>(nodes_.size()) & 0x7FFFFFFFU;
+    build(upper, box_around(upper, right), leaf);
 }
 
 PlaneHistogram::Place PlaneHistogram::sample(double u0, double u1) const {
@@ -137,31 +136,35 @@ double PlaneHistogram::pdf(const Place& place) const {
 }
 
 PlaneHistogram::Place PlaneHistogram::sample_tree(double u0, double u1) const {
-    Imath::Box2d box = box_;
     std::uint32_t i = 0;
     while (nodes_[i].right != 0) {
         const Node& n = nodes_[i];
+        if (u0 < kEven) {
+            u0 /= kEven;
+            break;
+        }
+        u0 = (u0 - kEven) / (1 - kEven);
         const bool left = u0 < n.left_share;
         u0 = left ? u0 / n.left_share : (u0 - n.left_share) / (1 - n.left_share);
-        (left ? box.max : box.min)[n.axis] = n.split;
         i = left ? i + 1 : n.right;
     }
-    return box.min + Place(u0, u1) * box.size();
+    const Imath::Box2f& box = nodes_[i].box;
+    return Place(box.min) + Place(u0, u1) * Place(box.size());
 }
 
 double PlaneHistogram::tree_pdf(const Place& place) const {
-    if (!box_.intersects(place)) return 0;
-    Imath::Box2d box = box_;
-    double share = 1;
+    const Imath::V2f x(place);
+    float sum = 0, share = 1;
     std::uint32_t i = 0;
-    while (nodes_[i].right != 0) {
+    while (nodes_[i].box.intersects(x)) {
         const Node& n = nodes_[i];
-        const bool left = place[n.axis] < n.split;
-        share *= left ? n.left_share : 1 - n.left_share;
-        (left ? box.max : box.min)[n.axis] = n.split;
+        sum += share * n.density;
+        if (n.right == 0) break;
+        const bool left = x[n.axis] < n.split;
+        share *= (1 - kEven) * (left ? n.left_share : 1 - n.left_share);
         i = left ? i + 1 : n.right;
     }
-    return share / area(box);
+    return sum;
 }
 
 DirectionHistogram::DirectionHistogram(std::span<const Ray> rays, const std::optional<Plane>& plane) : plane_(plane) {
@@ -174,14 +177,32 @@ DirectionHistogram::DirectionHistogram(std::span<const Ray> rays, const std::opt
         if (const auto at = crossing(plane_->center, frame_, ray.p, ray.w); at && at->along > 0)
             points.push_back({{at->local.x, at->local.y}, ray.weight});
     }
-    octahedral_ = PlaneHistogram(on_map, {{0, 0}, {1, 1}});
-    if (plane_) histogram_ = PlaneHistogram(points);
+    if (plane_) histogram_ = PlaneHistogram(points, kPointsOfLeaf);
+    octahedral_ = PlaneHistogram(on_map, has_plane() ? kPointsOfCoarseLeaf : kPointsOfLeaf, {{0, 0}, {1, 1}});
 }
 
 double DirectionHistogram::likelihood(std::span<const Ray> rays) const {
     double sum = 0;
     for (const Ray& ray : rays) sum += ray.weight * std::log(kUnknown + (empty() ? 0 : pdf(ray.p, ray.w)));
     return sum;
+}
+
+std::optional<Vec3> DirectionHistogram::meeting_point(std::span<const Ray> rays) {
+    Imath::M33d a(0.0);
+    Imath::V3d b(0.0);
+    for (const Ray& ray : rays) {
+        const Imath::V3d w(ray.w), p(ray.p);
+        const Imath::V3d across = p - w * w.dot(p);
+        for (int i = 0; i < 3; ++i) {
+            for (int k = 0; k < 3; ++k) a[i][k] += (i == k ? 1.0 : 0.0) - w[i] * w[k];
+            b[i] += across[i];
+        }
+    }
+    const double n = static_cast<double>(rays.size());
+    if (!(a.determinant() > 1e-9 * n * n * n)) return std::nullopt; // parallel
+    const Imath::V3d x = b * a.inverse();                           // a is symmetric
+    if (!std::isfinite(x.length2())) return std::nullopt;
+    return Vec3(x);
 }
 
 std::optional<DirectionHistogram::Plane> DirectionHistogram::meeting_plane(std::span<const Ray> rays) {

@@ -13,11 +13,11 @@
 
 namespace keyhole {
 
-/// A density over a part of a plane: rectangles of a k-d tree, each with the share of the weight of the points in it,
-/// spread evenly; a small part of a node's share is divided by area, so that nowhere in the points' bounding box is it
-/// 0. Besides, a part of all samples is spread evenly over the box and its surroundings: points end a little before
-/// what they were drawn from does, and what lies beyond them must not be found by the rarest of chances alone.
-/// Immutable and thread-safe.
+/// A density over a part of a plane: rectangles around the points of the leaves of a k-d tree, each with the share of
+/// their weight, spread evenly; a small part of a node's share is spread over the rectangle around all of its points.
+/// Besides, a part of all samples is spread evenly over the box and its surroundings: points end a little before what
+/// they were drawn from does, and what lies beyond them must not be found by the rarest of chances alone. Immutable and
+/// thread-safe.
 class PlaneHistogram {
   public:
     using Place = Imath::V2d;
@@ -27,8 +27,11 @@ class PlaneHistogram {
     };
 
     PlaneHistogram() = default;
-    /// Reorders the points. Those of one place only, or of no weight, make it empty. Surroundings end at `limits`.
-    explicit PlaneHistogram(std::span<Point> points, const Imath::Box2d& limits = {{-1e30, -1e30}, {1e30, 1e30}});
+    /// @param points are reordered; those of one place only, or of no weight, make it empty
+    /// @param leaf points of one, at least
+    /// @param limits where surroundings end
+    PlaneHistogram(std::span<Point> points, std::size_t leaf,
+                   const Imath::Box2d& limits = {{-1e30, -1e30}, {1e30, 1e30}});
 
     bool empty() const { return nodes_.empty(); }
     /// A place by two numbers in [0,1). Not to be called when empty.
@@ -39,16 +42,18 @@ class PlaneHistogram {
 
   private:
     struct Node {
-        double split = 0;
-        double left_share = 0;
-        std::uint32_t right = 0; ///< the left child follows its parent; 0: a leaf
-        std::uint8_t axis = 0;
+        Imath::Box2f box; ///< around its points
+        float density;    ///< per area, of what a node spreads over all of its box
+        float split = 0;
+        float left_share = 0;
+        std::uint32_t right : 31 = 0; ///< the left child follows its parent; 0: a leaf
+        std::uint32_t axis : 1 = 0;
     };
     Place sample_tree(double u0, double u1) const;
     double tree_pdf(const Place& place) const;
-    void build(std::span<Point> points, const Imath::Box2d& box, int depth);
+    void build(std::span<Point> points, const Imath::Box2d& box, std::size_t leaf);
 
-    Imath::Box2d box_, around_;
+    Imath::Box2d around_;
     std::vector<Node> nodes_;
 };
 
@@ -67,6 +72,8 @@ class DirectionHistogram {
         Vec3 center; ///< world space [m]
         Vec3 n;      ///< unit, on the side that rays leave to
     };
+    /// The point with the least sum of squared distances to all rays; none where they are parallel.
+    static std::optional<Vec3> meeting_point(std::span<const Ray> rays);
     /// Where rays meet; none: nowhere that would tell more of directions than the octahedral map.
     static std::optional<Plane> meeting_plane(std::span<const Ray> rays);
 

@@ -84,8 +84,9 @@ std::vector<LearnedDirectLight::Share> LearnedDirectLight::make_shares(std::span
             const Share* model = like != nullptr ? like->share_of(share.emitter) : nullptr;
             const auto behind = wider.find(share.emitter);
             const bool has_model = model != nullptr && model->directions;
-            DirectionHistogram own(rays, has_model ? model->directions->own().plane()
-                                                   : DirectionHistogram::meeting_plane(rays));
+            const auto groups = has_model ? std::vector<DirectionMixture::Group>{} : DirectionMixture::groups_of(rays);
+            DirectionMixture own(rays, has_model ? model->directions->own().groups()
+                                                 : std::span<const DirectionMixture::Group>(groups));
             if (!own.empty()) // what was found may all have been nothing
                 share.directions =
                     std::make_shared<NestedHistogram>(std::move(own), behind != wider.end() ? behind->second : nullptr);

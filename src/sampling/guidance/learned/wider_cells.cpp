@@ -18,8 +18,8 @@ WiderCells::Directions histograms(std::span<const FoundLight* const> found) {
     }
     WiderCells::Directions all;
     for (const auto& [emitter, of_emitter] : rays) {
-        DirectionHistogram histogram(of_emitter, DirectionHistogram::meeting_plane(of_emitter));
-        if (!histogram.empty()) all[emitter] = std::make_shared<const DirectionHistogram>(std::move(histogram));
+        DirectionMixture mixture(of_emitter, DirectionMixture::groups_of(of_emitter));
+        if (!mixture.empty()) all[emitter] = std::make_shared<const DirectionMixture>(std::move(mixture));
     }
     return all;
 }
@@ -40,7 +40,7 @@ WiderCells::WiderCells(std::span<const FoundLight> found, std::size_t least) {
 std::size_t WiderCells::bytes() const {
     std::size_t sum = tree_.bytes() + cells_.capacity() * sizeof(Directions);
     for (const Directions& cell : cells_)
-        for (const auto& [emitter, histogram] : cell) sum += sizeof(DirectionHistogram) + histogram->bytes();
+        for (const auto& [emitter, mixture] : cell) sum += sizeof(DirectionMixture) + mixture->bytes();
     return sum;
 }
 

@@ -2,7 +2,7 @@
 // the histograms of small ones.
 #pragma once
 
-#include "sampling/guidance/learned/direction_histogram.h"
+#include "sampling/guidance/learned/direction_mixture.h"
 #include "sampling/guidance/learned/surface_cells.h"
 
 #include <cstddef>
@@ -32,7 +32,7 @@ struct FoundLight {
 class WiderCells {
   public:
     /// By emitter.
-    using Directions = std::map<std::uint32_t, std::shared_ptr<const DirectionHistogram>>;
+    using Directions = std::map<std::uint32_t, std::shared_ptr<const DirectionMixture>>;
 
     /// @param least finds in each cell
     WiderCells(std::span<const FoundLight> found, std::size_t least);
@@ -52,10 +52,10 @@ class WiderCells {
 class NestedHistogram {
   public:
     /// @param wider histogram of the wider cell; may be null
-    NestedHistogram(DirectionHistogram own, std::shared_ptr<const DirectionHistogram> wider)
+    NestedHistogram(DirectionMixture own, std::shared_ptr<const DirectionMixture> wider)
         : own_(std::move(own)), wider_(std::move(wider)) {}
 
-    const DirectionHistogram& own() const { return own_; }
+    const DirectionMixture& own() const { return own_; }
     /// Unit direction at `p` by two numbers in [0,1). Not to be called when empty.
     Vec3 sample(const Vec3& p, double u0, double u1) const;
     /// Density per solid angle with which sample() makes `w` at `p`.
@@ -64,8 +64,8 @@ class NestedHistogram {
     std::size_t bytes() const { return own_.bytes(); }
 
   private:
-    DirectionHistogram own_;
-    std::shared_ptr<const DirectionHistogram> wider_;
+    DirectionMixture own_;
+    std::shared_ptr<const DirectionMixture> wider_;
 };
 
 } // namespace keyhole
