@@ -138,6 +138,7 @@ std::optional<TrialRender> render_trial(const TrialContext& c, const Settings& s
     RunContext limited = c.context;
     limited.progress = nullptr;
     limited.reserve = std::max(0.0, c.context.stop->seconds_left() - most);
+    limited.whole_round = settings.method->keeps_photons; // what came before takes most of the time
     try {
         return render_trial(c, settings, effort, limited);
     } catch (const Interrupted&) {

@@ -23,15 +23,15 @@ double predict_by_trial(const TriedMethod& t, const TrialContext& c, double left
     const double pixels = c.scene.camera().window().size();
     const double time = t.of.taken / left, size = pixels / t.of.cost.pixels;
     const TrialError& e = t.error;
+    // Where dots come closer than one to a block of the trial, they are grain.
+    const double dots = e.dots * std::min(1.0, kTrialBlock * time * size);
     if (t.method->samples_pixels) {
         // Light that was missed is that of rare, bright samples, and grain where they are found.
         const double missing = e.missing * t.of.cost.pixels / kTrialParts;
-        // Where dots come closer than one to a block of the trial, they are grain.
-        return (grain_that_counts(c.settings, *t.method) * e.grain + e.blotches + missing) * time * size +
-               e.dots * std::min(1.0, kTrialBlock * time * size);
+        return (grain_that_counts(c.settings, *t.method) * e.grain + e.blotches + missing) * time * size + dots;
     }
     if (!t.method->keeps_photons)
-        return t.method->trial.doubt * (e.grain * time * size + (e.blotches + e.missing) * time);
+        return t.method->trial.doubt * (e.grain * time * size + (e.blotches + e.missing) * time) + dots;
     Settings s = c.settings;
     s.method = t.method;
     double effort = 0;
@@ -80,6 +80,7 @@ void rank_methods(std::vector<TriedMethod>& tried, const TrialContext& c, double
     for (const TriedMethod& t : tried) {
         pictures.push_back(t.pictures);
         pictures.back().rare_samples = t.method->samples_pixels;
+        pictures.back().by_photons = t.method->keeps_photons;
     }
     const std::vector<TrialError> errors = trial_errors(pictures);
     const double within = variance_within_pixels(tried);

@@ -293,7 +293,7 @@ std::vector<TrialError> trial_errors(std::span<const TrialPictures> methods) {
             if (p > 0) missing += lost * lost / (p * p + dark);
         }
         errors[k].missing = missing / static_cast<double>(least.size());
-        for (std::size_t j = 0; j < methods.size() && methods[k].rare_samples; ++j)
+        for (std::size_t j = 0; j < methods.size() && !methods[k].by_photons; ++j)
             if (j != k && brightness[j] >= kFindsLight)
                 errors[k].dots = std::max(errors[k].dots, light_in_dots(methods[k], methods[j]));
     }

@@ -19,6 +19,7 @@ struct TrialPictures {
     Image first, second;
     /// Whether what errs most is samples of pixels that are rare and bright, rather than places that photons blur.
     bool rare_samples = false;
+    bool by_photons = false; ///< whatever they find lights all that is near: they bring no light in dots
 };
 
 /// Squared error of one of the two, relative to the picture (the measure of ImageError::relmse_trim), in parts that
@@ -27,7 +28,7 @@ struct TrialError {
     double grain = 0;    ///< independent from pixel to pixel
     double blotches = 0; ///< common to blocks of 4 x 4 pixels
     double missing = 0;  ///< of parts of the picture that are darker than another method finds them, beyond chance
-    double dots = 0;     ///< of light that another method finds everywhere and this one in a few samples, if it is rare
+    double dots = 0;     ///< of light that another method finds everywhere, and this one in a few samples or chains
     double blur = 0;     ///< of light, by photons
 };
 
