@@ -77,7 +77,7 @@ template <class ToWorld>
     s.offset = kRelativeError * absolute(s.ng).dot(size) + to_world.rounding_along(s.ng, size);
     s.ns = s.ng;
     s.primitive = triangle;
-    if (!mesh.normals.empty()) {
+    if (!mesh.normals.empty() && !(!mesh.flat.empty() && mesh.flat[triangle])) {
         const auto normal = [&](std::size_t k) { return to_world.normal(mesh.normals[corners[k]]); };
         s.ns = (normal(0) * w + normal(1) * u + normal(2) * v).normalized();
         if (s.ns.length2() == 0) s.ns = s.ng;
@@ -92,6 +92,29 @@ template <class F> auto of_triangles(const Shape& shape, F&& f) {
     if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) return f(*mesh, InPlace());
     const auto& instance = std::get<MeshInstance>(shape.geometry);
     return f(*instance.mesh, *instance.to_world);
+}
+
+/// Whether the normals at the corners of a triangle, of either side, are that of its face but for rounding.
+bool has_normals_of_face(const TriangleMesh& mesh, const Corners& corners) {
+    // What tells a facet of a curved surface from a flat face is that its normals differ among themselves. Those of one
+    // face are the same numbers, unless they are means over its parts; then text of four digits, say, makes them differ
+    // by 1.7e-4 rad. A curved mesh would need 30,000 facets in a circle to be as fine; taken as flat, these turn what
+    // they reflect by 4e-4 rad at most, and what goes through two of them by half of that: 2 mm in 10 m.
+    constexpr double kBend = 2e-4;
+    // All together they may be off by more: in 8 bits by 7e-3 rad; and the face's own normal is off by 1e-2 where it is
+    // a tenth of a millimetre wide and its positions are floats of 10 m. Such a tilt bends nothing, and whether two
+    // faces are parallel is for their positions to say.
+    constexpr double kTilt = 1e-2;
+    const auto position = [&](std::size_t k) { return Imath::V3d(mesh.positions[corners[k]]); };
+    const Imath::V3d a = position(0), face = (position(1) - a).cross(position(2) - a).normalized();
+    std::array<Imath::V3d, 3> n;
+    for (std::size_t k = 0; k < 3; ++k) {
+        n[k] = Imath::V3d(mesh.normals[corners[k]]).normalized();
+        if (n[k].dot(face) < 0) n[k] = -n[k];
+        if (!((n[k] - face).length() <= kTilt)) return false;
+    }
+    const auto alike = [&](std::size_t i, std::size_t k) { return (n[i] - n[k]).length() <= kBend; };
+    return alike(0, 1) && alike(1, 2) && alike(2, 0);
 }
 
 double area_of(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -181,7 +204,8 @@ std::size_t geometry_bytes(const std::vector<Shape>& shapes) {
     const auto bytes = [](const auto& list) { return list.size() * sizeof(list[0]); };
     std::size_t sum = 0;
     for (const TriangleMesh* mesh : held_meshes(shapes))
-        sum += bytes(mesh->positions) + bytes(mesh->normals) + bytes(mesh->uvs) + bytes(mesh->triangles);
+        sum += bytes(mesh->positions) + bytes(mesh->normals) + bytes(mesh->uvs) + bytes(mesh->triangles) +
+               mesh->flat.size() / 8;
     std::set<const ObjectToWorld*> copies;
     for (const Shape& shape : shapes) {
         if (std::holds_alternative<Sphere>(shape.geometry)) sum += sizeof(Sphere);
@@ -217,6 +241,7 @@ void reverse_winding(TriangleMesh& mesh) {
 
 TriangleMesh flattened(const MeshInstance& instance) {
     TriangleMesh mesh = *instance.mesh;
+    mesh.flat.clear();
     transform_mesh(mesh, *instance.to_world);
     return mesh;
 }
@@ -225,20 +250,22 @@ bool is_invisible_light(const Shape& shape) {
     return shape.emission && shape.alpha && shape.alpha->is_constant() && !(shape.alpha->value({}) > 0);
 }
 
-void drop_needless_normals(TriangleMesh& mesh) {
-    constexpr double kAlike = 1 - 1e-8; // cosine: normals as files have them, rounded
-    for (std::uint32_t i = 0; i < mesh.triangles.size() && !mesh.normals.empty(); ++i) {
-        const Imath::V3d ng(triangle_point(mesh, i, 0.25f, 0.25f, false).ng);
-        for (const std::uint32_t corner : mesh.triangles[i])
-            if (!(std::abs(Imath::V3d(mesh.normals[corner]).normalized().dot(ng)) > kAlike)) return;
-    }
-    mesh.normals.clear();
+void mark_flat_triangles(TriangleMesh& mesh) {
+    mesh.flat.clear();
+    if (mesh.normals.empty()) return;
+    std::vector<bool> flat;
+    flat.reserve(mesh.triangles.size());
+    for (const Corners& corners : mesh.triangles) flat.push_back(has_normals_of_face(mesh, corners));
+    const auto found = std::ranges::count(flat, true);
+    if (found == std::ssize(flat))
+        mesh.normals.clear();
+    else if (found > 0)
+        mesh.flat = std::move(flat);
 }
 
 bool is_flat_in_part(const TriangleMesh& mesh) {
-    return mesh.normals.empty() || std::ranges::any_of(mesh.triangles, [&](const auto& corners) {
-               const auto& [a, b, c] = corners;
-               return mesh.normals[a] == mesh.normals[b] && mesh.normals[a] == mesh.normals[c];
+    return mesh.normals.empty() || std::ranges::any_of(mesh.triangles, [&](const Corners& corners) {
+               return has_normals_of_face(mesh, corners);
            });
 }
 

@@ -55,13 +55,13 @@ bool has_area(const Geometry& geometry);
 /// Area of a shape [m^2].
 double surface_area(const Shape& shape);
 
-/// The triangles of an instance in world space.
+/// The triangles of an instance in world space, not marked as flat: some may yet be dropped there.
 TriangleMesh flattened(const MeshInstance& instance);
 
 /// Exchanges the sides of all triangles.
 void reverse_winding(TriangleMesh& mesh);
 
-/// Whether a triangle, at least, has one shading normal.
+/// Whether a triangle, at least, is flat or would be marked as that.
 bool is_flat_in_part(const TriangleMesh& mesh);
 
 /// Moves a mesh to where a transform takes it. A mirrored one reverses the corners of the triangles.

@@ -104,7 +104,7 @@ class MeshTraitsTable {
 };
 
 /// Whether light may go straight through `shape`, which has a material: a pane, or glass of which a triangle, at least,
-/// has one shading normal.
+/// is flat.
 bool may_be_clear(const Shape& shape, MeshTraitsTable& meshes) {
     const ClearGlass glass = shape.material->traits().clear;
     if (glass != ClearGlass::face) return glass == ClearGlass::pane;
@@ -137,7 +137,7 @@ void Scene::attach_shapes() {
         if (is_interface(shape)) continue;
         auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
         if (mesh != nullptr && shape.material && shape.material->traits().clear == ClearGlass::face)
-            drop_needless_normals(*mesh);
+            mark_flat_triangles(*mesh);
         if (shape.emission && surface_area(shape) > 0) {
             emitter_of_shape_[i] = static_cast<std::uint32_t>(emitters_.size());
             emitters_.push_back(make_area_emitter(shape, i));

@@ -23,6 +23,7 @@ struct TriangleMesh {
     std::vector<Vec3> normals; ///< unit, one per position; or empty: flat
     std::vector<Vec2> uvs;     ///< one per position; or empty
     std::vector<std::array<std::uint32_t, 3>> triangles;
+    std::vector<bool> flat{}; ///< of triangles whether they are flat in spite of `normals`; empty: none is
 };
 
 /// A sphere in world space. The outside is away from the centre, or towards it if `inward`.
@@ -71,8 +72,9 @@ inline bool reads_parametrisation(const Shape& shape) {
 /// no shadow, but its points are sampled like those of other lights.
 bool is_invisible_light(const Shape& shape);
 
-/// Drops the normals of a mesh if they are those that its triangles have anyway.
-void drop_needless_normals(TriangleMesh& mesh);
+/// Finds the triangles whose corners have the normal of the face, to rounding: there the shading normal is that of the
+/// face, exactly. Drops the normals of a mesh where all are. From then on triangles have to keep their numbers.
+void mark_flat_triangles(TriangleMesh& mesh);
 
 /// Whether rays and light pass `shape` as if it weren't there, but for the media that it parts.
 bool is_interface(const Shape& shape);

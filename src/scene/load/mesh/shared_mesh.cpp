@@ -31,7 +31,7 @@ SharedMesh::SharedMesh(TriangleMesh mesh) {
     // As a Scene does with other meshes; but how small a triangle of the object is says nothing of its copies.
     const double scale = largest_ > 0 && largest_ < 1 ? 1 / largest_ : 1;
     std::erase_if(mesh.triangles, [&](const auto& t) { return !has_area(mesh, t, scale); });
-    drop_needless_normals(mesh);
+    mark_flat_triangles(mesh);
     mesh_ = std::make_shared<const TriangleMesh>(std::move(mesh));
 }
 
