@@ -235,6 +235,16 @@ TEST(UserPathFile, WhatIsWrittenIsReadAgain) {
     }
 }
 
+/// Else what was checked before it was written may fail afterwards.
+TEST(UserPathFile, PointsAreWrittenToTheLastDigit) {
+    const ScratchDirectory scratch;
+    UserPathFile out{{test::user_path("a", {{0.1f, 1 / 3.0f, 0}, {0.7788992f, 1e-6f / 3, 1234.5678f}}, 0.1)}};
+    out.paths[0].points[1].through = Opening{{1 / 3.0, 0, 0}, {0, 1 / 7.0, 0}, {0, 0, 1}};
+    const UserPathFile in = load_user_paths(scratch.write("p.yaml", user_paths_text(out, "")));
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(in.paths.at(0).points.at(i).p, out.paths[0].points[i].p);
+    EXPECT_EQ(in.paths[0].points[1].through->corner, out.paths[0].points[1].through->corner);
+}
+
 TEST(UserPaths, PointsSnapToTheSurfacesThatLightMeets) {
     const auto scene = test::mirror_glass_box();
     UserPathSpec spec = test::user_path("a", {{0, 1.97f, 0.01f}, {0.51f, 0.01f, -0.5f}, {-0.98f, 1, 0.5f}}, 0.1);
