@@ -46,6 +46,18 @@ SceneWithPaths load_with_paths(const std::string& scene, const std::string& user
     return all;
 }
 
+/// Makes a command do `body` with its options, on as many threads as its --threads says.
+template <class Options, class Body>
+void act_on_threads(CLI::App& command, Action& action, const std::shared_ptr<Options>& options, Body body) {
+    command.add_option("-t,--threads", options->threads, "threads; 0: one for each core")->check(CLI::Range(0, 4096));
+    command.callback([&action, options, body] {
+        action = [options, body] {
+            with_threads(options->threads, [&] { body(*options); });
+            return kSuccess;
+        };
+    });
+}
+
 // keyhole paths check: whether user paths work in a scene, one line each.
 
 struct CheckOptions {
@@ -98,6 +110,7 @@ void add_paths_check_command(CLI::App& paths, Action& action) {
 struct ShowOptions {
     std::string scene, paths, output, resolution;
     std::vector<std::string> overrides;
+    int threads = 0;
 };
 
 /// Draws what the camera sees of a line, and fainter what is hidden.
@@ -159,7 +172,7 @@ void draw(const Scene& scene, const UserPath& path, const Rgb8& color, Canvas& c
     for (const UserVertex& v : path.vertices) painter.vertex(v.p, color, is_specular(v.event) ? 2.0f : 3.5f);
 }
 
-int show(ShowOptions o) {
+void show(ShowOptions o) {
     if (o.output.empty()) o.output = default_png(default_exr(o.scene));
     check_writable(o.output);
     std::vector<std::string> overrides{"method=path", "spp=24"};
@@ -173,7 +186,6 @@ int show(ShowOptions o) {
     for (std::size_t i = 0; i < paths.size(); ++i) draw(*all.scene, paths[i], palette_color(i), canvas);
     write_png(o.output, canvas);
     tell("{}: {} paths\n", o.output, paths.size());
-    return kSuccess;
 }
 
 void add_paths_show_command(CLI::App& paths, Action& action) {
@@ -185,7 +197,7 @@ void add_paths_show_command(CLI::App& paths, Action& action) {
     command->add_option("--resolution", o->resolution, "WIDTHxHEIGHT in pixels");
     command->add_option("-D", o->overrides, "any setting of the preview, KEY=VALUE; by default method=path, spp=24")
         ->allow_extra_args(false);
-    command->callback([&action, o] { action = [o] { return show(*o); }; });
+    act_on_threads(*command, action, o, show);
 }
 
 // keyhole paths suggest: user paths from the renderer itself.
@@ -207,8 +219,10 @@ void suggest(const SuggestCommand& o) {
                                  .samples = loaded.settings.brightness_samples,
                                  .seed = loaded.settings.seed};
     const TransportEnds ends = trace_transport_ends(scene, kPathsFromEitherEnd, first.seed, {});
-    UserPathFile file =
-        find_openings(scene, ends, {.max_scatterings = first.max_scatterings, .seed = first.seed}, {}).paths;
+    std::vector<std::string> left_out; // of no use to who asks for what works
+    UserPathFile file = usable_paths(
+        scene, find_openings(scene, ends, {.max_scatterings = first.max_scatterings, .seed = first.seed}, {}).paths,
+        left_out);
     // An opening says all that is to be said of light that has to pass it.
     if (file.paths.empty()) file = suggest_user_paths(scene, first, o.options);
     if (file.paths.empty()) {
@@ -237,13 +251,7 @@ void add_paths_suggest_command(CLI::App& paths, Action& action) {
         ->check(real_range(1e-4, 1.0));
     command->add_option("-D", o->overrides, "any setting of render, KEY=VALUE; may be repeated")
         ->allow_extra_args(false);
-    command->add_option("-t,--threads", o->threads, "threads; 0: one for each core")->check(CLI::Range(0, 4096));
-    command->callback([&action, o] {
-        action = [o] {
-            with_threads(o->threads, [&] { suggest(*o); });
-            return kSuccess;
-        };
-    });
+    act_on_threads(*command, action, o, suggest);
 }
 
 // keyhole paths trace: follows a ray from a light, and prints the points that it meets, as a user path to paste.

@@ -31,6 +31,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
@@ -54,11 +55,17 @@ struct RenderOptions {
     int threads = 0;
     std::optional<double> timeout, cpu_time; ///< [s]
     std::string quality, display_server;
-    ProcessGroup* group = nullptr; ///< null: this process is alone
+    ProcessGroup* group = nullptr;         ///< null: this process is alone
+    std::optional<double> seconds_of_pass; ///< that one is expected to take, where a time has chosen its settings
     StopToken::Clock::time_point begun = StopToken::Clock::now();
 
     bool writes() const { return group == nullptr || group->rank() == 0; }
     bool in_time() const { return timeout || cpu_time; }
+    /// Whether a time chooses what those that go on from its passes have to keep to.
+    bool begins_passes_in_time() const {
+        return in_time() && group == nullptr && checkpoints.asked() && checkpoints.pass_range.empty() &&
+               load_map.empty() && checkpoints.found(outputs.exr).empty();
+    }
 };
 
 /// Null for --quiet. Refers to `stop`.
@@ -143,20 +150,28 @@ RenderResult render_scene(LoadedScene& loaded, RenderOptions& options, std::vect
                              static_cast<std::size_t>(window.width) * static_cast<std::size_t>(window.height),
                              options.threads};
         start_clock(options, stop);
+        const auto progress = make_progress(options.quiet, stop);
+        RunContext context{&stop, progress.get()};
+        const std::set<std::string> named = named_settings(options.overrides);
+        PassesInTime passes;
+        if (options.begins_passes_in_time()) {
+            passes = passes_in_time(scene, loaded.settings, named, context, loaded.user_paths);
+            loaded.settings = passes.settings;
+            options.seconds_of_pass = passes.seconds;
+        }
+        context.whole_round = options.in_time() && options.checkpoints.asked(); // a picture, if not one to go on from
         const std::uint64_t hash = scene_hash(scene);
         const Picture expected{
             window.width, window.height, {}, render_identity(loaded.settings, hash, loaded.user_paths), {}};
         WorkPartition share = options.checkpoints.share(options.outputs.exr, expected, loaded.settings, options.group);
-        const auto progress = make_progress(options.quiet, stop);
         if (options.writes()) view.watch(share);
-        const RunContext context{&stop, progress.get()};
-        // Parts of a render have to agree on its settings: none can follow from the time.
+        // Parts of a render have to agree on its settings: none can follow from the time that one has.
         const bool alone = options.group == nullptr && !options.checkpoints.asked();
         result = options.in_time() && alone && loaded.settings.load_map.empty()
-                     ? render_in_time(scene, loaded.settings, named_settings(options.overrides), context,
-                                      loaded.user_paths, share)
+                     ? render_in_time(scene, loaded.settings, named, context, loaded.user_paths, share)
                      : render(scene, loaded.settings, context, loaded.user_paths, share);
         if (!result.picture.layers.empty()) add_masks(result.picture, scene, loaded.settings, stop);
+        result.stats.begin_with(passes.stats);
         result.stats.stages.insert(result.stats.stages.begin(), loading);
         const auto identity = render_identity(result.settings, hash, loaded.user_paths);
         result.picture.metadata.insert(identity.begin(), identity.end());
@@ -168,29 +183,20 @@ RenderResult render_scene(LoadedScene& loaded, RenderOptions& options, std::vect
     return result;
 }
 
-/// From this effort on a pass takes no less than by the settings' defaults.
-constexpr double kEffortOfDefaults = 3;
-
-/// Settings whose passes are short enough for the time.
-Settings with_short_passes(const Settings& settings, const ImageWindow& window, const RenderOptions& options,
-                           const std::set<std::string>& named) {
-    if (settings.method->samples_pixels && settings.target_error == 0) return settings; // whose units are rounds
-    const double seconds =
-        options.cpu_time ? *options.cpu_time : cpu_time_of(options.timeout.value_or(0), options.threads);
-    const double effort = seconds / (kSecondsOfEffort * kPassesInTime);
-    return effort < kEffortOfDefaults ? with_effort(settings, effort, static_cast<std::int64_t>(window.size()), named)
-                                      : settings;
-}
-
-/// Settings of effort that no option names, as the checkpoint has them: a time may have chosen them.
+/// The method, where that is to be chosen, and settings of effort that no option names, as the checkpoint has them: a
+/// time may have chosen them.
 /// @throws InputError where it ends by time, and nobody says when.
 Settings with_effort_of(const std::string& checkpoint, Settings settings, const RenderOptions& options,
                         const std::set<std::string>& named) {
     const auto words = words_by_key(read_exr_metadata(checkpoint)["settings"]);
     const bool has_end = settings.passes > 0;
+    const auto take = [&](std::string_view key) {
+        if (const auto word = words.find(std::string(key)); word != words.end()) apply_override(settings, word->second);
+    };
     for (const std::string_view key : kSettingsOfEffort)
-        if (const auto word = words.find(std::string(key)); word != words.end() && !named.contains(word->first))
-            apply_override(settings, word->second);
+        if (!named.contains(std::string(key))) take(key);
+    if (!named.contains("brightness_error")) take("brightness_error");
+    if (settings.method == &methods::automatic) take("method");
     if (has_end && settings.passes == 0 && settings.target_error == 0 && !options.in_time())
         throw InputError(checkpoint + ": found no number of passes to end with, expected --timeout or --cpu-time as "
                                       "when it was begun");
@@ -223,10 +229,7 @@ LoadedScene load_for(const RenderOptions& options, std::vector<std::string>& war
     const std::vector<std::string> older = options.checkpoints.found(options.outputs.exr);
     const bool goes_on = options.checkpoints.resume && !older.empty();
     const ImageWindow& window = loaded.description.window;
-    if (goes_on)
-        loaded.settings = with_effort_of(older.front(), loaded.settings, options, named);
-    else if (in_passes)
-        loaded.settings = with_short_passes(loaded.settings, window, options, named);
+    if (goes_on) loaded.settings = with_effort_of(older.front(), loaded.settings, options, named);
     if (!goes_on && loaded.settings.passes == 0 && loaded.settings.target_error > 0 && options.quality.empty())
         loaded.settings = with_effort_at_most(loaded.settings, effort_of_pass(loaded.settings.target_error),
                                               static_cast<std::int64_t>(window.size()), named);
@@ -240,6 +243,9 @@ LoadedScene load_for(const RenderOptions& options, std::vector<std::string>& war
     if (!options.user_paths.empty()) loaded.user_paths = load_user_paths(options.user_paths);
     return loaded;
 }
+
+/// Time for so many passes as they were expected brings the first one to its end.
+constexpr double kPassesToBegin = 3;
 
 /// Noise of samples, relative to the picture, from which on hardly a pixel says what its light is.
 constexpr double kMostNoise = 1;
@@ -307,9 +313,12 @@ int run(RenderOptions options) {
     if (!options.quiet) print_warnings(result.stats);
     if (!has_picture(result)) {
         if (!stop.requested() && options.checkpoints.asked())
-            throw InputError("the time was up before the first unit of work was whole: nothing was written; expected "
-                             "more time, or shorter units (-D light_paths=..., mutations=..., "
-                             "brightness_samples=..., importons=...)");
+            throw InputError(fmt::format(
+                "the time was up before the first unit of work was whole: nothing was written; expected {}, or shorter "
+                "units (-D light_paths=..., mutations=..., brightness_samples=..., importons=...)",
+                options.seconds_of_pass
+                    ? fmt::format("{:.0f} s at least", std::ceil(kPassesToBegin * *options.seconds_of_pass))
+                    : "more time"));
         if (!stop.requested()) throw InputError("the time was up before the first pixel: nothing was written");
         tell("keyhole: stopped before there was a unit of work to keep: nothing was written\n");
         return kInterrupted;

@@ -106,6 +106,8 @@ class Passes {
         }
     }
     const PixelSampling& pixels() const { return pixels_; }
+    /// Whether there were photons to tell of, be it none at all.
+    bool has_sampled() const { return has_sampled_; }
 
   private:
     /// Returns whether to go on.
@@ -118,6 +120,7 @@ class Passes {
         // The photons of a pass that was cut short are good for a first picture, not for one that is there.
         if (early.stopped() && (context.communicator != nullptr || !work_.is_first())) return false;
         report_photons(photons, stats_);
+        has_sampled_ = true;
         if (observer_ != nullptr) observer_->sampled(photons);
         const PassGather gather(c_, plan_, pass, seed, std::move(photons), stats_, context);
         if (observer_ != nullptr) observer_->ready(gather);
@@ -182,6 +185,7 @@ class Passes {
     RenderStats& stats_;
     PixelSampling pixels_;
     std::optional<std::int64_t> next_; // unit
+    bool has_sampled_ = false;
 };
 
 } // namespace
@@ -218,9 +222,10 @@ RenderResult render_photons(const RenderTask& task) {
     c.weight = weight ? &*weight : nullptr;
     c.shares = &findings.shares;
     c.observer = observer;
-    const auto sampler = make_sampler(c, plan);
     Work work(settings, scene.camera().window(), AccumulationBuffer::Parts::film, share, settings.spp,
               Work::PassStart::costly);
+    c.keeps_units = work.keeps_units();
+    const auto sampler = make_sampler(c, plan);
     Passes passes(c, plan, *sampler, work, task, stats);
     if (work.communicator() == nullptr)
         passes.run(context);
@@ -229,7 +234,7 @@ RenderResult render_photons(const RenderTask& task) {
     if (!settings.save_map.empty() && !stats.has_saved_map)
         stats.warnings.emplace_back("no photons were saved: those of the first pass were not made here");
     sampler->finish(stats);
-    warn_of_photons(stats, work.passes(), settings.max_depth);
+    if (passes.has_sampled()) warn_of_photons(stats, work.passes(), settings.max_depth);
     passes.pixels().report(stats);
     report_eye_samples(passes.pixels().luminances(), scene, stats);
     report_black(passes.pixels().luminances(), scene, stats, true);

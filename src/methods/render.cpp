@@ -7,10 +7,12 @@
 #include "methods/learned_direct_light_scope.h"
 #include "methods/method.h"
 #include "methods/render_paths.h"
+#include "session/work.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string>
 #include <utility>
 
 namespace keyhole {
@@ -76,6 +78,13 @@ RenderResult render(Scene& scene, const Settings& settings, const RunContext& co
     } catch (const Interrupted&) { // before there was a picture
         result.settings = settings;
         result.stats.complete = false;
+        if (share.done != nullptr && !share.keep_sums) { // but for what was done before
+            result.picture = *share.done;
+            result.picture.sums.clear();
+            result.picture.metadata.clear();
+            result.stats.samples = std::stod(share.done->metadata.at("samples"));
+            result.stats.warnings.emplace_back(kNothingAdded);
+        }
     }
     // What others are to go on from has its sums, which a first look has not.
     const bool asked = context.stop != nullptr && context.stop->stopped();

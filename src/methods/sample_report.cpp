@@ -43,6 +43,7 @@ std::optional<Image> image_of(const Scene& scene, const Emitter& emitter) {
 }
 
 void report_small_emitters(const RunningStats& luminance, const Scene& scene, RenderStats& stats) {
+    if (luminance.count() == 0) return; // nothing was looked at
     double missed = 0;
     for (const auto& emitter : scene.emitters()) {
         const auto image = image_of(scene, *emitter);

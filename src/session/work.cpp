@@ -179,6 +179,9 @@ Picture Work::finish(RenderStats& stats) {
     stats.passes = passes();
     if (passes() > 1 && settings_.passes != 1 && knows_error_) stats.values["relative error"] = error_.relative();
     if (share_.save && done_.size() > 0) share_.save(snapshot(stats)); // nothing is not worth an older checkpoint
+    if (share_.save && !share_.take_number && taken_ > 0 && done_.size() == before_.size())
+        stats.warnings.emplace_back(
+            done_.empty() ? "stopped before its first unit of work was whole: there is no checkpoint" : kNothingAdded);
     if (missed) // not in the checkpoint: who goes on may reach it
         stats.warnings.push_back(
             passes() < kLeastPasses

@@ -41,6 +41,9 @@ class PassError {
     std::int64_t passes_ = 0;
 };
 
+/// The warning where a stop came before anything was done beyond a checkpoint.
+inline constexpr const char* kNothingAdded = "stopped before a unit of work was whole: the checkpoint is as it was";
+
 /// Hands out units of work, adds up what they gather, and saves it now and then.
 ///
 ///     while (const auto unit = work.take(context)) { ...; work.unit().film->add(...); work.end_unit(stats); }

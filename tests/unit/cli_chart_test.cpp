@@ -120,6 +120,14 @@ TEST_F(Program, SuggestsNoPathsFromTheSky) {
     EXPECT_THAT(read("err"), HasSubstr("sky.yaml: found light from infinitely far away alone, expected emitters"));
 }
 
+TEST_F(Program, SuggestedPathsPassTheirCheckAndAreShown) {
+    const std::string box = KEYHOLE_SOURCE_DIR "/scenes/box.yaml ";
+    ASSERT_EQ(run("paths suggest " + box + "-n 60 -D brightness_samples=5k -t 1 -o p.yaml"), 0) << read("err");
+    EXPECT_EQ(run("paths check " + box + "p.yaml"), 0) << read("err");
+    EXPECT_EQ(run("paths show " + box + "p.yaml --resolution 16x16 -D spp=1 -t 1 -o p.png"), 0) << read("err");
+    EXPECT_TRUE(exists("p.png"));
+}
+
 TEST_F(Program, PlanTellsWhatIsLeftOutAndWhy) {
     ASSERT_EQ(run("plan scene.yaml --json -D method=ipm -D light_paths=20k"), 0) << read("err");
     const auto plan = nlohmann::json::parse(read("out"));

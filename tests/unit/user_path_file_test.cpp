@@ -1,12 +1,15 @@
 // Files of user paths: what is read, and that every mistake in one is a single clear error.
 #include "core/error.h"
 #include "sampling/guidance/user_paths.h"
+#include "scene/load/load_mesh.h"
 #include "support/scratch_directory.h"
 #include "support/test_scenes.h"
 #include "support/user_paths.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <array>
 
 namespace keyhole {
 namespace {
@@ -232,6 +235,16 @@ TEST(UserPathFile, WhatIsWrittenIsReadAgain) {
     }
 }
 
+/// Else what was checked before it was written may fail afterwards.
+TEST(UserPathFile, PointsAreWrittenToTheLastDigit) {
+    const ScratchDirectory scratch;
+    UserPathFile out{{test::user_path("a", {{0.1f, 1 / 3.0f, 0}, {0.7788992f, 1e-6f / 3, 1234.5678f}}, 0.1)}};
+    out.paths[0].points[1].through = Opening{{1 / 3.0, 0, 0}, {0, 1 / 7.0, 0}, {0, 0, 1}};
+    const UserPathFile in = load_user_paths(scratch.write("p.yaml", user_paths_text(out, "")));
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(in.paths.at(0).points.at(i).p, out.paths[0].points[i].p);
+    EXPECT_EQ(in.paths[0].points[1].through->corner, out.paths[0].points[1].through->corner);
+}
+
 TEST(UserPaths, PointsSnapToTheSurfacesThatLightMeets) {
     const auto scene = test::mirror_glass_box();
     UserPathSpec spec = test::user_path("a", {{0, 1.97f, 0.01f}, {0.51f, 0.01f, -0.5f}, {-0.98f, 1, 0.5f}}, 0.1);
@@ -241,6 +254,42 @@ TEST(UserPaths, PointsSnapToTheSurfacesThatLightMeets) {
     EXPECT_NEAR(path.vertices.at(1).p.x, -1, 1e-6);
     EXPECT_EQ(path.signature(), "L D D");
     EXPECT_TRUE(path.seen);
+}
+
+/// Lamps that emit to all sides: one mesh, six rectangles, a ball. Seen from below their tops are behind them.
+std::unique_ptr<Scene> lamps_in_a_room() {
+    test::SceneMaker m;
+    const test::MaterialPtr white = make_diffuse(Rgb(0.5));
+    m.room({-3, 0, -3}, {3, 3, 3}, white);
+    for (const Geometry& lamp : {Geometry(make_box({-1.5f, 2.5f, -0.5f}, {-1.4f, 2.58f, 0.5f})),
+                                 Geometry(Sphere{{0, 2.54f, 0}, 0.04f, false})}) {
+        Shape shape;
+        shape.geometry = lamp;
+        shape.material = white;
+        shape.emission = std::make_unique<SurfaceEmission>(SurfaceEmission{Rgb(1.0), false});
+        m.shape(std::move(shape));
+    }
+    const Vec3 corner(1.4f, 2.5f, -0.5f), u(0.1f, 0, 0), v(0, 0.08f, 0), w(0, 0, 1);
+    for (const auto& [a, b, c] : {std::array{u, v, w}, {v, w, u}, {w, u, v}})
+        m.rectangle(corner, b, a, white, Rgb(1.0)).rectangle(corner + c, a, b, white, Rgb(1.0));
+    return m.camera({0, 1, 2.9f}, {0, 1, 0}, 60).window(16, 16).build();
+}
+
+TEST(UserPaths, TheFirstPointMayLieAnywhereInALamp) {
+    const auto scene = lamps_in_a_room();
+    for (const float x : {-1.45f, 0.0f, 1.45f})
+        for (const float y : {2.47f, 2.51f, 2.54f, 2.57f})
+            for (const float floor : {x - 1, x, x + 0.4f}) {
+                const UserPath path = bind_user_path(*scene, test::user_path("a", {{x, y, 0}, {floor, 0, 0.2f}}, 0.1));
+                const SurfacePoint& light = path.patch.center();
+                const Vec3 to = (path.vertices[0].p - light.p).normalized();
+                EXPECT_GT(luminance(scene->emitter(light.emitter).radiance(light, to)), 0) << x << " " << y;
+                EXPECT_NEAR(light.p.x, x, 0.06) << "another lamp";
+            }
+    // Of places that send light there the nearest.
+    const UserPath path = bind_user_path(*scene, test::user_path("a", {{-1.44f, 2.57f, 0.1f}, {3, 1.4f, 0.1f}}, 0.1));
+    EXPECT_NEAR(path.patch.center().p.x, -1.4f, 1e-6);
+    EXPECT_NEAR(path.patch.center().p.y, 2.57f, 1e-6);
 }
 
 TEST(UserPathFile, ARangeOfBouncesBecomesAPathForEachNumber) {

@@ -68,14 +68,14 @@ class RenderInTime {
                  const UserPathFile& user_paths, const WorkPartition& share)
         : scene_(scene), settings_(settings), given_(given), context_(context), given_paths_(user_paths), share_(share),
           start_(left()), method_(settings.method) {
+        require_can_show(scene, settings);
+        set_window_margin(scene, settings);
+        if (!given.contains("brightness_error")) settings_.brightness_error = 0; // stage one gets its part, no more
         pixels_ = scene.camera().window().size();
     }
 
     RenderResult run() {
         try {
-            direct_light_.emplace(scene_, settings_, context_);
-            paths_.emplace(scene_, settings_, given_paths_, context_);
-            findings_.gain_by_openings = paths_->gain();
             choose();
             if (is_close()) spend_in_parts();
             while (mean_.empty() || (left() > kLeast * start_ && !used_up_)) {
@@ -87,6 +87,26 @@ class RenderInTime {
         }
         if (mean_.empty()) return without_picture();
         return finish();
+    }
+
+    PassesInTime choose_passes() {
+        try {
+            choose();
+        } catch (const Interrupted&) { // too slow for a trial
+            if (method_ == &methods::automatic) use(methods::path);
+        }
+        PassesInTime passes{settings_of_passes(left()), {}, std::move(trials_)};
+        if (cost_ && !method_->samples_pixels) {
+            Settings one = passes.settings;
+            one.passes = 1;
+            passes.seconds = cost_->cost.predict(one, pixels_);
+        }
+        passes.stats.remarks = std::move(remarks_);
+        passes.stats.remarks.push_back(
+            fmt::format("set by the time{}:{}",
+                        passes.seconds ? fmt::format(", for passes of about {:.2g} s", *passes.seconds) : "",
+                        differences(settings_, passes.settings)));
+        return passes;
     }
 
   private:
@@ -106,6 +126,9 @@ class RenderInTime {
 
     /// The method, and what it costs.
     void choose() {
+        direct_light_.emplace(scene_, settings_, context_);
+        paths_.emplace(scene_, settings_, given_paths_, context_);
+        findings_.gain_by_openings = paths_->gain();
         if (settings_.method != &methods::automatic) {
             use(*settings_.method);
             if (method_->samples_pixels && !fills_passes(settings_)) return;
@@ -219,8 +242,10 @@ class RenderInTime {
         if (!method_->samples_pixels) {
             std::set<std::string> given = given_;
             given.insert("passes");
-            seconds = std::min(seconds, cost_->cost.predict(s, pixels_));
-            s = cost_->settings_for(s, given, pixels_, seconds, effort_);
+            if (cost_)
+                s = cost_->settings_for(s, given, pixels_, std::min(seconds, cost_->cost.predict(s, pixels_)), effort_);
+            else
+                s = with_effort_at_most(s, seconds / kSecondsOfEffort, static_cast<std::int64_t>(pixels_), given);
         } else if (!given_.contains("spp")) {
             const double most = cost_ ? seconds / static_cast<double>(s.passes) / cost_->per_sample(pixels_) : 1;
             s.spp = std::max<std::int64_t>(1, std::min(s.spp, static_cast<std::int64_t>(most)));
@@ -326,7 +351,7 @@ class RenderInTime {
     }
 
     Scene& scene_;
-    const Settings& settings_;
+    Settings settings_;
     const std::set<std::string>& given_;
     const RunContext& context_;
     const UserPathFile& given_paths_;
@@ -354,15 +379,22 @@ class RenderInTime {
 
 RenderResult render_in_time(Scene& scene, const Settings& settings, const std::set<std::string>& given,
                             const RunContext& context, const UserPathFile& user_paths, const WorkPartition& share) {
-    require_can_show(scene, settings);
-    set_window_margin(scene, settings);
-    Settings s = settings;
-    if (!given.contains("brightness_error")) s.brightness_error = 0; // stage one gets its part of the time, no more
-    RenderResult result = RenderInTime{scene, s, given, context, user_paths, share}.run();
+    RenderResult result = RenderInTime{scene, settings, given, context, user_paths, share}.run();
     if (result.stats.cut_map) result.stats.warn(Doubt::photons, *result.stats.cut_map);
-    if (!s.save_map.empty() && !result.stats.has_saved_map && !method_named(result.stats.method).keeps_photons)
+    if (!settings.save_map.empty() && !result.stats.has_saved_map && !method_named(result.stats.method).keeps_photons)
         result.stats.warnings.emplace_back("no photons were saved: there was too little time for them");
     return result;
+}
+
+PassesInTime passes_in_time(Scene& scene, const Settings& settings, const std::set<std::string>& given,
+                            const RunContext& context, const UserPathFile& user_paths) {
+    Settings open = settings; // as if nobody had said how many
+    open.passes = 0;
+    std::set<std::string> others = given;
+    others.erase("passes");
+    PassesInTime passes = RenderInTime{scene, open, others, context, user_paths, {}}.choose_passes();
+    passes.settings.passes = settings.passes;
+    return passes;
 }
 
 } // namespace keyhole

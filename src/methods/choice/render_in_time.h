@@ -1,9 +1,11 @@
 // The best picture for a time.
 #pragma once
 
+#include "core/render_stats.h"
 #include "core/settings.h"
 #include "methods/render.h"
 
+#include <optional>
 #include <set>
 #include <string>
 
@@ -21,5 +23,18 @@ namespace keyhole {
 RenderResult render_in_time(Scene& scene, const Settings& settings, const std::set<std::string>& given,
                             const RunContext& context, const UserPathFile& user_paths = {},
                             const WorkPartition& share = {});
+
+/// How a time is filled by passes that others can go on from.
+struct PassesInTime {
+    Settings settings;             ///< of a render with as many passes as fit, by one method
+    std::optional<double> seconds; ///< that a pass is expected to take, where it is more than rounds of samples
+    RenderStats stats;             ///< what it took to choose them, and what was chosen
+};
+
+/// Passes for render(), by the method that promises the least error: as short as those that render_in_time() fills a
+/// time with, so that the first is done well before context.stop. settings.passes stays as it is.
+/// @throws InputError as render().
+PassesInTime passes_in_time(Scene& scene, const Settings& settings, const std::set<std::string>& given,
+                            const RunContext& context, const UserPathFile& user_paths);
 
 } // namespace keyhole

@@ -99,7 +99,7 @@ class CombinedSampler final : public PhotonSampler {
     /// Were chains to take all the time, few light paths would stand in for all that the weights count on.
     RunContext leave_time_to_light_paths(const RunContext& context) const {
         const double of_chains = kPathsOfStep * shares_.chains;
-        return context.with_reserve((1 - shares_.chains) / (1 - shares_.chains + of_chains));
+        return c_.with_reserve(context, (1 - shares_.chains) / (1 - shares_.chains + of_chains));
     }
 
     Photons trace_light(const EmissionGuide& guide, const Pass& pass, RenderStats& stats, const RunContext& context) {

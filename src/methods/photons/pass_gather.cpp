@@ -95,7 +95,7 @@ PassGather::PassGather(const SamplerContext& c, const RenderPlan& plan, std::int
             };
         spots_ = find_hot_spots(*rays_, options, context);
         if (spots_.size() > 0) maps.spots = &spots_, rays_.emplace(rays());
-        cache_ = fill_cache(*rays_, spots_, options, context.with_reserve(kForSamples), decide);
+        cache_ = fill_cache(*rays_, spots_, options, c.with_reserve(context, kForSamples), decide);
     }
     find_rays(cache());
     gather_.emplace(*rays_, cache(), &spots_, samples);

@@ -46,7 +46,12 @@ struct SamplerContext {
     const ImageWeight* weight = nullptr;         ///< of pixels; null: photons follow the light
     std::optional<WorkShares>* shares = nullptr; ///< of cps, found by trial for this render and those that follow
     PhotonObserver* observer = nullptr;          ///< of the photons that a render is made from; null: nobody watches
+    bool keeps_units = false;                    ///< what is cut short is of no use then
 
+    /// With so much of the time in reserve for later stages; none where all have to be whole.
+    RunContext with_reserve(const RunContext& context, double share) const {
+        return keeps_units ? context : context.with_reserve(share);
+    }
     /// The paths that chains sample.
     PathSet path_set() const { return {settings.paths == SampledPaths::all, coverage, weight}; }
     /// What goes to which map.

@@ -32,51 +32,77 @@ Vec2 nearest_on_triangle(const V3& a, const V3& b, const V3& c, const V3& p) {
     return best;
 }
 
-NearestEmitter nearest_on(const Sphere& sphere, const V3& p, const V3& towards) {
-    const V3 out = p - V3(sphere.center);
-    const bool deep = out.length() < 0.5 * sphere.radius;
-    const Vec3 w((deep ? towards - V3(sphere.center) : out).normalized());
-    return {sphere_point(sphere, w), std::max(0.0, out.length() - sphere.radius)};
+/// Of emitters' points the one to take, one after the other.
+class Choice {
+  public:
+    Choice(const Scene& scene, const V3& towards, double reach) : scene_(scene), towards_(towards), reach_(reach) {}
+
+    /// @param distance of `point` from the given place.
+    void offer(const SurfacePoint& point, double distance) {
+        const bool nearer = !best_ || distance < best_->distance, within = distance <= reach_;
+        if (!nearer && (sends_ || !within)) return;
+        const Vec3 w((towards_ - V3(point.p)).normalized());
+        const bool sends = within && !is_black(scene_.emitter(point.emitter).radiance(point, w));
+        if (sends == sends_ ? !nearer : sends_) return;
+        best_ = {point, distance};
+        sends_ = sends;
+    }
+    const std::optional<NearestEmitter>& best() const { return best_; }
+
+  private:
+    const Scene& scene_;
+    V3 towards_;
+    double reach_;
+    std::optional<NearestEmitter> best_;
+    bool sends_ = false; // light from there
+};
+
+/// Those of a shape that may be the one: offer(point, distance).
+template <class Offer> void offer_points(const Sphere& sphere, const V3& p, const V3& towards, const Offer& offer) {
+    const V3 center(sphere.center), out = p - center;
+    const auto at = [&](const V3& w) { return sphere_point(sphere, Vec3(w.normalized())); };
+    const double distance = std::max(0.0, out.length() - sphere.radius);
+    if (!(out.length() < 0.5 * sphere.radius)) offer(at(out), distance);
+    const SurfacePoint faces = at(towards - center);
+    offer(faces, distance > 0 ? (V3(faces.p) - p).length() : 0);
 }
 
-NearestEmitter nearest_on(const TriangleMesh& mesh, const V3& p) {
-    NearestEmitter best{{}, std::numeric_limits<double>::infinity()};
+template <class Offer> void offer_points(const TriangleMesh& mesh, const V3& p, const Offer& offer) {
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
         const auto& [a, b, c] = mesh.triangles[i];
         const Vec2 at = nearest_on_triangle(V3(mesh.positions[a]), V3(mesh.positions[b]), V3(mesh.positions[c]), p);
         const SurfacePoint point = triangle_point(mesh, i, at.x, at.y);
-        if (const double d = (V3(point.p) - p).length(); d < best.distance) best = {point, d};
+        offer(point, (V3(point.p) - p).length());
     }
-    return best;
 }
 
 } // namespace
 
-std::optional<NearestEmitter> nearest_emitter_point(const Scene& scene, const V3& p, const V3& towards) {
-    std::optional<NearestEmitter> best;
-    const auto take = [&](const NearestEmitter& found, std::uint32_t emitter) {
-        if (best && found.distance >= best->distance) return;
-        best = found;
-        best->point.emitter = emitter;
-    };
+std::optional<NearestEmitter> nearest_emitter_point(const Scene& scene, const V3& p, const V3& towards, double reach) {
+    Choice choice(scene, towards, reach);
     for (std::uint32_t i = 0; i < scene.emitters().size(); ++i) {
         if (scene.emitter(i).site() != Site::point) continue;
         Rng unused(0, StreamPurpose::seed_choice, 0); // there is nothing to choose
-        const SurfacePoint point = scene.emitter(i).sample_point(unused).point;
-        take({point, (V3(point.p) - p).length()}, i);
+        SurfacePoint point = scene.emitter(i).sample_point(unused).point;
+        point.emitter = i;
+        choice.offer(point, (V3(point.p) - p).length());
     }
     for (std::size_t i = 0; i < scene.shapes().size(); ++i) {
         const std::uint32_t emitter = scene.emitter_of_shape(i);
         if (emitter == SurfacePoint::kNone) continue;
         const Shape& shape = scene.shapes()[i];
-        const auto* sphere = std::get_if<Sphere>(&shape.geometry);
-        NearestEmitter found =
-            sphere != nullptr ? nearest_on(*sphere, p, towards) : nearest_on(std::get<TriangleMesh>(shape.geometry), p);
-        found.point.shape = static_cast<std::uint32_t>(i);
-        found.point.material = shape.material.get();
-        take(found, emitter);
+        const auto offer = [&](SurfacePoint point, double distance) {
+            point.shape = static_cast<std::uint32_t>(i);
+            point.material = shape.material.get();
+            point.emitter = emitter;
+            choice.offer(point, distance);
+        };
+        if (const auto* sphere = std::get_if<Sphere>(&shape.geometry))
+            offer_points(*sphere, p, towards, offer);
+        else
+            offer_points(std::get<TriangleMesh>(shape.geometry), p, offer);
     }
-    return best;
+    return choice.best();
 }
 
 std::vector<Vertex> follow_light(const Scene& scene, const SurfacePoint& from, Vec3 w, std::size_t most,

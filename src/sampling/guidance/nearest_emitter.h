@@ -14,9 +14,12 @@ struct NearestEmitter {
     double distance;    ///< of the given place from it; 0 inside an emitting sphere [m]
 };
 
-/// The point of the scene's emitters nearest to `p`, world space; none if all emitters are infinite. For a place deep
-/// inside an emitting sphere, which has no nearest point worth the name, the point that faces `towards`.
-std::optional<NearestEmitter> nearest_emitter_point(const Scene& scene, const Imath::V3d& p, const Imath::V3d& towards);
+/// The point of the scene's emitters nearest to `p`, world space; none if all emitters are infinite. Of points within
+/// `reach` one that sends light `towards` goes before nearer ones that don't: who means a lamp points at its middle, to
+/// which its back may be nearer. For a place deep inside an emitting sphere, which has no nearest point worth the name,
+/// the point that faces `towards`.
+std::optional<NearestEmitter> nearest_emitter_point(const Scene& scene, const Imath::V3d& p, const Imath::V3d& towards,
+                                                    double reach = 0);
 
 /// Which way to take where a surface both reflects and transmits.
 enum class AtGlass { transmit, reflect };

@@ -99,7 +99,8 @@ void Binder::stand_in(std::size_t i) {
 SurfacePoint Binder::find_light() {
     const auto next =
         std::find_if(spec_.points.begin() + 1, spec_.points.end(), [](const UserPathPoint& p) { return !p.bounce; });
-    const auto nearest = nearest_emitter_point(scene_, spec_.points[0].p, next->p);
+    const bool aimed = !spec_.points[1].bounce; // light that is scattered first may leave in any direction
+    const auto nearest = nearest_emitter_point(scene_, spec_.points[0].p, next->p, aimed ? tolerance_ : 0);
     if (!nearest) fail(0, "found no emitter that has a place in the scene, expected an area light or a point light");
     if (nearest->distance > tolerance_)
         fail(0, fmt::format("found the nearest emitter {} away, at {}, expected one within {}", text(nearest->distance),

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace keyhole {
 namespace {
@@ -72,7 +73,11 @@ UserPathSpec spec_of(const Candidate& middle, const std::vector<const Candidate*
     UserPathSpec spec;
     spec.weight = 0;
     for (const Candidate* c : cluster) spec.weight += c->weight;
-    for (int i = 0; i < middle.vertices; ++i) spec.points.push_back({Imath::V3d(middle.path.x[i].point.p)});
+    const auto short_of = [](float x) { return std::stod(fmt::format("{}", x)); }; // the same float, in few digits
+    for (int i = 0; i < middle.vertices; ++i) {
+        const Vec3& p = middle.path.x[i].point.p;
+        spec.points.push_back({{short_of(p.x), short_of(p.y), short_of(p.z)}});
+    }
     for (int i = 0; i + 1 < middle.vertices; ++i) spec.beta.push_back(cone_of(middle, cluster, i));
     return spec;
 }
@@ -92,26 +97,35 @@ void finish(UserPathFile& file) {
 
 UserPathFile suggest_user_paths(const Scene& scene, const StageOneSettings& first, const SuggestOptions& options) {
     const StageOne one = run_stage_one(scene, first, {});
-    std::vector<Candidate> left = candidates(scene, choose_seeds(scene, first, one, one.all_groups(), options.pool));
+    const std::vector<Candidate> all =
+        candidates(scene, choose_seeds(scene, first, one, one.all_groups(), options.pool));
     const double radius = options.radius * (scene.upper() - scene.lower()).length();
-    UserPathFile file;
-    while (!left.empty() && file.paths.size() < options.count) {
-        std::vector<double> score(left.size(), 0.0);
-        parallel_for(static_cast<std::int64_t>(left.size()), [&](std::int64_t i) {
-            for (const Candidate& c : left)
-                if (alike(left[static_cast<std::size_t>(i)], c, radius)) score[static_cast<std::size_t>(i)] += c.weight;
+    const double gone = -std::numeric_limits<double>::infinity();
+    std::vector<double> score(all.size(), 0.0); // weight of those that are left and alike
+    std::vector<const Candidate*> some;
+    const auto count = [&](double sign) {
+        parallel_for(static_cast<std::int64_t>(all.size()), [&](std::int64_t i) {
+            const auto k = static_cast<std::size_t>(i);
+            for (const Candidate* c : some)
+                if (alike(all[k], *c, radius)) score[k] += sign * c->weight;
         });
-        const auto best = static_cast<std::size_t>(std::ranges::max_element(score) - score.begin());
-        const Candidate middle = left[best];
-        std::vector<const Candidate*> cluster;
-        for (const Candidate& c : left)
-            if (alike(middle, c, radius)) cluster.push_back(&c);
-        if (UserPathSpec spec = spec_of(middle, cluster); binds(scene, spec)) {
+    };
+    for (const Candidate& c : all) some.push_back(&c);
+    count(1);
+    UserPathFile file;
+    while (file.paths.size() < options.count) {
+        const auto best = std::ranges::max_element(score);
+        if (best == score.end() || *best == gone) break;
+        const Candidate& middle = all[static_cast<std::size_t>(best - score.begin())];
+        some.clear();
+        for (std::size_t i = 0; i < all.size(); ++i)
+            if (score[i] != gone && alike(middle, all[i], radius)) some.push_back(&all[i]);
+        if (UserPathSpec spec = spec_of(middle, some); binds(scene, spec))
             file.paths.push_back(std::move(spec));
-            std::erase_if(left, [&](const Candidate& c) { return alike(middle, c, radius); });
-        } else {
-            left.erase(left.begin() + static_cast<std::ptrdiff_t>(best));
-        }
+        else
+            some = {&middle};
+        count(-1);
+        for (const Candidate* c : some) score[static_cast<std::size_t>(c - all.data())] = gone;
     }
     if (!file.paths.empty()) finish(file);
     return file;

@@ -184,13 +184,13 @@ std::string entry_text(const UserPathEntry& entry) {
     if (path.patch) text += fmt::format("    patch: {:.4g}\n", *path.patch);
     if (path.tolerance) text += fmt::format("    tolerance: {:.4g}\n", *path.tolerance);
     text += "    points:\n";
-    const auto list = [](const Imath::V3d& p) { return fmt::format("[{:.7g}, {:.7g}, {:.7g}]", p.x, p.y, p.z); };
+    // All digits: along a chain of mirrors the last one decides where light goes, and edges may be nearly parallel.
+    const auto list = [](const Imath::V3d& p) { return fmt::format("[{}, {}, {}]", p.x, p.y, p.z); };
     for (const UserPathPoint& p : path.points) {
         if (p.bounce) continue;
-        // Of edges all digits, for those that are nearly parallel.
         if (const auto& o = p.through)
-            text += fmt::format("      - through: {{corner: {}, u: [{}, {}, {}], v: [{}, {}, {}]}}\n", list(o->corner),
-                                o->u.x, o->u.y, o->u.z, o->v.x, o->v.y, o->v.z);
+            text +=
+                fmt::format("      - through: {{corner: {}, u: {}, v: {}}}\n", list(o->corner), list(o->u), list(o->v));
         text += fmt::format("      - {}\n", list(p.p));
         if (&p != path.points.data() || bounces == 0) continue;
         text += entry.paths.size() > 1 ? fmt::format("      - bounces: [{}, {}]\n", bounces, entry.most_bounces)
