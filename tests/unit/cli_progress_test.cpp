@@ -160,6 +160,9 @@ TEST(Units, HaveThreeDigits) {
     EXPECT_EQ(with_prefix(7), "7 ");
     EXPECT_EQ(with_prefix(999), "999 ");
     EXPECT_EQ(with_prefix(999.7), "1.00 k");
+    EXPECT_EQ(with_prefix(0.25), "0.25 ");
+    EXPECT_EQ(with_prefix(0.004), "4.00 m");
+    EXPECT_EQ(with_prefix(1.21e-8), "12.1 n");
     EXPECT_EQ(with_prefix(12'345), "12.3 k");
     EXPECT_EQ(with_prefix(1.5e6), "1.50 M");
     EXPECT_EQ(duration(3.21), "3.2 s");

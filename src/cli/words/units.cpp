@@ -9,15 +9,15 @@
 namespace keyhole {
 
 std::string with_prefix(double x) {
-    constexpr std::array<const char*, 5> kPrefixes{"", "k", "M", "G", "T"};
-    std::size_t k = 0;
+    constexpr std::array<const char*, 8> kPrefixes{"n", "u", "m", "", "k", "M", "G", "T"};
+    constexpr std::size_t kNone = 3;
+    std::size_t k = kNone;
+    // Less would print as 0.00.
+    for (const bool small = std::abs(x) < 0.01; small && x != 0 && std::abs(x) < 1 && k > 0; --k) x *= 1000;
     // 999.5 and more would print as 1000.
-    while (std::abs(x) >= 999.5 && k + 1 < kPrefixes.size()) {
-        x /= 1000;
-        ++k;
-    }
+    for (; std::abs(x) >= 999.5 && k + 1 < kPrefixes.size(); ++k) x /= 1000;
     const double size = std::abs(x);
-    const int decimals = size >= 99.95 || (k == 0 && x == std::floor(x)) ? 0 : size >= 9.995 ? 1 : 2;
+    const int decimals = size >= 99.95 || (k == kNone && x == std::floor(x)) ? 0 : size >= 9.995 ? 1 : 2;
     return fmt::format("{:.{}f} {}", x, decimals, kPrefixes[k]);
 }
 
