@@ -39,7 +39,8 @@ inline constexpr Stage photons_of_chains{"photons", &Settings::mutations, 0, Sta
 inline constexpr Stage photons_of_light_paths{"photons", &Settings::light_paths};
 /// Of precomputed irradiance: it is estimated at a part of the photons.
 inline constexpr Stage irradiance{"irradiance", &Settings::photons, 0, Stage::Work::gather};
-// Larger pictures have more cached irradiances, for these may lie as close as a few pixels; most of them don't.
+// Larger pictures have more cached irradiances, for these may lie as close as a few pixels; in rooms most of them
+// don't. Where everything is small they do: PhotonQuality::Cache::growth.
 inline constexpr Stage cache{"cache", &Settings::cache_rays, 0.25, Stage::Work::gather};
 inline constexpr Stage gather{"gather", &Settings::spp, 1, Stage::Work::gather};
 inline constexpr Stage direct_light{"direct light", &Settings::spp, 1};
@@ -82,8 +83,9 @@ struct PhotonQuality {
     std::optional<Lookups> lookups;
     struct Cache {
         double records;
-        double noise;    ///< of their light, in one pass
-        double starving; ///< share of visible points that no record serves
+        double noise;      ///< of their light, in one pass
+        double starving;   ///< share of visible points that no record serves
+        double growth = 0; ///< power of the number of pixels that the number of records is proportional to
     };
     std::optional<Cache> cache;
     std::optional<double> unconfirmed; ///< share of the picture with caustics that pilot photons don't confirm

@@ -181,6 +181,15 @@ std::int64_t spot_rays(const CacheOptions& options, const ImageWindow& window) {
     return std::min(worth, std::max(std::int64_t{1} << 11, helped / kMostToLook));
 }
 
+/// The finest levels look at every pixel, the one before at a few: as if the picture were smaller.
+double growth(const std::array<double, kSteps.size()>& records) {
+    constexpr std::size_t kFinest = kSteps.size() - 2;
+    static_assert(kSteps[kFinest] == 1 && kSteps[kFinest - 1] > 1);
+    const double finer = std::pow(kSteps[kFinest - 1], 2.0);
+    if (!(records[kFinest - 1] > 0)) return 1;
+    return std::clamp(std::log(records[kFinest] / records[kFinest - 1]) / std::log(finer), 0.0, 1.0);
+}
+
 /// A sum over o^2 times as many records has o^-2 times the variance, which falls with the number of rays as well, and a
 /// square of the bias that grows as o^4: both are least together where o goes by the sixth root of the rays. With 1600
 /// of them, twice.
@@ -214,15 +223,17 @@ IrradianceCache fill_cache(const GatherRays& rays, const HotSpots& spots, const 
     CacheFill fill(maker, options, cache);
     const double start = context.seconds_left();
     std::uint64_t level = 0;
+    std::array<double, kSteps.size()> records{};
     for (const int step : kSteps) {
         // Where fewer rays would do, pixels are better off with gather rays of their own.
         if (step == kCoarsest || options.rays_for_pixel * step >= kLeastWorth) fill.fill_level(step, level, context);
-        ++level;
+        records[level++] = static_cast<double>(cache.size());
         context.advance(1);
     }
     const double seconds = std::isfinite(start) ? start - context.seconds_left() : 0;
     fill.refine(decide ? decide({cache, fill.first(), seconds}) : options.rays, context);
     share_outlying_light(cache);
+    cache.set_growth(growth(records));
     context.advance(1);
     return cache;
 }

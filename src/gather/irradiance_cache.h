@@ -88,6 +88,9 @@ class IrradianceCache {
 
     std::size_t size() const { return records_.size(); }
     std::size_t bytes() const;
+    /// Power of the number of pixels that a picture's records are proportional to in number, as fill_cache() tells it.
+    double growth() const { return growth_; }
+    void set_growth(double growth) { growth_ = growth; }
     const Vec3& position(std::size_t i) const { return records_[i].position; }
     const Vec3& normal(std::size_t i) const { return records_[i].normal; }
     /// How far around record `i` there is no need of another one [m].
@@ -149,6 +152,7 @@ class IrradianceCache {
     template <class Visit> void visit_standing(const Vec3& position, float reach, Visit&& visit) const;
 
     float error_, overlap_;
+    double growth_ = 0;
     std::vector<Stored> records_;
     // Hashed grids for each power of two of the reach: a record is in all cells that its reach overlaps.
     using Grid = tsl::robin_map<std::uint64_t, Cell, HashOfCell>;

@@ -64,5 +64,17 @@ TEST(FillCache, LeavesOutRecordsThatAreNotWorthTheirRays) {
     EXPECT_GT(few, 0u);
 }
 
+/// Records of a floor lie as far apart as its walls have it; where they may lie at each pixel, all pixels have some.
+TEST(FillCache, TellsHowRecordsGrowWithPixels) {
+    const auto scene = parted_floor();
+    const GatherRays rays(*scene, {}, {.max_radius = 0.1f, .caustic_radius = 0.1f}, 8);
+    const auto growth = [&](const CacheOptions& options) { return fill_cache(rays, {}, options, {}).growth(); };
+    const double few = growth({.error = 0.5, .rays = 64, .min_radius = 20, .min_radius_by_light = 20});
+    const double many = growth({.error = 0.01, .rays = 64, .min_radius = 0.5, .min_radius_by_light = 0.5});
+    EXPECT_LT(few, 0.3);
+    EXPECT_GT(many, 0.7);
+    EXPECT_LE(many, 1);
+}
+
 } // namespace
 } // namespace keyhole

@@ -63,6 +63,24 @@ TEST(StageBalance, TakesNoiseOfPixelsIntoAccount) {
     EXPECT_GT(noisy.spp, calm.spp);
 }
 
+/// A small window had few records, but each of its pixels needed one, and so do those of the picture.
+TEST(StageBalance, LeavesTimeToSamplesWhereRecordsGrowAsPixelsDo) {
+    const Settings s = settings();
+    RenderStats stats;
+    stats.stages = {{&stages::cache, 0.25, 0.25, 0}, {&stages::gather, 0.25, 0.25, 0}};
+    stats.photon_quality.cache.emplace();
+    const auto rays_where_growth_is = [&](double growth) {
+        stats.photon_quality.cache->growth = growth;
+        const Experience cost(s, 1, kPixels / 16, stats, 0.5);
+        return split_stage_three(s, cost, {2, 2e-4}, kPixels, {}).cache_rays;
+    };
+    ASSERT_LT(rays_where_growth_is(0.25), s.cache_rays);
+    EXPECT_EQ(rays_where_growth_is(0), rays_where_growth_is(0.25)) << "rooms have that at least";
+    // The best number falls about as the root of what one takes, which is 16^0.5 times as much.
+    const auto usual = static_cast<double>(rays_where_growth_is(0.25));
+    EXPECT_NEAR(static_cast<double>(rays_where_growth_is(0.75)), 0.5 * usual, 0.1 * usual);
+}
+
 /// More where samples are many or good, fewer where records are good by few rays.
 TEST(StageBalance, ValuesRaysByWhatSamplesWouldGain) {
     const Experience cost = ten_seconds(settings());

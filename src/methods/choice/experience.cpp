@@ -14,7 +14,7 @@ double stage_work(const Stage& stage, const Settings& settings, double pixels) {
 }
 
 Experience::Experience(const Settings& settings, double effort, double pixels, const RenderStats& stats, double seconds)
-    : Experience(settings, effort, pixels) {
+    : Experience(settings, effort, pixels, stats) {
     double wall = 0, cpu = 0;
     for (const StageStats& stage : stats.stages) {
         wall += stage.wall_seconds;
@@ -27,7 +27,7 @@ Experience::Experience(const Settings& settings, double effort, double pixels, c
 }
 
 Experience Experience::in_rays(const Settings& settings, double effort, double pixels, const RenderStats& stats) {
-    Experience e(settings, effort, pixels);
+    Experience e(settings, effort, pixels, stats);
     for (const StageStats& stage : stats.stages) e.stages.emplace_back(stage.stage, static_cast<double>(stage.rays));
     return e;
 }

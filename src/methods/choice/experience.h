@@ -4,6 +4,7 @@
 #include "core/render_stats.h"
 #include "core/settings.h"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -18,6 +19,9 @@ struct Experience {
     Settings settings; ///< with the method that was run
     double effort, pixels;
     std::vector<std::pair<const Stage*, double>> stages; ///< seconds or rays of each
+    /// Power of the number of pixels by which records of the irradiance cache grow. Predictions go by that of most
+    /// scenes: of records that are many, those that don't pay are left out.
+    double cache_power = keyhole::stages::cache.pixel_power;
 
     /// @param seconds that the render took, of the kind that is limited: by the clock, or of CPU time.
     Experience(const Settings& settings, double effort, double pixels, const RenderStats& stats, double seconds);
@@ -33,8 +37,10 @@ struct Experience {
     double total() const;
 
   private:
-    Experience(const Settings& settings, double effort, double pixels)
-        : settings(settings), effort(effort), pixels(pixels) {}
+    Experience(const Settings& settings, double effort, double pixels, const RenderStats& stats)
+        : settings(settings), effort(effort), pixels(pixels) {
+        if (stats.photon_quality.cache) cache_power = std::max(cache_power, stats.photon_quality.cache->growth);
+    }
 };
 
 } // namespace keyhole

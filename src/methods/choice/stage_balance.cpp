@@ -58,10 +58,11 @@ Settings split_stage_three(const Settings& settings, const Experience& cost, con
     const auto rays = static_cast<double>(s.cache_rays), spp = static_cast<double>(s.spp);
     const double of_records = noise.records * kRaysAtFirst * static_cast<double>(cost.settings.cache_rays) / rays;
     const double of_samples = noise.samples / spp;
-    const double share = best_share_of_time(of_records * records, of_samples * samples);
+    // What all records would take, not only those that the effort counts on.
+    const double whole = records * std::pow(pixels / cost.pixels, cost.cache_power - stages::cache.pixel_power);
+    const double share = best_share_of_time(of_records * whole, of_samples * samples);
     const double both = records + samples - std::max(more, 0.0);
-    s.cache_rays =
-        static_cast<std::int64_t>(std::clamp(rays * both * share / records, std::min(rays, kLeastRays), rays));
+    s.cache_rays = static_cast<std::int64_t>(std::clamp(rays * both * share / whole, std::min(rays, kLeastRays), rays));
     const double left = both - records * static_cast<double>(s.cache_rays) / rays;
     s.spp = std::max<std::int64_t>(1, static_cast<std::int64_t>(spp * std::max(left / samples, kLeastSamples)));
     return s;

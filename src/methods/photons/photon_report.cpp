@@ -69,7 +69,7 @@ void report_lookups(const IrradianceMap& map, double asked, RenderStats& stats) 
 }
 
 void report_cache(const IrradianceCache& cache, double starving, RenderStats& stats) {
-    stats.photon_quality.cache = {static_cast<double>(cache.size()), cache.noise(), starving};
+    stats.photon_quality.cache = {static_cast<double>(cache.size()), cache.noise(), starving, cache.growth()};
 }
 
 void report_false_spots(const FinalGather& gather, std::uint64_t seed, RenderStats& stats) {
