@@ -31,7 +31,7 @@ double predict_by_trial(const TriedMethod& t, const TrialContext& c, double left
         return (grain_that_counts(c.settings, *t.method) * e.grain + e.blotches + missing) * time * size + dots;
     }
     if (!t.method->keeps_photons)
-        return t.method->trial.doubt * (e.grain * time * size + (e.blotches + e.missing) * time) + dots;
+        return t.method->trial.doubt * (e.grain * time * size + (e.blotches + e.missing) * time + dots);
     Settings s = c.settings;
     s.method = t.method;
     double effort = 0;
