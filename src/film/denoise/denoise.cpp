@@ -75,12 +75,11 @@ template <class Value> Plane mean_of_two(const HalvesSeen& seen, int border, int
         const auto term = [&](int x, int y) { return seen.both(x, y) ? value(x, y) : 0.0f; };
         return std::pair(box_mean(width, height, 0, within, term), box_mean(width, height, 0, within, share));
     };
-    const auto [near, share] = sums(reach);
-    const auto [far, share_of_far] = sums(kReachAmongSingle);
+    const auto near = sums(reach), far = sums(kReachAmongSingle);
     const float fewest = kFewestOfTwo / static_cast<float>((2 * reach + 1) * (2 * reach + 1));
     return {width, height, border, [&](int x, int y) {
-                if (share(x, y) >= fewest) return near(x, y) / share(x, y);
-                return share_of_far(x, y) > 0 ? far(x, y) / share_of_far(x, y) : 0;
+                const auto& [sum, share] = near.second(x, y) >= fewest ? near : far;
+                return share(x, y) > 0 ? sum(x, y) / share(x, y) : 0;
             }};
 }
 
