@@ -181,7 +181,8 @@ std::int64_t spot_rays(const CacheOptions& options, const ImageWindow& window) {
     return std::min(worth, std::max(std::int64_t{1} << 11, helped / kMostToLook));
 }
 
-/// The finest levels look at every pixel, the one before at a few: as if the picture were smaller.
+/// IrradianceCache::growth() by how many records there were after each level: the finest look at every pixel, the one
+/// before at a few, as if the picture were smaller.
 double growth(const std::array<double, kSteps.size()>& records) {
     constexpr std::size_t kFinest = kSteps.size() - 2;
     static_assert(kSteps[kFinest] == 1 && kSteps[kFinest - 1] > 1);

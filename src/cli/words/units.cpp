@@ -13,7 +13,8 @@ std::string with_prefix(double x) {
     constexpr std::size_t kNone = 3;
     std::size_t k = kNone;
     // Less would print as 0.00.
-    for (const bool small = std::abs(x) < 0.01; small && x != 0 && std::abs(x) < 1 && k > 0; --k) x *= 1000;
+    if (x != 0 && std::abs(x) < 0.01)
+        for (; std::abs(x) < 1 && k > 0; --k) x *= 1000;
     // 999.5 and more would print as 1000.
     for (; std::abs(x) >= 999.5 && k + 1 < kPrefixes.size(); ++k) x /= 1000;
     const double size = std::abs(x);
