@@ -33,23 +33,34 @@ double weight_of(std::span<const PlaneHistogram::Point> points) {
                            [](double sum, const PlaneHistogram::Point& p) { return sum + p.weight; });
 }
 
-/// Around points that lie within `limits`: evenly spread ones end short of where they may lie by their mean distance.
-Imath::Box2d box_around(std::span<const PlaneHistogram::Point> points, const Imath::Box2d& limits) {
+/// `box` with `more` on either side, but within `limits`.
+Imath::Box2d widened(const Imath::Box2d& box, const Imath::V2d& more, const Imath::Box2d& limits) {
+    Imath::Box2d wide;
+    for (int k = 0; k < 2; ++k) {
+        wide.min[k] = std::max(box.min[k] - more[k], limits.min[k]);
+        wide.max[k] = std::min(box.max[k] + more[k], limits.max[k]);
+    }
+    return wide;
+}
+
+Imath::Box2d bounds_of(std::span<const PlaneHistogram::Point> points) {
     Imath::Box2d box;
     for (const PlaneHistogram::Point& p : points) box.extendBy(p.x);
-    for (int k = 0; k < 2; ++k) {
-        const double more =
-            std::max(box.size()[k] / static_cast<double>(points.size() - 1), kThinnest * limits.size()[k]);
-        box.min[k] = std::max(box.min[k] - more, limits.min[k]);
-        box.max[k] = std::min(box.max[k] + more, limits.max[k]);
-    }
-    return area(box) > 0 ? box : limits;
+    return box;
+}
+
+/// Around points that lie within `limits`: evenly spread ones end short of where they may lie by their mean distance.
+Imath::Box2d box_around(std::span<const PlaneHistogram::Point> points, const Imath::Box2d& limits) {
+    const Imath::Box2d box = bounds_of(points);
+    Imath::V2d more;
+    for (int k = 0; k < 2; ++k)
+        more[k] = std::max(box.size()[k] / static_cast<double>(points.size() - 1), kThinnest * limits.size()[k]);
+    const Imath::Box2d wide = widened(box, more, limits);
+    return area(wide) > 0 ? wide : limits;
 }
 
 /// Fewer rays than this on either half tell nothing of where they meet.
 constexpr std::size_t kLeastRays = 16;
-/// Density of directions that a histogram doesn't know, for the comparison of two: per solid angle.
-constexpr double kUnknown = 1e-3;
 /// Rays to a plane may be as flat as this [cosine]: others are not counted on it.
 constexpr double kFlattest = 0.05;
 /// A place as near to the plane as this doesn't use it: height over distance from its middle.
@@ -92,14 +103,9 @@ std::vector<Vec3> likely_normals(std::span<const DirectionHistogram::Ray> rays) 
 } // namespace
 
 PlaneHistogram::PlaneHistogram(std::span<Point> points, std::size_t leaf, const Imath::Box2d& limits) {
-    Imath::Box2d box;
-    for (const Point& p : points) box.extendBy(p.x);
+    const Imath::Box2d box = bounds_of(points);
     if (points.size() < 2 || !(area(box) > 0) || !(weight_of(points) > 0)) return;
-    for (int k = 0; k < 2; ++k) {
-        const double more = kAround * box.size()[k];
-        around_.min[k] = std::max(box.min[k] - more, limits.min[k]);
-        around_.max[k] = std::min(box.max[k] + more, limits.max[k]);
-    }
+    around_ = widened(box, kAround * box.size(), limits);
     build(points, box, leaf);
 }
 
@@ -181,12 +187,6 @@ DirectionHistogram::DirectionHistogram(std::span<const Ray> rays, const std::opt
     octahedral_ = PlaneHistogram(on_map, has_plane() ? kPointsOfCoarseLeaf : kPointsOfLeaf, {{0, 0}, {1, 1}});
 }
 
-double DirectionHistogram::likelihood(std::span<const Ray> rays) const {
-    double sum = 0;
-    for (const Ray& ray : rays) sum += ray.weight * std::log(kUnknown + (empty() ? 0 : pdf(ray.p, ray.w)));
-    return sum;
-}
-
 std::optional<Vec3> DirectionHistogram::meeting_point(std::span<const Ray> rays) {
     Imath::M33d a(0.0);
     Imath::V3d b(0.0);
@@ -206,15 +206,19 @@ std::optional<Vec3> DirectionHistogram::meeting_point(std::span<const Ray> rays)
 }
 
 std::optional<DirectionHistogram::Plane> DirectionHistogram::meeting_plane(std::span<const Ray> rays) {
-    std::vector<Ray> some, others;
-    for (std::size_t i = 0; i < rays.size(); ++i) (i % 2 == 0 ? some : others).push_back(rays[i]);
+    const auto [some, others] = halves_of(rays);
     if (others.size() < kLeastRays) return std::nullopt;
     const auto meeting = meeting_point(some);
     if (!meeting) return std::nullopt;
+    const auto likelihood_of = [&some = some, &others = others](const std::optional<Plane>& plane) {
+        const DirectionHistogram histogram(some, plane);
+        return log_likelihood(
+            others, [&](const Vec3& p, const Vec3& w) { return histogram.empty() ? 0 : histogram.pdf(p, w); });
+    };
     std::optional<Plane> best;
-    double best_likelihood = DirectionHistogram(some, best).likelihood(others);
+    double best_likelihood = likelihood_of(best);
     const auto consider = [&](const Plane& plane) {
-        const double likelihood = DirectionHistogram(some, plane).likelihood(others);
+        const double likelihood = likelihood_of(plane);
         if (!(likelihood > best_likelihood)) return;
         best_likelihood = likelihood;
         best = plane;

@@ -5,6 +5,8 @@
 
 #include <Imath/ImathBox.h>
 
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -114,12 +116,26 @@ class DirectionHistogram {
   private:
     /// Of all directions at `p`, those that are drawn from the octahedral map.
     double share_of_octahedron(const Vec3& p) const;
-    /// Logarithm of the density of rays, by weight.
-    double likelihood(std::span<const Ray> rays) const;
-
     std::optional<Plane> plane_;
     Frame frame_{Vec3(0, 0, 1)}; // of the plane
     PlaneHistogram histogram_, octahedral_;
 };
+
+/// Every other of them, and the rest: each half judges what was learned from the other.
+template <class T> std::array<std::vector<T>, 2> halves_of(std::span<const T> found) {
+    std::array<std::vector<T>, 2> halves;
+    for (std::size_t i = 0; i < found.size(); ++i) halves[i % 2].push_back(found[i]);
+    return halves;
+}
+
+/// Logarithm of the density of rays, by weight, to tell which of two densities of directions is better. What one
+/// doesn't know has some density all the same.
+/// @param density at a place, of a direction from there [1/sr]
+template <class Density> double log_likelihood(std::span<const DirectionHistogram::Ray> rays, const Density& density) {
+    constexpr double kUnknown = 1e-3;
+    double sum = 0;
+    for (const auto& ray : rays) sum += ray.weight * std::log(kUnknown + density(ray.p, ray.w));
+    return sum;
+}
 
 } // namespace keyhole

@@ -1,7 +1,6 @@
 #include "sampling/guidance/learned/direction_mixture.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace keyhole {
 namespace {
@@ -14,8 +13,6 @@ constexpr std::size_t kRaysOfGroup = 32;
 constexpr double kSharedOut = 0.1;
 /// Rounds of k-means by direction, and then by place.
 constexpr int kRounds = 2;
-/// Density of directions that a mixture doesn't know, for the comparison of two: per solid angle.
-constexpr double kDensityOfUnknown = 1e-3;
 
 using Ray = DirectionMixture::Ray;
 using Group = DirectionMixture::Group;
@@ -78,20 +75,16 @@ std::vector<Group> make_groups(std::span<const Ray> rays, std::size_t n) {
 }
 
 double likelihood(const DirectionMixture& mixture, std::span<const Ray> rays) {
-    double sum = 0;
-    for (const Ray& ray : rays) {
-        const double pdf = mixture.empty() ? 0 : mixture.pdf(ray.p, ray.w, DirectionHistogram::place_on_map(ray.w));
-        sum += ray.weight * std::log(kDensityOfUnknown + pdf);
-    }
-    return sum;
+    return log_likelihood(rays, [&](const Vec3& p, const Vec3& w) {
+        return mixture.empty() ? 0 : mixture.pdf(p, w, DirectionHistogram::place_on_map(w));
+    });
 }
 
 } // namespace
 
 std::vector<Group> DirectionMixture::groups_of(std::span<const Ray> rays) {
     std::vector<Group> best{{Vec3(0, 0, 1), false, DirectionHistogram::meeting_plane(rays)}};
-    std::vector<Ray> some, others;
-    for (std::size_t i = 0; i < rays.size(); ++i) (i % 2 == 0 ? some : others).push_back(rays[i]);
+    const auto [some, others] = halves_of(rays);
     double most = likelihood(DirectionMixture(some, best), others);
     for (std::size_t n = 2; n <= kMostGroups && n * kRaysOfGroup <= rays.size(); ++n) {
         std::vector<Group> groups = make_groups(rays, n);

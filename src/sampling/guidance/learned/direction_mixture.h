@@ -30,7 +30,7 @@ class DirectionMixture {
 
     bool empty() const { return parts_.empty(); }
     std::size_t size() const { return parts_.size(); }
-    std::span<const Group> groups() const { return groups_; }
+    const std::vector<Group>& groups() const { return groups_; }
     /// Unit direction at `p` by two numbers in [0,1). Not to be called when empty.
     Vec3 sample(const Vec3& p, double u0, double u1) const;
     /// Density per solid angle with which sample() makes `w` at `p`, for who knows place_on_map(w).

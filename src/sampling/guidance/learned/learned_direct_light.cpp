@@ -84,9 +84,8 @@ std::vector<LearnedDirectLight::Share> LearnedDirectLight::make_shares(std::span
             const Share* model = like != nullptr ? like->share_of(share.emitter) : nullptr;
             const auto behind = wider.find(share.emitter);
             const bool has_model = model != nullptr && model->directions;
-            const auto groups = has_model ? std::vector<DirectionMixture::Group>{} : DirectionMixture::groups_of(rays);
-            DirectionMixture own(rays, has_model ? model->directions->own().groups()
-                                                 : std::span<const DirectionMixture::Group>(groups));
+            const auto groups = has_model ? model->directions->own().groups() : DirectionMixture::groups_of(rays);
+            DirectionMixture own(rays, groups);
             if (!own.empty()) // what was found may all have been nothing
                 share.directions =
                     std::make_shared<NestedHistogram>(std::move(own), behind != wider.end() ? behind->second : nullptr);
@@ -111,8 +110,7 @@ LearnedDirectLight::Cell LearnedDirectLight::make_cell(std::span<const FoundLigh
     Cell cell;
     cell.count = found.size();
     if (found.size() < kLeastFound) return cell;
-    std::vector<const FoundLight*> some, others;
-    for (std::size_t i = 0; i < found.size(); ++i) (i % 2 == 0 ? some : others).push_back(found[i]);
+    const auto [some, others] = halves_of(found);
     std::array<double, kPlainShares.size()> by_middle{}, by_place{};
     Cell whole;
     cell.middle = middle_of(found);

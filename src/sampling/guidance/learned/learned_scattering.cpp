@@ -47,8 +47,7 @@ LearnedScattering::Cell LearnedScattering::make_cell(std::span<const SeenScatter
 
     const std::vector<DirectionHistogram::Ray> rays = rays_of(found, most_weight);
     const auto plane = DirectionHistogram::meeting_plane(rays);
-    std::vector<const SeenScattering*> some, others;
-    for (std::size_t i = 0; i < found.size(); ++i) (i % 2 == 0 ? some : others).push_back(found[i]);
+    const auto [some, others] = halves_of(found);
     // Light that goes on in a direction carries the BSDF's density over that of the choice: what is wanted from there
     // does so on average, since `seen` is distributed as what is wanted.
     std::array<double, kBsdfShares.size()> moments{};
