@@ -17,6 +17,7 @@ struct CacheOptions {
     double max_radius = 60;         ///< [pixels]
     double min_radius_by_light = 4; ///< [pixels], see IrradianceRecord
     double overlap = 1;             ///< how many times its radius a record is used
+    double doubt = 1.0 / 3;         ///< over `error`: by how much records may predict each other wrongly
     double rays_for_pixel = std::numeric_limits<double>::infinity(); ///< as RunContext's
     std::uint64_t seed = 1;
 };

@@ -196,6 +196,10 @@ double growth(const std::array<double, kSteps.size()>& records) {
 /// of them, twice.
 double overlap(double rays) { return 2 * std::pow(rays / 1600.0, -1 / 6.0); }
 
+/// By how much records may predict each other wrongly, over the cache's error: it falls as their noise does, for what
+/// is wrong between them would be all that is left.
+double doubt(double rays) { return std::min(1.0, std::sqrt(1000 / rays)) / 3; }
+
 } // namespace
 
 CacheOptions cache_options(const Settings& settings, double shrink, std::uint64_t seed) {
@@ -208,6 +212,7 @@ CacheOptions cache_options(const Settings& settings, double shrink, std::uint64_
     options.rays = static_cast<int>(std::max(rays * shrink * shrink, std::min(rays, kFewestRays)));
     // The rays of all passes count; their number grows as the sixth power of 1 / shrink.
     options.overlap = std::clamp(overlap(rays) * shrink, 1.0, 2.0);
+    options.doubt = doubt(rays);
     options.seed = seed;
     return options;
 }
@@ -218,7 +223,8 @@ HotSpots find_hot_spots(const GatherRays& rays, const CacheOptions& options, con
 
 IrradianceCache fill_cache(const GatherRays& rays, const HotSpots& spots, const CacheOptions& options,
                            const RunContext& context, const RaysOfRecords& decide) {
-    IrradianceCache cache(static_cast<float>(options.error), static_cast<float>(options.overlap));
+    IrradianceCache cache(static_cast<float>(options.error), static_cast<float>(options.overlap),
+                          static_cast<float>(options.doubt));
     const ProgressStage progress(context, "irradiance cache", kSteps.size() + 1, "levels");
     const RecordMaker maker(rays, spots, options);
     CacheFill fill(maker, options, cache);

@@ -17,8 +17,6 @@ constexpr float kHeight2 = 16;
 
 /// Light that is fainter than this part of the mean counts as if it weren't: it doesn't show.
 constexpr double kDark = 0.1;
-/// Relative error, over the cache's, by which two records may predict each other wrongly.
-constexpr float kDoubt = 1.0f / 3;
 /// Of its lower bound, how far a record is used at least where a wall ends it.
 constexpr float kLeastOfBound = 1e-3f;
 
@@ -322,7 +320,7 @@ float IrradianceCache::wrong_at(const Stored& r, const Stored& other) {
 
 /// How far two records are good for where one predicts the other with an error: all of the way where that may be noise.
 float IrradianceCache::good_between(const Stored& a, const Stored& b, float wrong) const {
-    const float allowed = kDoubt * error_ * std::max(luminance_of(a.irradiance), luminance_of(b.irradiance));
+    const float allowed = doubt_ * error_ * std::max(luminance_of(a.irradiance), luminance_of(b.irradiance));
     const float noise2 = 4 * (a.variance + b.variance);
     if (!(wrong * wrong > allowed * allowed + noise2)) return std::numeric_limits<float>::infinity();
     // What first order leaves out grows as the square of the distance.

@@ -40,8 +40,10 @@ class IrradianceCache {
   public:
     /// Around a record there is no need of another one within `error` times its distance to surrounding surfaces
     /// (Ward's a). It is used `overlap` times as far, at least 1: records stand about a radius apart, so that several
-    /// have a say everywhere and their noise averages out.
-    explicit IrradianceCache(float error, float overlap = 2) : error_(error), overlap_(overlap) {}
+    /// have a say everywhere and their noise averages out. Two of them may predict each other wrongly, beyond noise, by
+    /// `doubt` times `error` of their light.
+    explicit IrradianceCache(float error, float overlap = 2, float doubt = 1.0f / 3)
+        : error_(error), overlap_(overlap), doubt_(doubt) {}
 
     /// Clamps the record's radius by its neighbours' and theirs by its: what one of them sees close by is close to the
     /// others, too, even where their rays missed it (neighbour clamping, Krivanek et al. 2006). Where one record's
@@ -151,7 +153,7 @@ class IrradianceCache {
     /// Calls visit(record) for all of shorter reach than `reach` that stand in a box which has those within it.
     template <class Visit> void visit_standing(const Vec3& position, float reach, Visit&& visit) const;
 
-    float error_, overlap_;
+    float error_, overlap_, doubt_;
     double growth_ = 0;
     std::vector<Stored> records_;
     // Hashed grids for each power of two of the reach: a record is in all cells that its reach overlaps.

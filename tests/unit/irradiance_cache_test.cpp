@@ -171,6 +171,7 @@ TEST(CacheOptions, ShrinkFromPassToPass) {
     EXPECT_EQ(late.rays, 64) << "fewer don't tell how far a record is good for";
     EXPECT_DOUBLE_EQ(first.overlap, 2);
     EXPECT_DOUBLE_EQ(later.overlap, 1);
+    EXPECT_DOUBLE_EQ(first.doubt, later.doubt) << "the rays of all passes count";
     s.cache_rays = 16;
     EXPECT_EQ(cache_options(s, 0.01, 1).rays, 16) << "as few as were asked for";
 }
@@ -202,6 +203,34 @@ TEST(IrradianceCache, GetsFinerWhereGradientsContradictEachOther) {
         EXPECT_NEAR(cache.irradiance({x, 0, 0}, {0, 0, 1}).irradiance.x, peak(x), 0.15 * peak(x)) << "at " << x;
     EXPECT_LT(flat, 8) << "straight light needs no more of them";
     EXPECT_LT(curved, 60);
+}
+
+/// Light that sags by an eighth about x = 1, which is less than a third of the cache's error.
+double sag(double x) { return 1 - 0.125 * std::exp(-12 * (x - 1) * (x - 1)); }
+
+double worst_in_the_sag(std::int64_t rays) {
+    Settings s;
+    s.cache_rays = rays;
+    s.cache_error = 0.5;
+    const CacheOptions options = cache_options(s, 1, 1);
+    IrradianceCache cache(static_cast<float>(options.error), 2, static_cast<float>(options.doubt));
+    for (const float step : {0.4f, 0.2f, 0.1f, 0.05f, 0.02f, 0.01f})
+        for (float x = -2; x < 2; x += step) {
+            if (covers(cache, {x, 0, 0}, 0.1f)) continue;
+            IrradianceRecord r = record({x, 0, 0}, sag(x), 0.8);
+            r.light.variance = 0;
+            cache.insert(r);
+        }
+    double worst = 0;
+    for (float x = 0.2f; x < 1.8f; x += 0.013f)
+        worst = std::max(worst, std::abs(cache.irradiance({x, 0, 0}, {0, 0, 1}).irradiance.x / sag(x) - 1));
+    return worst;
+}
+
+/// Where noise is low, what records make wrong together would be all that is left.
+TEST(IrradianceCache, FollowsWeakShadowsWhereRaysAreMany) {
+    EXPECT_GT(worst_in_the_sag(1000), 0.06) << "or the test shows nothing";
+    EXPECT_LT(worst_in_the_sag(64'000), 0.03);
 }
 
 /// A dark record of short reach behind a wall, and a bright one before it, whose own reach has the dark one's place but
