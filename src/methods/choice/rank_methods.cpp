@@ -18,6 +18,13 @@ constexpr double kBlurSlope = 0.35;
 /// Of the grain that a trial shows, what stays at least where pixels of the picture are smaller.
 constexpr double kLeastGrain = 0.3;
 
+/// How far the part of the squared error falls that neighbours share: half as effort says, half with the rays of
+/// records, whose noise it is as well. Where the time goes to samples of pixels, these hardly grow.
+double fall_of_blotches(double effort, double rays) {
+    const double by_effort = std::pow(effort, -kSlope);
+    return std::sqrt(by_effort * std::max(by_effort, 1 / rays));
+}
+
 /// The squared error in the time that is left as a trial shows it.
 double predict_by_trial(const TriedMethod& t, const TrialContext& c, double left) {
     const double pixels = c.scene.camera().window().size();
@@ -39,9 +46,10 @@ double predict_by_trial(const TriedMethod& t, const TrialContext& c, double left
     const double samples = static_cast<double>(s.spp * std::max<std::int64_t>(1, s.passes)) / t.of.samples;
     const double growth = effort / t.of.cost.effort;
     const double of_samples = grain_that_counts(c.settings, *t.method) * t.by_samples / samples;
+    const double rays = static_cast<double>(s.cache_rays) / static_cast<double>(t.of.cost.settings.cache_rays);
     return t.method->trial.doubt *
            (e.grain * (of_samples + (1 - t.by_samples) / growth) +
-            (e.blotches + e.missing) * std::pow(growth, -kSlope) + e.blur * std::pow(growth, -kBlurSlope));
+            (e.blotches + e.missing) * fall_of_blotches(growth, rays) + e.blur * std::pow(growth, -kBlurSlope));
 }
 
 /// The squared error in the time that is left, told from that of a trial. What isn't led through the openings that were

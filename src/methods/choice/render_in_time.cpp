@@ -163,7 +163,7 @@ class RenderInTime {
         std::array<Parts, 2> made;
         for (std::size_t k = 0; k < made.size(); ++k) {
             take_over(tried_[k]);
-            made[k] = render_parts(part);
+            made[k] = render_parts(part, tried_[k].predicted);
             if (cost_) tried_[k].of = *cost_; // these have shown more
             if (made[k].error < kNever)
                 remarks_.push_back(fmt::format("the error of {} turns out to be {:.2g} where {:.2g} was predicted",
@@ -187,7 +187,7 @@ class RenderInTime {
         double seconds = 0;    ///< that they took
         double error = kNever; ///< that all of the time would leave, by what they differ in
     };
-    Parts render_parts(double seconds) {
+    Parts render_parts(double seconds, double predicted) {
         Parts parts;
         std::vector<Image> pictures;
         try {
@@ -203,12 +203,13 @@ class RenderInTime {
         if (pictures.size() < 2) return parts;
         const TrialPictures halves{std::move(pictures[0]), std::move(pictures[1]), method_->samples_pixels};
         const TrialError e = trial_errors(std::span(&halves, 1)).front();
-        parts.error = (grain_that_counts(settings_, *method_) * e.grain + e.blotches) * seconds / at_choice_;
+        const double shown = (grain_that_counts(settings_, *method_) * e.grain + e.blotches) * seconds / at_choice_;
+        // Two renders by chains don't show what both lack: trials had others' pictures to hold them against.
+        parts.error = method_->samples_pixels ? shown : std::max(shown, predicted);
         return parts;
     }
 
-    /// Settings that use so many seconds, and of a method whose last stage goes on as long as there is time: more than
-    /// that. All of these are good at any length.
+    /// Settings that use so many seconds, or more where the last stage goes on as long as there is time.
     Settings settings_for(double seconds, bool open_ended) {
         if (fills_passes(settings_)) return settings_of_passes(seconds);
         Settings s = settings_;
