@@ -113,7 +113,7 @@ class Walker {
 
     static SpotParameters spot(const Json& cone, const Vec3& place, const Vec3& forward, const Rgb& intensity) {
         const double outer = value_or(cone, "outerConeAngle", kPi / 4), inner = value_or(cone, "innerConeAngle", 0.0);
-        return {place, forward, intensity, inner * 180 / kPi, outer * 180 / kPi};
+        return {place, forward, intensity, inner * 180 / kPi, outer * 180 / kPi, SpotFade::squared};
     }
 
     const Document& document_;
