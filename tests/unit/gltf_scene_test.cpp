@@ -75,6 +75,13 @@ TEST_F(GltfScene, LightsAreInWattsByLumens) {
     EXPECT_THAT(warnings_, testing::Not(Contains(HasSubstr("found no light"))));
 }
 
+TEST_F(GltfScene, LightsThatAreNoneAreErrorsInTheirUnits) {
+    EXPECT_THAT(error_of(R"("materials": [{}], "scenes": [{"nodes": [0, 1]}],
+      "nodes": [{"mesh": 0}, {"extensions": {"KHR_lights_punctual": {"light": 0}}}],
+      "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": -5}]}})"),
+                HasSubstr("found -5 as an amount of light"));
+}
+
 /// By the square of the share of the way between the cosines of the cones, as the extension recommends.
 TEST_F(GltfScene, SpotsFadeBySquares) {
     const LoadedScene scene = read(R"("materials": [{}], "scenes": [{"nodes": [0, 1]}],
