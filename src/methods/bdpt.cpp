@@ -51,6 +51,13 @@ double pilot_brightness(const Scene& scene, const Settings& settings) {
     return sink.sum / kPilot;
 }
 
+bool has_light(const SplatFilm& splats) {
+    for (std::size_t i = 0; i < splats.pixels(); ++i)
+        for (const double sum : splats.sums(i))
+            if (sum > 0) return true;
+    return false;
+}
+
 PixelSample sample_pixel(const Scene& scene, const Vec2& image, int depth, MisHeuristic heuristic, SplatFilm& splats,
                          SampleSource& source) {
     SubPathPair& pair = trace_both_subpaths(scene, image, depth, source, source);
@@ -72,6 +79,7 @@ RenderResult render_bdpt(const RenderTask& task) {
     SplatFilm splats(window.width, window.height, PixelFilter(settings), pilot_brightness(scene, settings));
     // A light sub-path comes with each sample of a pixel, and is an estimate of the whole window.
     const double scale = window.pixels() / window.size();
+    bool drew = false; // anything that only light sub-paths may have found, such as a sun through a pane
     {
         const StageClock clock(result.stats, kBidirectionalTracing);
         const SamplingStage stage(scene, work.left(), "bidirectional path tracing", context);
@@ -84,13 +92,14 @@ RenderResult render_bdpt(const RenderTask& task) {
             // Of later rounds that are cut short the eye's samples are enough.
             if ((whole || work.is_first()) && pixels.samples_per_pixel() > 0)
                 work.unit().drawn->add(splats, scale / pixels.samples_per_pixel(), work.half());
+            drew = drew || has_light(splats);
             splats.clear();
             if (whole) work.end_unit(result.stats);
         }
     }
     pixels.report(result.stats);
-    report_samples(pixels.luminances(), result.stats);
-    report_black(pixels.luminances(), scene, result.stats);
+    report_samples(pixels.luminances(), scene, result.stats);
+    if (!drew) report_black(pixels.luminances(), scene, result.stats);
     report_lost_caustics(scene, result.stats);
     result.picture = work.finish(result.stats);
     return result;

@@ -234,7 +234,8 @@ RenderResult render_photons(const RenderTask& task) {
     if (!settings.save_map.empty() && !stats.has_saved_map)
         stats.warnings.emplace_back("no photons were saved: those of the first pass were not made here");
     sampler->finish(stats);
-    if (passes.has_sampled()) warn_of_photons(stats, work.passes(), settings.max_depth);
+    // Where none were planned a remark says why.
+    if (passes.has_sampled() && plan.photons) warn_of_photons(stats, work.passes(), settings.max_depth);
     passes.pixels().report(stats);
     report_eye_samples(passes.pixels().luminances(), scene, stats);
     report_black(passes.pixels().luminances(), scene, stats, true);

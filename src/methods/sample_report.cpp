@@ -1,6 +1,7 @@
 #include "methods/sample_report.h"
 
 #include "core/rng.h"
+#include "methods/enclosure.h"
 
 #include <fmt/format.h>
 
@@ -56,13 +57,23 @@ void report_small_emitters(const RunningStats& luminance, const Scene& scene, Re
                                100 * missed / (missed + luminance.mean())));
 }
 
+/// Returns whether no more samples would help.
+bool report_enclosure(const Scene& scene, RenderStats& stats) {
+    const Shape* wall = dark_enclosure(scene);
+    if (wall == nullptr) return false;
+    stats.warn(Doubt::scene, fmt::format("the camera stands within a closed shape{}, which no light goes through, and "
+                                         "nothing in there emits: the picture is black. Move the camera or the shape",
+                                         wall->name.empty() ? "" : " '" + wall->name + "'"));
+    return true;
+}
+
 } // namespace
 
-void report_samples(const RunningStats& luminance, RenderStats& stats) {
+void report_samples(const RunningStats& luminance, const Scene& scene, RenderStats& stats) {
     if (!(luminance.mean() > 0)) return;
     const double error = luminance.standard_error() / luminance.mean();
     stats.values["relative error of the mean"] = error;
-    if (luminance.count() < 2 || error > kMostSampleError)
+    if ((luminance.count() < 2 || error > kMostSampleError) && !report_enclosure(scene, stats))
         stats.warn(Doubt::samples,
                    fmt::format("samples of pixels are so few or unequal that the mean of the picture is "
                                "known to {:.0f} % only (standard error): try more spp",
@@ -70,12 +81,12 @@ void report_samples(const RunningStats& luminance, RenderStats& stats) {
 }
 
 void report_eye_samples(const RunningStats& luminance, const Scene& scene, RenderStats& stats) {
-    report_samples(luminance, stats);
+    report_samples(luminance, scene, stats);
     report_small_emitters(luminance, scene, stats);
 }
 
 void report_black(const RunningStats& luminance, const Scene& scene, RenderStats& stats, bool photons) {
-    if (luminance.count() > 0 && !(luminance.mean() > 0))
+    if (luminance.count() > 0 && !(luminance.mean() > 0) && !report_enclosure(scene, stats))
         stats.warn(
             Doubt::samples,
             scene.emitters().empty()

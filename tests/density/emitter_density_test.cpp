@@ -113,9 +113,14 @@ void expect_rays_as_claimed(const Emitter& e, const SurfacePoint& point, std::ui
 }
 
 TEST(EmitterDensity_Rays, LeaveASpotAsClaimed) {
-    const auto e = make_spot_emitter({.axis = Vec3(1, 2, -1).normalized(), .full_degrees = 25, .edge_degrees = 75});
-    Rng rng(1, StreamPurpose::test, 0);
-    expect_rays_as_claimed(*e, e->sample_point(rng).point, 5);
+    std::uint64_t stream = 5;
+    for (const SpotFade fade : {SpotFade::smooth, SpotFade::squared}) {
+        const auto e = make_spot_emitter(
+            {.axis = Vec3(1, 2, -1).normalized(), .full_degrees = 25, .edge_degrees = 75, .fade = fade});
+        Rng rng(1, StreamPurpose::test, 0);
+        expect_rays_as_claimed(*e, e->sample_point(rng).point, stream);
+        stream += 50;
+    }
 }
 
 /// A luminaire by longitude and latitude, one in an octahedral picture, and a projector.

@@ -7,6 +7,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <numeric>
+
 namespace keyhole {
 namespace {
 
@@ -94,6 +98,48 @@ TEST(EmitterClosedForm_SpotLight, IsHalfDarkBetweenTheConesHoweverNarrow) {
         // Of narrow cones cosines go as squares of angles.
         const auto x = static_cast<float>(2 * std::tan(std::sqrt((1 + 0.25) / 2) * edge * kPi / 180));
         EXPECT_NEAR(irradiance(*scene, floor_vertex(*scene, x), 4).combined.mean(), 2.5 / 4, 0.02 * 2.5 / 4);
+    }
+}
+
+/// Light that fades as glTF's: by the square of the share of the way between the cosines.
+TEST(EmitterClosedForm_SpotLight, FadesBySquares) {
+    const SpotParameters spot{.position = {0, 2, 0},
+                              .axis = {0, -1, 0},
+                              .intensity = Rgb(5.0),
+                              .full_degrees = 10,
+                              .edge_degrees = 30,
+                              .fade = SpotFade::squared};
+    SceneMaker m = white_floor();
+    m.emitter(make_spot_emitter(spot));
+    const auto scene = m.build();
+    const double full = std::cos(10 * kPi / 180), edge = std::cos(30 * kPi / 180), third = edge + (full - edge) / 3;
+    const auto x = static_cast<float>(2 * std::tan(std::acos(third)));
+    expect_mean(irradiance(*scene, floor_vertex(*scene, x), 4).combined, 5.0 / 9 * std::pow(third, 3) / 4);
+    EXPECT_NEAR(spot_solid_angle(spot), scene->emitter(0).power() / 5, 1e-9);
+}
+
+/// Power and density against numerical integration, and what is drawn against the density.
+TEST(EmitterClosedForm_SpotLight, IsDrawnAsItFades) {
+    constexpr int kBins = 20, kSteps = 2000, kSamples = 40000;
+    for (const SpotFade fade : {SpotFade::smooth, SpotFade::squared}) {
+        const auto e = make_spot_emitter(
+            {.axis = {0, 0, 1}, .intensity = Rgb(5.0), .full_degrees = 20, .edge_degrees = 70, .fade = fade});
+        Rng rng(3, StreamPurpose::test, 0);
+        const SurfacePoint point = e->sample_point(rng).point;
+        std::array<double, kBins> expected{}, found{};
+        const auto bin = [](double cosine) { return std::min(static_cast<int>(cosine * kBins), kBins - 1); };
+        double power = 0;
+        for (int i = 0; i < kBins * kSteps; ++i) {
+            const double cosine = (i + 0.5) / (kBins * kSteps), ring = 2 * kPi / (kBins * kSteps);
+            const Vec3 w(static_cast<float>(std::sqrt(1 - cosine * cosine)), 0, static_cast<float>(cosine));
+            expected[bin(cosine)] += e->ray_pdf(point, w) * ring;
+            power += luminance(e->radiance(point, w)) * ring;
+        }
+        for (int i = 0; i < kSamples; ++i) found[bin(e->sample_ray(point, rng).w.z)] += 1.0 / kSamples;
+        EXPECT_NEAR(e->power(), power, 1e-4 * power);
+        EXPECT_NEAR(std::accumulate(expected.begin(), expected.end(), 0.0), 1, 1e-4);
+        for (int i = 0; i < kBins; ++i)
+            EXPECT_NEAR(found[i], expected[i], 5 * std::sqrt(expected[i] / kSamples) + 1e-5);
     }
 }
 

@@ -6,6 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace keyhole {
 namespace {
 
@@ -84,12 +86,52 @@ TEST(GltfAccessors, SparseIntegers) {
     expect_near(mesh_of(scene).positions.at(2), {0, 7, 0});
 }
 
+/// Positions and normals by turns, of which two positions are replaced.
+TEST(GltfAccessors, SparseFloatsBetweenOthers) {
+    for (const bool packed : {false, true}) {
+        GltfFile file;
+        const std::size_t positions =
+            file.accessor<float>({0, 0, 0, 8, 8, 8, 1, 0, 0, 8, 8, 8, 0, 1, 0, 8, 8, 8}, 3, false, 24);
+        const std::size_t places = file.view<std::uint16_t>({1, 2}), values = file.view<float>({5, 0, 0, 0, 7, 0});
+        file.root["accessors"][positions]["sparse"] = {{"count", 2},
+                                                       {"indices", {{"bufferView", places}, {"componentType", 5123}}},
+                                                       {"values", {{"bufferView", values}}}};
+        file.attribute("POSITION", positions);
+        const LoadedScene scene = file.read(packed);
+        ASSERT_EQ(mesh_of(scene).positions.size(), 3u);
+        expect_near(mesh_of(scene).positions[0], {0, 0, 0});
+        expect_near(mesh_of(scene).positions[1], {5, 0, 0});
+        expect_near(mesh_of(scene).positions[2], {0, 7, 0});
+    }
+}
+
+/// What the format doesn't allow.
+TEST(GltfAccessors, SparseIndicesWithGapsAreErrors) {
+    GltfFile file;
+    file.plain_triangle();
+    const std::size_t indices = file.accessor<std::uint16_t>({0, 9, 1, 9, 2, 9}, 1, false, 4);
+    const std::size_t places = file.view<std::uint8_t>({0}), values = file.view<std::uint16_t>({0});
+    file.root["accessors"][indices]["sparse"] = {{"count", 1},
+                                                 {"indices", {{"bufferView", places}, {"componentType", 5121}}},
+                                                 {"values", {{"bufferView", values}}}};
+    file.primitive()["indices"] = indices;
+    EXPECT_THAT(file.error(), HasSubstr("found 'byteStride' of the view of accessor 1, expected none"));
+}
+
 TEST(GltfAccessors, MeshesOfOtherScenesToo) {
     GltfFile file;
     file.attribute("POSITION", file.accessor<std::int16_t>({0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0, 0}, 3, false, 8));
     const TriangleMesh mesh = import_mesh(file.write());
     expect_near(mesh.positions.at(1), {3, 0, 0});
     expect_near(mesh.positions.at(2), {0, 4, 0});
+}
+
+TEST(GltfAccessors, NumbersThatAreNoneNameTheirMesh) {
+    GltfFile file;
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    file.attribute("POSITION", file.accessor<float>({0, 0, 0, 1, 0, 0, 0, nan, 0}, 3));
+    file.root["nodes"][0]["name"] = "Vase";
+    EXPECT_THAT(file.error(), HasSubstr("scene.gltf: the mesh 'Vase': found the coordinate nan"));
 }
 
 TEST(GltfAccessors, BrokenOnesAreErrors) {

@@ -75,6 +75,63 @@ TEST_F(GltfScene, LightsAreInWattsByLumens) {
     EXPECT_THAT(warnings_, testing::Not(Contains(HasSubstr("found no light"))));
 }
 
+TEST_F(GltfScene, LightsThatAreNoneAreErrorsInTheirUnits) {
+    EXPECT_THAT(error_of(R"("materials": [{}], "scenes": [{"nodes": [0, 1]}],
+      "nodes": [{"mesh": 0}, {"extensions": {"KHR_lights_punctual": {"light": 0}}}],
+      "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": -5}]}})"),
+                HasSubstr("found -5 as an amount of light"));
+}
+
+/// By the square of the share of the way between the cosines of the cones, as the extension recommends.
+TEST_F(GltfScene, SpotsFadeBySquares) {
+    const LoadedScene scene = read(R"("materials": [{}], "scenes": [{"nodes": [0, 1]}],
+      "nodes": [{"mesh": 0}, {"extensions": {"KHR_lights_punctual": {"light": 0}}}],
+      "extensions": {"KHR_lights_punctual": {"lights": [{"type": "spot", "intensity": 683,
+        "spot": {"innerConeAngle": 0.2, "outerConeAngle": 0.6}}]}})");
+    const Emitter& lamp = *scene.description.emitters.at(0);
+    const double inner = std::cos(0.2), outer = std::cos(0.6), cosine = (inner + outer) / 2;
+    const Vec3 w(static_cast<float>(std::sqrt(1 - cosine * cosine)), 0, static_cast<float>(-cosine));
+    EXPECT_NEAR(luminance(lamp.radiance({}, w)), 0.25, 1e-5);
+    EXPECT_NEAR(lamp.power(), 2 * std::numbers::pi * (1 - inner + (inner - outer) / 3), 1e-6);
+}
+
+TEST_F(GltfScene, RotationsOfLengthZeroAreWarnedOf) {
+    const LoadedScene scene = read(R"("materials": [{}], "scenes": [{"nodes": [0, 1]}],
+      "nodes": [{"mesh": 0, "rotation": [0, 0, 0, 0]}, {"mesh": 0, "rotation": [0, 0, 1.4142136, 1.4142136]}])");
+    EXPECT_THAT(warnings_, Contains(HasSubstr("'rotation' of the node 0 that is 0")));
+    const auto& still = std::get<TriangleMesh>(scene.description.shapes.at(0).geometry);
+    EXPECT_LT((still.positions.at(1) - Vec3(1, 0, 0)).length(), 1e-6);
+    const auto& turned = std::get<TriangleMesh>(scene.description.shapes.at(1).geometry);
+    EXPECT_LT((turned.positions.at(1) - Vec3(0, 1, 0)).length(), 1e-5) << "a quarter turn, whatever the length";
+}
+
+TEST_F(GltfScene, FactorsBeyondTheirRangeAreWarnedOf) {
+    const LoadedScene scene = read(R"("scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+      "materials": [{"emissiveFactor": [50, 0, 0],
+                     "pbrMetallicRoughness": {"baseColorFactor": [2, 1, 1, 1], "roughnessFactor": -1}}])");
+    EXPECT_THAT(warnings_, Contains(HasSubstr("found 2 as 'baseColorFactor', expected 0 to 1: it counts as 1")));
+    EXPECT_THAT(warnings_, Contains(HasSubstr("found -1 as 'roughnessFactor', expected 0 to 1: it counts as 0")));
+    EXPECT_THAT(warnings_, Contains(HasSubstr("found 50 as 'emissiveFactor', expected 0 to 1")));
+    EXPECT_EQ(scene.description.shapes.at(0).emission->radiance, Rgb(50, 0, 0));
+}
+
+TEST_F(GltfScene, ErrorsOfImagesNameTheFileAndTheImage) {
+    const auto error_with = [this](const char* image) {
+        return error_of(fmt::format(R"("scenes": [{{"nodes": [0]}}], "nodes": [{{"mesh": 0}}], "images": [{}],
+          "textures": [{{"source": 0}}],
+          "materials": [{{"pbrMetallicRoughness": {{"baseColorTexture": {{"index": 0}}}}}}])",
+                                    image));
+    };
+    const std::string file = folder_.path("scene.gltf");
+    EXPECT_THAT(error_with(R"({"bufferView": 0, "mimeType": "image/png", "name": "Oak"})"),
+                HasSubstr(file + ": image 0 'Oak': found 36 bytes of no known picture, expected PNG, JPEG or WebP"));
+    const std::string broken = error_with(R"({"uri": "data:image/png;base64,iVBORw0KGgoAAAAA"})");
+    EXPECT_THAT(broken, HasSubstr(file + ": image 0: found"));
+    EXPECT_THAT(broken, testing::Not(HasSubstr("keyhole-gltf")));
+    EXPECT_THAT(error_with(R"({"uri": "no.png"})"), HasSubstr(file + ": image 0: "));
+    EXPECT_THAT(error_with(R"({"uri": "no.png"})"), HasSubstr("no.png: found no such file"));
+}
+
 TEST_F(GltfScene, CameraStandsWhereItsNodeIs) {
     // A quarter turn about y: what looked along -z looks along -x.
     const LoadedScene scene = read(R"("materials": [{}], "scenes": [{"nodes": [0, 1]}],
@@ -219,7 +276,7 @@ TEST_F(GltfScene, BrokenFilesAreErrors) {
     EXPECT_THAT(
         error_of(start + R"(}], "textures": [{"source": 0}], "images": [{"bufferView": 0, "mimeType": "image/png"}],
       "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}])"),
-        HasSubstr("image-0"));
+        HasSubstr("scene.gltf: image 0: found"));
     EXPECT_THAT(error_of(start + R"(}], "materials": [{"emissiveFactor": [1, -2, 1]}])"),
                 HasSubstr("found -2 as an amount of light"));
     const auto whole = [&](const std::string& content) {

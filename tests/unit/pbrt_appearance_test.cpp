@@ -110,6 +110,22 @@ TEST(PbrtMaterials, MayBeNamedBeforeTheyAreMade) {
     EXPECT_STREQ(s.shape().material->kind(), make_thin_dielectric(1.5)->kind());
 }
 
+TEST(PbrtMaterials, AreMissedWhereTheyAreUsed) {
+    const std::string error = pbrt_error("Material \"diffuse\"\nNamedMaterial \"gold\"\n\n" + kPbrtTriangle);
+    EXPECT_THAT(error, HasSubstr("scene.pbrt:5:1: NamedMaterial \"gold\": found the unknown material 'gold'"));
+}
+
+TEST(PbrtMaterials, SayThatTheyReflectNoMoreThanAll) {
+    const auto warnings = [](const std::string& rgb) {
+        return PbrtScene("Material \"diffuse\" \"rgb reflectance\" [ " + rgb + " ] " + kPbrtTriangle +
+                         "Material \"conductor\" \"rgb reflectance\" [ " + rgb + " ] " + kPbrtTriangle)
+            .warnings;
+    };
+    EXPECT_THAT(warnings("1.5 0.5 0.5"),
+                testing::ElementsAre(HasSubstr("found 1.5 in 'reflectance', expected at most 1")));
+    EXPECT_THAT(warnings("1 0.5 0.5"), testing::IsEmpty());
+}
+
 TEST(PbrtMaterials, SayWhatIsWrong) {
     EXPECT_THAT(error_of("NamedMaterial \"no\" "), HasSubstr("found the unknown material 'no'"));
     EXPECT_THAT(error_of("Material \"velvet\" "), HasSubstr("found the material 'velvet', expected one of"));

@@ -14,6 +14,7 @@
 using namespace keyhole;
 using testing::Contains;
 using testing::HasSubstr;
+using testing::Not;
 
 namespace {
 
@@ -79,6 +80,7 @@ TEST_P(PlanOfPhotons, LightThatTheEyeCannotSeeStopsEarlyAndSaysSo) {
         const auto scene = make();
         const RenderStats stats = render_stats(*scene, small_settings(GetParam()));
         EXPECT_THAT(stats.remarks, Contains(HasSubstr("no indirect light reaches the eye")));
+        EXPECT_THAT(stats.warnings, Not(Contains(HasSubstr("no photon was stored")))) << "as was to be expected";
         EXPECT_EQ(stats.photons_global + stats.photons_caustic + stats.importons + stats.photon_bytes, 0u);
         for (const char* stage : {"importance", "brightness", "photons"})
             EXPECT_FALSE(has_stage(stats, stage)) << stage;

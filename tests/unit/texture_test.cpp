@@ -117,6 +117,11 @@ TEST(ImageTexture_EightBits, AreDecodedAndKeptAsBytes) {
     EXPECT_EQ(images[0].bytes, 6u);
 }
 
+TEST(ImageTexture_Files, OfEmittersAreListedByWholePathsAsAllAre) {
+    const auto picture = note_picture({"lamp.exr", 1, 1, 1, 4, 0});
+    EXPECT_EQ(picture->path, (std::filesystem::current_path() / "lamp.exr").string());
+}
+
 TEST(ImageTexture_Files, ThatAreBrokenSaySo) {
     const ScratchDirectory scratch;
     const std::vector<std::string> broken{

@@ -5,12 +5,18 @@
 
 namespace keyhole {
 
-/// How a spot fades: 1 from the cosine `full` on, smoothstep of it down to 0 at `edge`.
-inline double spot_falloff(double cosine, double full, double edge) {
+/// What a spot's light is, for a cosine that is the share t of the way from the edge of its cone to full light.
+enum class SpotFade {
+    smooth,  ///< smoothstep(t): pbrt's
+    squared, ///< t^2: glTF's
+};
+
+/// How a spot fades: 1 from the cosine `full` on, down to 0 at `edge`.
+inline double spot_falloff(double cosine, double full, double edge, SpotFade fade = SpotFade::smooth) {
     if (cosine >= full) return 1;
     if (cosine <= edge) return 0;
     const double t = (cosine - edge) / (full - edge);
-    return t * t * (3 - 2 * t);
+    return fade == SpotFade::squared ? t * t : t * t * (3 - 2 * t);
 }
 
 /// Radiance by the angle from the normal, over that along it. Immutable.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "scene/emitter.h"
+#include "scene/emitters/emission_profile.h"
 #include "scene/emitters/sphere_map.h"
 #include "scene/shape.h"
 
@@ -32,13 +33,14 @@ inline bool is_invisible(const Emitter& emitter) { return emitter.is_delta(); }
 std::unique_ptr<Emitter> make_point_emitter(const Vec3& position, const Rgb& intensity);
 
 /// Light from one point into a cone, fading towards its edge: between the angles `full` and `edge` from the axis the
-/// intensity falls by smoothstep(cos) from 1 to 0, as pbrt's spot light does.
+/// intensity falls from 1 to 0 with the cosine.
 struct SpotParameters {
     Vec3 position{0, 0, 0};
     Vec3 axis{0, 0, -1};      ///< unit; the middle of the cone
     Rgb intensity{1.0};       ///< radiant intensity on the axis, W/sr
     double full_degrees = 25; ///< full intensity up to here; at most `edge_degrees`
     double edge_degrees = 30; ///< dark from here on; above 0, at most 180
+    SpotFade fade = SpotFade::smooth;
 };
 
 /// Power over intensity on the axis [sr].

@@ -47,6 +47,11 @@ double inverse_smoothstep_integral(double u) {
     return (low + high) / 2;
 }
 
+/// The same of what a spot's light is between its cones.
+double inverse_fade_integral(SpotFade fade, double u) {
+    return fade == SpotFade::squared ? std::cbrt(u) : inverse_smoothstep_integral(u);
+}
+
 class SpotEmitter final : public EmitterAtAPoint {
   public:
     explicit SpotEmitter(const SpotParameters& p)
@@ -60,10 +65,11 @@ class SpotEmitter final : public EmitterAtAPoint {
 
     EmitterRay sample_ray(const SurfacePoint& point, SampleSource& source) const override {
         const double u0 = source.next(), u1 = source.next();
-        const double cosine = u0 < full_share_
-                                  ? 1 - u0 / full_share_ * (1 - cos_full_)
-                                  : cos_edge_ + (cos_full_ - cos_edge_) *
-                                                    inverse_smoothstep_integral((u0 - full_share_) / (1 - full_share_));
+        const auto fading = [&](double u) {
+            return cos_edge_ + (cos_full_ - cos_edge_) * inverse_fade_integral(parameters_.fade, u);
+        };
+        const double cosine =
+            u0 < full_share_ ? 1 - u0 / full_share_ * (1 - cos_full_) : fading((u0 - full_share_) / (1 - full_share_));
         const Vec3 w = frame_.to_world(spherical(cosine, 2 * kPi * u1)).normalized();
         return {point, w, ray_pdf(point, w)};
     }
@@ -84,7 +90,7 @@ class SpotEmitter final : public EmitterAtAPoint {
     const char* kind() const override { return "spot"; }
 
   private:
-    double falloff(const Vec3& w) const { return spot_falloff(cosine_to(w), cos_full_, cos_edge_); }
+    double falloff(const Vec3& w) const { return spot_falloff(cosine_to(w), cos_full_, cos_edge_, parameters_.fade); }
     /// Near the axis by the chord: rounding of a float is as much as the cosines of narrow cones differ by.
     double cosine_to(const Vec3& w) const {
         const Imath::V3d axis(parameters_.axis), to(w);
@@ -118,10 +124,11 @@ std::unique_ptr<Emitter> make_point_emitter(const Vec3& position, const Rgb& int
 }
 
 double spot_solid_angle(const SpotParameters& parameters) {
-    // The mean of smoothstep is 1/2: half of what lies between the two cones counts.
+    // The mean of smoothstep is 1/2: half of what lies between the two cones counts. Of squares it is 1/3.
+    const double share = parameters.fade == SpotFade::squared ? 1.0 / 3 : 0.5;
     const double full = std::cos(parameters.full_degrees * kPi / 180),
                  edge = std::cos(parameters.edge_degrees * kPi / 180);
-    return 2 * kPi * (1 - (full + edge) / 2);
+    return 2 * kPi * (1 - full + share * (full - edge));
 }
 
 std::unique_ptr<Emitter> make_spot_emitter(const SpotParameters& parameters) {

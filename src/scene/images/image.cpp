@@ -109,6 +109,9 @@ std::vector<LoadedImage> loaded_pictures() {
 }
 
 std::shared_ptr<const LoadedImage> note_picture(LoadedImage picture) {
+    std::error_code error;
+    const auto whole = std::filesystem::absolute(picture.path, error);
+    picture.path = std::filesystem::weakly_canonical(whole, error).string(); // as those of textures
     auto noted = std::make_shared<const LoadedImage>(std::move(picture));
     const std::lock_guard lock(cache().mutex);
     cache().pictures.emplace_back(noted);

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -63,10 +64,17 @@ std::string unescaped(const std::string& uri) {
 
 bool is_data(const std::string& uri) { return uri.starts_with("data:"); }
 
-/// The ending that tells readers what a picture is.
+/// The ending that tells readers what a picture is; empty for what they don't read.
 std::string ending_of(const std::string& bytes) {
     if (bytes.starts_with("RIFF") && bytes.find("WEBP") == 8) return ".webp";
-    return bytes.starts_with("\x89PNG") ? ".png" : ".jpg";
+    if (bytes.starts_with("\xFF\xD8")) return ".jpg";
+    return bytes.starts_with("\x89PNG") ? ".png" : "";
+}
+
+std::string replaced(std::string text, const std::string& old, const std::string& with) {
+    for (auto at = text.find(old); at != std::string::npos; at = text.find(old, at + with.size()))
+        text.replace(at, old.size(), with);
+    return text;
 }
 
 } // namespace
@@ -129,6 +137,12 @@ double Document::emission_unit() const {
     return any && !blender ? 1 / kLumensPerWatt : 1;
 }
 
+double Document::checked_share(double x, const char* key) const {
+    const double share = std::clamp(x, 0.0, 1.0);
+    if (share != x) warn(fmt::format("found {} as '{}', expected 0 to 1: it counts as {}", x, key, share));
+    return share;
+}
+
 Rgb Document::checked_light(const Rgb& light) const {
     for (const double x : {light.x, light.y, light.z})
         if (!(x >= 0 && x <= 1e30))
@@ -170,16 +184,31 @@ std::string Document::image_file(std::size_t index) {
     const auto uri = value_or<std::string>(image, "uri", "");
     if (!uri.empty() && !is_data(uri)) return uri_path(uri);
     const std::string bytes = uri.empty() ? bytes_of_view(image.at("bufferView")) : uri_bytes(uri);
+    const std::string ending = ending_of(bytes);
+    if (ending.empty())
+        fail_of_image(index, {},
+                      fmt::format("found {} bytes of no known picture, expected PNG, JPEG or WebP", bytes.size()));
     if (scratch_.empty()) {
         std::string name = (std::filesystem::temp_directory_path() / "keyhole-gltf-XXXXXX").string();
         if (mkdtemp(name.data()) == nullptr) fail("found no room for the images in the file");
         scratch_ = name;
     }
-    const std::string file = (scratch_ / ("image-" + std::to_string(index) + ending_of(bytes))).string();
+    const std::string file = (scratch_ / ("image-" + std::to_string(index) + ending)).string();
     if (!std::ofstream(file, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size())))
         fail("found no room for the images in the file");
     name_image(file, fmt::format("{}, image {}", path_, index));
     return written_[index] = file;
+}
+
+void Document::fail_of_image(std::size_t index, const std::string& file, std::string why) const {
+    const Json& image = entry("images", index);
+    const auto name = image.find("name");
+    const bool named = name != image.end() && name->is_string();
+    if (written_.contains(index)) { // somewhere, for this process
+        if (why.starts_with(file + ": ")) why = why.substr(file.size() + 2);
+        why = replaced(why, file, "it");
+    }
+    fail(fmt::format("image {}{}: {}", index, named ? fmt::format(" '{}'", name->get<std::string>()) : "", why));
 }
 
 const Json& member(const Json& object, const char* key) {

@@ -42,10 +42,14 @@ class Document {
 
     /// The path of a file with an image: its own, or one that lasts as long as this object.
     std::string image_file(std::size_t index);
+    /// Fails for an image, of that file, that can't be read: `why` may name files that users don't know.
+    [[noreturn]] void fail_of_image(std::size_t index, const std::string& file, std::string why) const;
 
     /// What one unit of emission is in W/(m^2 sr). By the specification it is 1 cd/m^2, as lamps are in candelas; but
     /// Blender writes watts, though lamps in lumens. Without lamps nothing depends on it, and it is 1.
     double emission_unit() const;
+    /// A factor that the format has from 0 to 1: within these, with a warning where it isn't.
+    double checked_share(double x, const char* key) const;
     /// An amount of light. @throws InputError where it can't be one.
     Rgb checked_light(const Rgb& light) const;
 

@@ -51,11 +51,13 @@ class Rewriter {
         for (Json& mesh : list_of(root_, "meshes"))
             for (Json& primitive : list_of(mesh, "primitives")) {
                 widen(primitive);
+                check_indices(primitive);
                 if (primitive.is_object()) primitive.erase("targets");
             }
         for (const char* owner : {"meshes", "nodes"})
             for (const Json& entry : list_of(root_, owner)) tell_of_targets(entry);
         check_matrices();
+        mend_rotations();
         const std::size_t nodes = list_of(root_, "nodes").size(); // more are added behind them
         for (std::size_t i = 0; i < nodes; ++i) place_instances(i);
         if (!numbers_.empty()) add_buffer();
@@ -103,6 +105,26 @@ class Rewriter {
         }
     }
 
+    /// Assimp scales by quaternions that aren't of length 1; lights and cameras turn by what they say.
+    void mend_rotations() {
+        Json& nodes = list_of(root_, "nodes");
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            const Json rotation = nodes[i].is_object() ? member(nodes[i], "rotation") : none_;
+            if (rotation.size() != 4 || !std::ranges::all_of(rotation, &Json::is_number)) continue;
+            double squares = 0;
+            for (const Json& x : rotation) squares += x.get<double>() * x.get<double>();
+            if (!std::isfinite(squares)) continue;
+            if (squares > 0) {
+                for (Json& x : nodes[i]["rotation"]) x = x.get<double>() / std::sqrt(squares);
+                continue;
+            }
+            document_.warn(fmt::format("found a 'rotation' of the node {} that is 0, expected one of length 1: it "
+                                       "isn't turned",
+                                       i));
+            nodes[i].erase("rotation");
+        }
+    }
+
     /// Targets without weights change nothing.
     void tell_of_targets(const Json& entry) const {
         const Json& weights = entry.is_object() ? member(entry, "weights") : entry;
@@ -117,6 +139,18 @@ class Rewriter {
                 accessor = in_floats(accessor.get<std::size_t>(), true);
             else if (is_vector(name))
                 accessor = in_floats(accessor.get<std::size_t>(), false);
+    }
+
+    /// By the format indices lie tight. Assimp reads sparse ones as if they did.
+    void check_indices(const Json& primitive) const {
+        if (!primitive.is_object() || !primitive.contains("indices")) return;
+        const auto index = primitive["indices"].get<std::size_t>();
+        const Json& accessor = document_.entry("accessors", index);
+        if (accessor.contains("sparse") && accessor.contains("bufferView") &&
+            document_.entry("bufferViews", accessor["bufferView"].get<std::size_t>()).contains("byteStride"))
+            document_.fail(fmt::format("found 'byteStride' of the view of accessor {}, expected none: it holds sparse "
+                                       "indices",
+                                       index));
     }
 
     /// Whether Assimp has to unpack KHR_draco_mesh_compression, if it can: into the components that accessors name, so
@@ -138,13 +172,14 @@ class Rewriter {
         return true;
     }
 
-    /// The accessor itself, or one that has its numbers as floats. Colours have an opacity, which Assimp takes for 0
-    /// if none is given.
+    /// The accessor itself, or one that has its numbers as floats, row by row. Colours have an opacity, which Assimp
+    /// takes for 0 if none is given. Of sparse ones Assimp takes the rows for tight, and reads beyond those that
+    /// aren't.
     std::size_t in_floats(std::size_t accessor, bool color) {
         const auto [known, fresh] = widened_.try_emplace({accessor, color}, accessor);
         const Json& old = document_.entry("accessors", accessor);
         const bool opaque = color && old.at("type") == "VEC3";
-        if (!fresh || (old.at("componentType") == kFloat && !opaque)) return known->second;
+        if (!fresh || (old.at("componentType") == kFloat && !opaque && !old.contains("sparse"))) return known->second;
         NumberTable table = reader_.read(accessor);
         if (opaque) add_ones(table);
         const std::size_t bytes = table.values.size() * sizeof(float);

@@ -7,7 +7,8 @@ namespace keyhole::gltf {
 
 /// The bytes of a file with the same meshes at the same places, in which
 /// - each material has its number for a name, as readers number them in an order of their own,
-/// - all attributes are floats: Assimp takes the bytes of integers for those of floats,
+/// - all attributes are floats, and none are sparse: Assimp takes the bytes of integers for those of floats, and rows
+///   with gaps between them for tight ones,
 /// - instances are nodes,
 /// - there are no lights, cameras, skins and animations.
 /// @throws InputError for attributes that are broken, and as check_extensions().

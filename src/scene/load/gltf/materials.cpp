@@ -126,8 +126,13 @@ class Reader {
     SurfaceEmission emission() const {
         const Json* strength = extension(material_, "KHR_materials_emissive_strength");
         const double factor = strength != nullptr ? value_or(*strength, "emissiveStrength", 1.0) : 1.0;
+        const Rgb color = color_or(material_, "emissiveFactor", Rgb(0.0));
+        if (const double most = std::max({color.x, color.y, color.z}); most > 1)
+            document_.warn(fmt::format("found {} as 'emissiveFactor', expected 0 to 1, and the rest as "
+                                       "KHR_materials_emissive_strength: it counts as it is",
+                                       most));
         SurfaceEmission emission;
-        emission.radiance = document_.checked_light(color_or(material_, "emissiveFactor", Rgb(0.0)) * factor);
+        emission.radiance = document_.checked_light(color * factor);
         emission.radiance *= document_.emission_unit();
         emission.two_sided = value_or(material_, "doubleSided", false);
         if (!is_black(emission.radiance) && material_.contains("emissiveTexture"))

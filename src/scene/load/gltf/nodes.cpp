@@ -97,8 +97,10 @@ class Walker {
             document_.fail(fmt::format("found no light {}, which is referred to", index));
         const Json& light = (*all)["lights"][index];
         const auto type = light.at("type").get<std::string>();
-        const Rgb amount = document_.checked_light(color_or(light, "color", Rgb(1.0)) *
-                                                   (value_or(light, "intensity", 1.0) / kLumensPerWatt));
+        // What is wrong is said in the units of the file.
+        const Rgb amount =
+            document_.checked_light(color_or(light, "color", Rgb(1.0)) * value_or(light, "intensity", 1.0)) *
+            (1 / kLumensPerWatt);
         const Vec3 place(to_world.translation()), forward = turned(to_world, {0, 0, -1});
         if (is_black(amount)) return;
         if (type == "directional")
@@ -113,7 +115,7 @@ class Walker {
 
     static SpotParameters spot(const Json& cone, const Vec3& place, const Vec3& forward, const Rgb& intensity) {
         const double outer = value_or(cone, "outerConeAngle", kPi / 4), inner = value_or(cone, "innerConeAngle", 0.0);
-        return {place, forward, intensity, inner * 180 / kPi, outer * 180 / kPi};
+        return {place, forward, intensity, inner * 180 / kPi, outer * 180 / kPi, SpotFade::squared};
     }
 
     const Document& document_;

@@ -64,14 +64,21 @@ std::shared_ptr<const Texture<T>> picture(Document& document, const Json& refere
     if (set != 0) document.warn("textures use the first set of coordinates instead of another one");
     if (texture.contains("sampler"))
         read_sampler(document, document.entry("samplers", texture["sampler"].get<std::size_t>()), options);
-    return image_texture<T>(document.image_file(source_of(document, texture)), options);
+    const std::size_t source = source_of(document, texture);
+    const std::string file = document.image_file(source);
+    try {
+        return image_texture<T>(file, options);
+    } catch (const InputError& e) {
+        document.fail_of_image(source, file, e.what());
+    }
 }
 
 template std::shared_ptr<const Texture<Rgb>> picture<Rgb>(Document&, const Json&, Encoding, int);
 template std::shared_ptr<const Texture<double>> picture<double>(Document&, const Json&, Encoding, int);
 
 ColorTexture color(Document& document, const Json& object, const char* factor, const char* texture) {
-    const Rgb tint = color_or(object, factor, Rgb(1.0));
+    Rgb tint = color_or(object, factor, Rgb(1.0));
+    for (int c = 0; c < 3; ++c) tint[c] = document.checked_share(tint[c], factor);
     if (!object.contains(texture)) return constant_texture(tint);
     ColorTexture image = picture<Rgb>(document, object[texture], Encoding::srgb);
     if (tint == Rgb(1.0)) return image;
@@ -80,7 +87,7 @@ ColorTexture color(Document& document, const Json& object, const char* factor, c
 
 FloatTexture number(Document& document, const Json& object, const char* factor, double otherwise, const char* texture,
                     int channel) {
-    FloatTexture value = constant_texture(value_or(object, factor, otherwise));
+    FloatTexture value = constant_texture(document.checked_share(value_or(object, factor, otherwise), factor));
     if (!object.contains(texture)) return value;
     return scale_texture<double>(picture<double>(document, object[texture], Encoding::linear, channel), value);
 }

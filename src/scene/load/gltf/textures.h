@@ -14,7 +14,8 @@ template <class T>
 std::shared_ptr<const Texture<T>> picture(Document& document, const Json& reference, Encoding encoding,
                                           int channel = -1);
 
-/// The colour under the key `factor`, white if none is given, perhaps times the picture under `texture`.
+/// The colour under the key `factor`, white if none is given, perhaps times the picture under `texture`. This and the
+/// next have factors within 0 and 1, and warn where the file doesn't.
 ColorTexture color(Document& document, const Json& object, const char* factor, const char* texture);
 
 /// A number, perhaps times a channel of a texture.

@@ -167,7 +167,7 @@ class Collector {
         check_regular(to_world);
         any_ = any_ || !part.triangles.empty();
         transform_mesh(part, to_world);
-        mend_mesh(part, path_);
+        mend(part, name);
         if (!part.triangles.empty()) add(source, std::move(part), name);
     }
 
@@ -178,17 +178,22 @@ class Collector {
             hold(source.mNumFaces, source.mNumVertices);
             TriangleMesh mesh = convert(source);
             any_ = any_ || !mesh.triangles.empty();
-            mend_mesh(mesh, path_);
+            mend(mesh, name);
             shared.emplace(std::move(mesh));
         }
         if (shared->mesh().triangles.empty()) return;
         Geometry geometry = shared->placed(copy);
         if (auto* moved = std::get_if<TriangleMesh>(&geometry)) {
             hold(moved->triangles.size(), moved->positions.size());
-            mend_mesh(*moved, path_);
+            mend(*moved, name);
             if (moved->triangles.empty()) return;
         }
         add(source, std::move(geometry), name);
+    }
+
+    /// What can't be mended is found in one of perhaps a thousand parts: which one is said.
+    void mend(TriangleMesh& mesh, const std::string& name) const {
+        mend_mesh(mesh, name.empty() ? path_ : fmt::format("{}: the mesh '{}'", path_, name));
     }
 
     void add(const aiMesh& source, Geometry geometry, const char* name) {

@@ -57,7 +57,7 @@ class Builder {
         for (ShapeRecord& r : records_) {
             if (!r.material_name.empty())
                 mistakes_.attempt(
-                    [&] { r.material = r.directive.look_up(library.materials, "material", r.material_name); });
+                    [&] { r.material = r.named_by->look_up(library.materials, "material", r.material_name); });
             if (!r.light || !r.material.is_interface) continue;
             r.light.reset();
             warnings_.add(r.directive.position, "interface light",

@@ -7,6 +7,7 @@
 #include "scene/load/pbrt/shapes.h"
 #include "scene/shape.h"
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,6 +22,7 @@ struct ShapeRecord {
     bool reversed = false;
     MaterialEntry material;
     std::string material_name; ///< looked up at the end if not empty: a name may be used before it is made
+    std::shared_ptr<const Directive> named_by; ///< what used that name, for messages
     std::optional<AreaLight> light;
     FloatTexture alpha;                            ///< may be null
     std::shared_ptr<const Medium> inside, outside; ///< null: vacuum

@@ -9,6 +9,7 @@
 #include "scene/scene.h"
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,7 +21,8 @@ struct GraphicsState {
     Transform to_world; ///< the current transformation matrix: from the space of what is named next
     bool reversed = false;
     MaterialEntry material;
-    std::string material_name; ///< of a named material; empty: the one above
+    std::string material_name;                 ///< of a named material; empty: the one above
+    std::shared_ptr<const Directive> named_by; ///< the `NamedMaterial`
     std::optional<AreaLight> area_light;
     std::string inside_medium, outside_medium;
     std::map<std::string, std::vector<Parameter>> attributes; ///< defaults by what they are for: "shape", "light" ...

@@ -43,7 +43,10 @@ void Importer::use_material(const Directive& d) {
     state_.material_name.clear();
 }
 
-void Importer::use_named_material(const Directive& d) { state_.material_name = d.words[0]; }
+void Importer::use_named_material(const Directive& d) {
+    state_.material_name = d.words[0];
+    state_.named_by = std::make_shared<const Directive>(d.head());
+}
 
 void Importer::use_media(const Directive& d) {
     state_.inside_medium = d.words.front();
@@ -70,6 +73,7 @@ void Importer::add_shape(const Directive& d) {
     record.reversed = state_.reversed;
     record.material = state_.material;
     record.material_name = state_.material_name;
+    record.named_by = state_.named_by;
     record.light = state_.area_light;
     record.alpha = find_number_texture(p, library_, "alpha", kShare);
     p.ignore({"shadowalpha"}); // v3: what shadow rays see; here as all rays

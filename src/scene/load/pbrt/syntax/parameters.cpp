@@ -75,7 +75,14 @@ Imath::V3d Parameters::point(std::string_view name, const Imath::V3d& otherwise)
 
 Rgb Parameters::spectrum(std::string_view name, const Rgb& otherwise, ColorUse use) {
     const Parameter* p = find(name, {"rgb", "spectrum", "blackbody", "xyz"});
-    return p != nullptr ? read_spectrum(directive_, *p, use, context_.directory) : otherwise;
+    if (p == nullptr) return otherwise;
+    // Spectra may leave the gamut by a little without anybody's fault.
+    const bool plain = p->type == "rgb" || (p->type == "spectrum" && p->numbers.size() == 1);
+    const double most = plain && !p->numbers.empty() ? *std::ranges::max_element(p->numbers) : 0;
+    if (use == ColorUse::reflectance && most > 1)
+        warn("reflectance above 1",
+             fmt::format("found {} in '{}', expected at most 1: what is above 1 counts as 1", most, name));
+    return read_spectrum(directive_, *p, use, context_.directory);
 }
 
 std::vector<double> Parameters::numbers(std::string_view name, std::initializer_list<std::string_view> types) {

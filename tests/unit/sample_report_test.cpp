@@ -1,0 +1,78 @@
+// What is said of pictures that are black, or nearly so.
+#include "methods/enclosure.h"
+#include "methods/method.h"
+#include "scene/emitters/emitters.h"
+#include "support/settings_from.h"
+#include "support/test_scenes.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+namespace keyhole {
+namespace {
+
+using test::SceneMaker;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+
+RenderResult rendered(Scene& scene, const char* method) {
+    Settings settings = test::settings_from("spp=4");
+    settings.method = &method_named(method);
+    return render(scene, settings, {});
+}
+
+double mean_of(const Picture& picture) {
+    const Image& image = picture.layers.at("beauty");
+    return std::accumulate(image.data.begin(), image.data.end(), 0.0) / static_cast<double>(image.data.size());
+}
+
+/// A floor in the sun, seen from under a pane: of eye and light sub-paths only the latter bring any light.
+TEST(BlackPictures, AreNotThoseThatLightPathsAloneDraw) {
+    SceneMaker m;
+    m.rectangle({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, make_diffuse(Rgb(0.5)));
+    m.rectangle({-1, 1, 1}, {2, 0, 0}, {0, 0, -2}, make_thin_dielectric(1.5));
+    m.emitter(make_distant_emitter({0, -1, 0}, Rgb(20.0)));
+    const auto scene = m.camera({0, 0.9f, 0.01f}, {0, 0, 0}, 50).window(8, 6).build();
+    const RenderResult result = rendered(*scene, "bdpt");
+    EXPECT_GT(mean_of(result.picture), 1);
+    EXPECT_THAT(result.stats.warnings, Not(Contains(HasSubstr("picture is black"))));
+}
+
+/// A lit floor, and a box.
+SceneMaker lit_floor(const Vec3& lower, const Vec3& upper, const MaterialPtr& box) {
+    SceneMaker m;
+    m.rectangle({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, make_diffuse(Rgb(0.5)));
+    m.rectangle({-0.3f, 2, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}, make_black(), Rgb(20.0));
+    m.box(lower, upper, box).camera({0, 1, 3}, {0, 0, 0}, 42).window(8, 6);
+    return m;
+}
+
+TEST(BlackPictures, OfAWalledInCameraAreExplained) {
+    const auto scene = lit_floor({-0.2f, 0.8f, 2.8f}, {0.2f, 1.2f, 3.2f}, make_diffuse(Rgb(0.7))).build();
+    EXPECT_EQ(dark_enclosure(*scene), &scene->shapes().at(2));
+    for (const char* method : {"path", "bdpt", "ipm"}) {
+        const RenderStats stats = rendered(*scene, method).stats;
+        EXPECT_THAT(stats.warnings, Contains(HasSubstr("the camera stands within a closed shape"))) << method;
+        EXPECT_THAT(stats.warnings, Not(Contains(HasSubstr("try")))) << method;
+    }
+}
+
+TEST(BlackPictures, WallsThatLetLightInOrHoldALampAreNone) {
+    const Vec3 lower(-0.2f, 0.8f, 2.8f), upper(0.2f, 1.2f, 3.2f);
+    const MaterialPtr white = make_diffuse(Rgb(0.7));
+    EXPECT_EQ(dark_enclosure(*lit_floor(lower, upper, make_glass(1.5)).build()), nullptr);
+    EXPECT_EQ(dark_enclosure(*lit_floor(lower, upper, make_interface()).build()), nullptr);
+    EXPECT_EQ(dark_enclosure(*lit_floor(lower, {0.2f, 0.95f, 3.2f}, white).build()), nullptr) << "beside the camera";
+    EXPECT_EQ(dark_enclosure(*lit_floor({-2, -1, -2}, {2, 3, 4}, white).build()), nullptr) << "lit within";
+    EXPECT_EQ(dark_enclosure(*lit_floor(lower, upper, white).alpha(0.5).build()), nullptr);
+    SceneMaker sky = lit_floor(lower, upper, white);
+    EXPECT_NE(dark_enclosure(*sky.emitter(make_constant_environment(Rgb(1.0))).build()), nullptr);
+    SceneMaker lamp = lit_floor(lower, upper, white);
+    EXPECT_EQ(dark_enclosure(*lamp.emitter(make_point_emitter({0.1f, 1, 3}, Rgb(1.0))).build()), nullptr);
+}
+
+} // namespace
+} // namespace keyhole
