@@ -85,8 +85,7 @@ class RenderInTime {
             }
         } catch (const Interrupted&) { // too slow for the time, or somebody doesn't want to wait
         }
-        if (mean_.empty()) return without_picture();
-        return finish();
+        return mean_.empty() ? without_picture() : finish();
     }
 
     PassesInTime choose_passes() {
