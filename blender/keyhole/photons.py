@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 
 HEADER = struct.Struct("<8sIIQqq4QQQ")
-VERSION = 9
+VERSION = 10
 PHOTON = np.dtype([("position", "<f4", 3), ("power", "<u2", 3), ("direction", "<i2", 2), ("normal", "i1", 2)])
 BITS, BIAS = 12, 80  # of the shared exponent: see src/photonmap/photon.h
 NAME = "Keyhole Photons"

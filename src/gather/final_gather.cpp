@@ -2,6 +2,7 @@
 
 #include "gather/direct_light.h"
 #include "gather/visible_point.h"
+#include "sampling/paths/lamps_in_lobes.h"
 #include "sampling/paths/random_walk.h"
 #include "sampling/paths/seen_surface.h"
 #include "sampling/paths/walk.h"
@@ -101,9 +102,9 @@ void FinalGather::shade(const Vertex& v, const Vec3& back, const Rgb& throughput
     out.direct += throughput * light.direct;
     out.indirect += throughput * light.indirect;
     out.rays += light.rays;
-    const Rgb caustic =
-        throughput * rays_.caustic(v, back, luminance(light.direct + light.indirect), scatterings, source);
-    out.caustic += caustic;
+    const double besides = luminance(light.direct + light.indirect + light.lamps);
+    const Rgb caustic = throughput * rays_.caustic(v, back, besides, scatterings, source);
+    out.caustic += caustic + throughput * light.lamps;
     if (cached) out.of_records += luminance(throughput) * cached->error;
     if (out.confirm) out.unconfirmed += luminance(caustic) * rays_.unconfirmed_caustic(v, back);
 }
@@ -126,6 +127,8 @@ std::optional<FinalGather::Cached> FinalGather::ask_cache(const Vertex& v, const
 FinalGather::Light FinalGather::gather_all(const Vertex& v, const Vec3& back, int scatterings,
                                            SampleSource& source) const {
     Light sum{next_event(scene_, v, back, light_samples(scatterings), source), Rgb(0.0)};
+    const Bsdf lobe = v.bsdf.glossy_part();
+    const bool narrow = is_narrow(lobe, back);
     const int rays = std::max(1, static_cast<int>(std::lround(samples_.rays)));
     const AimedRay aimed(spots_, v, v.bsdf, back, luminance(sum.direct), rays);
     sum.rays = rays;
@@ -135,6 +138,9 @@ FinalGather::Light FinalGather::gather_all(const Vertex& v, const Vec3& back, in
         const auto arrival = rays_.trace(v, first->w, first->pdf, scatterings, source);
         sum.indirect += first->weight * arrival.indirect * (first->pdf / aimed.density(first->w, first->pdf));
         sum.direct += first->weight * arrival.emitted / rays;
+        if (!narrow || is_black(arrival.lamps)) continue;
+        const Rgb part = scatter(v.point, lobe, Event::finite, first->w, back).value;
+        sum.lamps += part * arrival.lamps * (v.point.abs_cos(first->w) / (first->pdf * rays));
     }
     sum.indirect += gather_aimed(aimed, v, v.bsdf, back, scatterings, source);
     return sum;
@@ -150,6 +156,7 @@ FinalGather::Light FinalGather::gather_glossy(const Vertex& v, const Vec3& back,
         scene_, v, back, rays_.faces_left(scatterings), source,
         [&](const SurfacePoint& /*emitter*/, const Rgb& value) { sum.direct += value * (finite * (1 - glossy)); });
     const Bsdf lobe = v.bsdf.glossy_part();
+    const bool narrow = is_narrow(lobe, back);
     // A coat of a few percent is worth a ray now and then; not in proportion, for what few rays find each has counts
     // for much: dots.
     const double rays = samples_.rays * std::sqrt(glossy);
@@ -162,6 +169,7 @@ FinalGather::Light FinalGather::gather_glossy(const Vertex& v, const Vec3& back,
         const auto arrival = rays_.trace(v, first->w, first->pdf, scatterings, source);
         sum.indirect += first->part * arrival.indirect * (first->part_pdf / aimed.density(first->w, first->part_pdf));
         sum.direct += first->whole * arrival.emitted * (finite * glossy / rays);
+        if (narrow) sum.lamps += first->part * arrival.lamps / rays;
     }
     sum.indirect += gather_aimed(aimed, v, lobe, back, scatterings, source);
     return sum;

@@ -66,11 +66,13 @@ class FinalGather {
     std::optional<Cached> ask_cache(const Vertex& v, const Vec3& back, int scatterings) const;
 
     struct Light {
-        Rgb direct, indirect; ///< caustics left out
-        int rays = 0;         ///< gather rays that were drawn for it
+        Rgb direct, indirect;
+        Rgb lamps{0.0}; ///< caustics, of which the photons of the caustic map have the rest
+        int rays = 0;   ///< gather rays that were drawn for it
         Light& operator+=(const Light& o) {
             direct += o.direct;
             indirect += o.indirect;
+            lamps += o.lamps;
             rays += o.rays;
             return *this;
         }

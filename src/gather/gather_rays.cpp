@@ -8,6 +8,7 @@
 #include "photonmap/surface/density_in_sight.h"
 #include "sampling/paths/direct_light.h"
 #include "sampling/paths/gather_coverage.h"
+#include "sampling/paths/lamps_in_lobes.h"
 #include "sampling/paths/random_walk.h"
 #include "scene/bsdfs/wide_lobe.h"
 
@@ -63,9 +64,7 @@ struct GatherRays::Walk : SpecularWalkHooks {
     bool arrive(Vertex& v, const WalkRay& ray) {
         leg.distance = v.point.site == Site::infinite ? std::numeric_limits<float>::infinity()
                                                       : (v.point.p - ray.last->p).length();
-        // An emitter seen straight is direct light; seen through other specular vertices the caustic map has it.
-        if (v.point.is_emitter() && light.straight(ray.w, v.point.site == Site::infinite))
-            arrival.emitted += ray.throughput * emission_with_mis(rays.scene_, from, v, ray.w, pdf);
+        if (v.point.is_emitter()) meet_emitter(v, ray);
         if (ray.last == &from.point) arrival.distance = leg.distance;
         if (leg.scatterings == rays.max_scatterings_) return false;
         if (v.bsdf.traits().finite) {
@@ -75,6 +74,14 @@ struct GatherRays::Walk : SpecularWalkHooks {
         }
         ++leg.scatterings;
         return v.bsdf.traits().delta;
+    }
+    /// An emitter seen straight is direct light; seen through other specular vertices the caustic map has it, but for
+    /// what narrow lobes show of large lamps.
+    void meet_emitter(const Vertex& v, const WalkRay& ray) {
+        if (light.straight(ray.w, v.point.site == Site::infinite))
+            arrival.emitted += ray.throughput * emission_with_mis(rays.scene_, from, v, ray.w, pdf);
+        else if (is_large_lamp(rays.scene_, v.point))
+            arrival.lamps += ray.throughput * rays.scene_.emitter(v.point.emitter).radiance(v.point, -ray.w);
     }
     bool leave(const Vertex& v, const Continuation& next, const WalkRay& ray) {
         light.meet(v, ray.w);
@@ -236,7 +243,7 @@ Rgb GatherRays::caustic_on_side(const Vertex& v, const Vec3& normal, const Vec3&
     const Surroundings around = surroundings.around(query.region, piloted);
     if (!(around.area > 0)) return Rgb(0.0);
     const PhotonMap& photons = maps_.caustic->main_photons();
-    const PhotonReflection reflected(v, back, longer);
+    const auto reflected = PhotonReflection::of_caustics(v, back, longer);
     const double area = around.area * p;
     if (!around.partly_occluded) return estimate_density(photons, query.region, r, area, reflected).value;
     const auto all = [&](const Photon& photon) { return luminance(reflected(photon) * photon.power()); };
@@ -249,7 +256,7 @@ Rgb GatherRays::outlying_on_side(const Vertex& v, const Vec3& normal, const Vec3
     Rgb sum(0.0);
     if (maps_.outlying == nullptr) return sum;
     const SurfaceRegion region{v.point.p, normal};
-    const PhotonReflection reflected(v, back, longer);
+    const auto reflected = PhotonReflection::of_caustics(v, back, longer);
     maps_.outlying->for_each_reaching(region, [&](const Photon& photon, const OutlyingPhotons::Lit& lit) {
         const Rgb light = reflected(photon) * photon.power();
         if (!is_black(light) && in_sight(scene_, region, sight_lift(lit.radius), photon.position()))
@@ -275,9 +282,10 @@ double GatherRays::unconfirmed_caustic(const Vertex& v, const Vec3& back) const 
     if (maps_.caustic == nullptr) return 0;
     const PhotonQuery query = query_at(v, facing(v.point.ng, back), options_.caustic_radius, options_);
     const float r = piloted_radius(maps_.caustic->pilots(), query);
-    return unconfirmed_share(
-        *maps_.caustic, query.region, r,
-        [reflected = PhotonReflection(v, back, 0)](const Photon& p) { return luminance(reflected(p) * p.power()); });
+    return unconfirmed_share(*maps_.caustic, query.region, r,
+                             [reflected = PhotonReflection::of_caustics(v, back, 0)](const Photon& p) {
+                                 return luminance(reflected(p) * p.power());
+                             });
 }
 
 Rgb GatherRays::global(const Vertex& v, const Vec3& back, int longer) const {

@@ -57,6 +57,7 @@ class GatherRays {
     struct Arrival {
         Rgb indirect{0.0}; ///< reflected by what the ray met
         Rgb emitted{0.0};  ///< emitted by what it met first, weighted against next_event() at the ray's origin
+        Rgb lamps{0.0};    ///< emitted by large lamps, and come here by specular vertices that turned it
         float distance = std::numeric_limits<float>::infinity(); ///< to what it met first [m]
         /// Luminance of what of `indirect` could go by longer ways from the ray's origin to the eye than it does.
         LongerWays reaching{};

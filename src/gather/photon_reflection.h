@@ -2,6 +2,7 @@
 #pragma once
 
 #include "photonmap/photon.h"
+#include "sampling/paths/lamps_in_lobes.h"
 #include "sampling/paths/path.h"
 
 #include <algorithm>
@@ -25,11 +26,20 @@ class PhotonReflection {
     PhotonReflection(const Vertex& v, const Vec3& back, int longer)
         : v_(v), back_(back), longer_(longer), through_(v.bsdf.traits().through) {}
 
+    /// Of photons of the caustic map at a visible point: without what gather rays of a narrow lobe find.
+    static PhotonReflection of_caustics(const Vertex& v, const Vec3& back, int longer) {
+        PhotonReflection reflection(v, back, longer);
+        reflection.lamps_by_rays_ = is_narrow(v.bsdf.glossy_part(), back);
+        return reflection;
+    }
+
     Rgb operator()(const Photon& photon) const {
         if (!photon.reaches(longer_)) return Rgb(0.0);
         const Vec3 normal = photon.normal().decode(), w = photon.direction();
         if (through_ && photon.behind() != (normal.dot(v_.point.ng) < 0)) return Rgb(0.0);
-        const Rgb f = v_.bsdf.finite(w, back_).value;
+        Rgb f = v_.bsdf.finite(w, back_).value;
+        if (lamps_by_rays_ && photon.caustic() && !is_black(f))
+            f = v_.bsdf.diffuse_reflectance(back_) * v_.bsdf.diffuse_weight(w);
         const Vec3 shading = v_.bsdf.shading_normal();
         if (shading == v_.point.ng || shading == -v_.point.ng) return f;
         const double arrival = std::max(kLeastArrival, std::abs(static_cast<double>(normal.dot(w))));
@@ -41,6 +51,7 @@ class PhotonReflection {
     Vec3 back_;
     int longer_;
     bool through_;
+    bool lamps_by_rays_ = false;
 };
 
 } // namespace keyhole

@@ -1,6 +1,7 @@
 #include "photonmap/deposit.h"
 
 #include "core/rng.h"
+#include "sampling/paths/lamps_in_lobes.h"
 #include "sampling/paths/measure.h"
 #include "sampling/paths/path.h"
 #include "sampling/paths/random_walk.h"
@@ -172,7 +173,8 @@ void PathDepositor::deposit(const Path& path, double weight) {
                        .to_light = direction(path.x[i].point, path.x[i - 1].point),
                        .flux = flux,
                        .scatterings = at.vertex,
-                       .caustic = specular_before(path, i)};
+                       .caustic = specular_before(path, i) &&
+                                  (at.kind == PhotonKind::global || is_large_lamp(*options_.scene, path.x[0].point))};
             if (options_.weights != nullptr)
                 recent_.share =
                     options_.weights->of_chains(options_.weights->visible(*options_.scene, at.kind, path, at.vertex));

@@ -4,6 +4,7 @@
 #include "photonmap/map_stores.h"
 #include "photonmap/power.h"
 #include "sampling/guidance/guided_light.h"
+#include "sampling/paths/lamps_in_lobes.h"
 
 #include <algorithm>
 #include <limits>
@@ -31,7 +32,7 @@ class Collector {
   public:
     Collector(const Scene& scene, const EmissionOptions& options, const PhotonWeighing& weighing,
               const MapStores::Thresholds& pilots, const MapStores::Thresholds& main_photons)
-        : weighing_(weighing), pilots_(pilots), main_photons_(main_photons), rule_(options.rule),
+        : scene_(scene), weighing_(weighing), pilots_(pilots), main_photons_(main_photons), rule_(options.rule),
           techniques_(options.weights), unit_(unit_of_power(scene)), observer_(options.observer) {}
 
     void begin(PhotonRole role, Rng& rng) {
@@ -40,6 +41,7 @@ class Collector {
     }
 
     void sets_out(const SurfacePoint& x0, bool guided) {
+        large_lamp_ = is_large_lamp(scene_, x0);
         if (observer_ == nullptr) return;
         trail_.assign(1, {x0.p, false, x0.site == Site::infinite});
         emitter_ = x0.emitter;
@@ -78,9 +80,10 @@ class Collector {
         bool kept = false;
         store_by_roulette(pilot ? block.pilots : block.main_photons, kind, share * weight.value,
                           pilot ? pilots_ : main_photons_, *rng_, [&](double /*weight*/) {
-                              const Photon photon(v.point.p, v.point.ng, to_light,
-                                                  emitted_power(power, weight.value) / unit_,
-                                                  {.caustic = past.caustic(), .spare = spare(kind, past)});
+                              const Photon photon(
+                                  v.point.p, v.point.ng, to_light, emitted_power(power, weight.value) / unit_,
+                                  {.caustic = past.caustic() && (kind == PhotonKind::global || large_lamp_),
+                                   .spare = spare(kind, past)});
                               kept = true;
                               if (observer_ != nullptr)
                                   observer_->stored(photon, {trail_, trail_.size() - 1, emitter_, guided_});
@@ -93,6 +96,7 @@ class Collector {
         return spare_scatterings(kind, past.scatterings + 1, rule_.max_scatterings);
     }
 
+    const Scene& scene_;
     PhotonWeighing weighing_;
     MapStores::Thresholds pilots_, main_photons_;
     StorageRule rule_;
@@ -104,6 +108,7 @@ class Collector {
     std::vector<TrailPoint> trail_; // kept only where somebody watches
     std::uint32_t emitter_ = SurfacePoint::kNone;
     bool guided_ = false;
+    bool large_lamp_ = false; // that the path set out from
 };
 
 constexpr std::int64_t kPathsOfBlock = 64; // paths

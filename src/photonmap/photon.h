@@ -144,6 +144,7 @@ class Photon {
     Vec3 direction() const { return direction_.decode(); }
     Rgb power() const { return power_.decode(); }
     /// Whether specular vertices alone scattered the light before (L S+ D). A photon of the global map may be one, too.
+    /// In the caustic map those of small lamps aren't marked: no ray looks for these (is_large_lamp()).
     bool caustic() const { return (power_.marks() & kCaustic) != 0; }
     /// Whether it arrived on the side that the surface's geometric normal turns away from.
     bool behind() const { return (power_.marks() & kBehind) != 0; }

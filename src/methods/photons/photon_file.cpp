@@ -19,7 +19,7 @@ namespace keyhole {
 namespace {
 
 constexpr std::array<char, 8> kMagic{'K', 'H', 'P', 'H', 'O', 'T', 'O', 'N'};
-constexpr std::uint32_t kVersion = 9; ///< raised when a map changes; blender/keyhole/photons.py reads it as well
+constexpr std::uint32_t kVersion = 10; ///< raised when a map changes; blender/keyhole/photons.py reads it as well
 constexpr std::uint32_t kByteOrder = 0x01020304;
 
 constexpr std::size_t kParts = 4;
