@@ -100,11 +100,15 @@ void report_black(const RunningStats& luminance, const Scene& scene, RenderStats
 
 void report_lost_caustics(const Scene& scene, RenderStats& stats) {
     const bool no_extent = std::ranges::any_of(scene.emitters(), [](const auto& e) { return e->is_delta(); });
-    if (no_extent && scene.traits().delta)
-        stats.warn(Doubt::caustics, "light from emitters without extent that comes through specular surfaces is "
-                                    "missing, or what is seen of it in others: no path that is joined to the eye can "
-                                    "carry it. Photons of light paths can, such as ipm's; a longer time lets auto "
-                                    "choose them where that light is worth it");
+    if (!no_extent || !scene.traits().delta) return;
+    stats.warn(Doubt::caustics,
+               fmt::format("light from emitters without extent that comes through specular surfaces is missing, or "
+                           "what is seen of it in others: no path that is joined to the eye can carry it. {}",
+                           scene.has_scattering_media()
+                               ? "Photons of light paths could, but aren't to be had where a medium scatters: give "
+                                 "the emitters some extent"
+                               : "Photons of light paths can, such as ipm's; a longer time lets auto choose them "
+                                 "where that light is worth it"));
 }
 
 } // namespace keyhole

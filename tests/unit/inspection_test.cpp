@@ -3,6 +3,7 @@
 #include "methods/inspection/inspection.h"
 #include "methods/method.h"
 #include "methods/photons/photon_file.h"
+#include "sampling/paths/lamps_in_lobes.h"
 #include "support/scratch_directory.h"
 #include "support/settings_from.h"
 #include "support/test_scenes.h"
@@ -76,7 +77,10 @@ TEST_P(InspectionOf, TrailsAreTheWaysOfTheirPhotons) {
         EXPECT_GT(to_light.dot(p.photon.direction()), 0.99999f);
         bool specular = trail.photon > 1; // all vertices before the photon
         for (std::size_t i = 1; i < trail.photon; ++i) specular = specular && trail.points[i].specular;
-        EXPECT_EQ(p.photon.caustic(), specular);
+        SurfacePoint begin;
+        begin.p = trail.points[0].p;
+        begin.emitter = p.emitter;
+        EXPECT_EQ(p.photon.caustic(), specular && (!p.caustic || is_large_lamp(*scene_, begin)));
         (p.caustic ? caustics : p.photon.caustic() ? global_caustics : others) += 1;
         EXPECT_EQ(p.emitter, 0u);
         EXPECT_NEAR(trail.points[0].p.y, scene_->emitter(0).bounds()->lower.y, 1e-4);

@@ -1,6 +1,7 @@
 // What is said of pictures that are black, or nearly so.
 #include "methods/enclosure.h"
 #include "methods/method.h"
+#include "methods/sample_report.h"
 #include "scene/emitters/emitters.h"
 #include "support/settings_from.h"
 #include "support/test_scenes.h"
@@ -39,6 +40,21 @@ TEST(BlackPictures, AreNotThoseThatLightPathsAloneDraw) {
     const RenderResult result = rendered(*scene, "bdpt");
     EXPECT_GT(mean_of(result.picture), 1);
     EXPECT_THAT(result.stats.warnings, Not(Contains(HasSubstr("picture is black"))));
+}
+
+/// Advice is what can be followed: photons aren't to be had where a medium scatters.
+TEST(LostCaustics, AreSaidToNeedPhotonsWhereThereMayBeSome) {
+    for (const bool foggy : {false, true}) {
+        SceneMaker m;
+        m.sphere({0, 0, 0}, 0.5f, make_glass(1.5)).emitter(make_distant_emitter({0, -1, 0}, Rgb(2.0)));
+        if (foggy) m.medium(std::make_shared<const Medium>(Medium{Rgb(0.0), Rgb(0.1), 0.5f}));
+        const auto scene = m.camera({0, 0, 3}, {0, 0, 0}, 40).window(8, 6).build();
+        RenderStats stats;
+        report_lost_caustics(*scene, stats);
+        ASSERT_EQ(stats.warnings.size(), 1u) << foggy;
+        EXPECT_EQ(testing::Value(stats.warnings[0], HasSubstr("such as ipm's")), !foggy) << stats.warnings[0];
+        EXPECT_EQ(testing::Value(stats.warnings[0], HasSubstr("some extent")), foggy) << stats.warnings[0];
+    }
 }
 
 /// A lit floor, and a box.
