@@ -2,8 +2,6 @@
 
 #include "scene/load/load_mesh.h"
 
-#include <Imath/ImathBox.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -11,12 +9,6 @@ namespace keyhole {
 namespace {
 
 using Box = Imath::Box3d;
-
-Box box_of(const TriangleMesh& mesh) {
-    Box box;
-    for (const Vec3& p : mesh.positions) box.extendBy(Imath::V3d(p));
-    return box;
-}
 
 /// Whether the triangles go once around p: their signed solid angles (Van Oosterom and Strackee 1983) are the whole
 /// sphere's then. From outside they add up to nothing.

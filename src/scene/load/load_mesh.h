@@ -3,6 +3,7 @@
 
 #include "scene/shape.h"
 
+#include <Imath/ImathBox.h>
 #include <Imath/ImathMatrix.h>
 #include <Imath/ImathVec.h>
 
@@ -67,6 +68,9 @@ void mend_mesh(TriangleMesh& mesh, const std::string& source);
 void smooth_normals(TriangleMesh& mesh);
 
 // What meshes enclose: mesh/closed.cpp.
+
+/// Holds all positions, used or not [m].
+Imath::Box3d box_of(const TriangleMesh& mesh);
 
 /// Whether a mesh encloses a volume: between any two places as many edges of triangles run one way as the other. Gaps
 /// as narrow as rounding makes them at seams don't count.

@@ -25,12 +25,6 @@ using gltf::Document;
 using gltf::Json;
 using gltf::MaterialData;
 
-Imath::Box3d box_of(const TriangleMesh& mesh) {
-    Imath::Box3d box;
-    for (const Vec3& p : mesh.positions) box.extendBy(Imath::V3d(p));
-    return box;
-}
-
 /// Holds everything. Of copies the boxes of their meshes, each found once.
 Imath::Box3d box_of(const std::vector<Shape>& shapes) {
     Imath::Box3d box;

@@ -59,13 +59,16 @@ class PlaceNumbers {
 
 } // namespace
 
-bool is_closed(const TriangleMesh& mesh) {
+Imath::Box3d box_of(const TriangleMesh& mesh) {
     Imath::Box3d box;
+    for (const Vec3& p : mesh.positions) box.extendBy(Imath::V3d(p));
+    return box;
+}
+
+bool is_closed(const TriangleMesh& mesh) {
+    const Imath::Box3d box = box_of(mesh);
     double farthest = 0;
-    for (const Vec3& p : mesh.positions) {
-        box.extendBy(Imath::V3d(p));
-        farthest = std::max(farthest, Imath::V3d(p).length());
-    }
+    for (const Vec3& p : mesh.positions) farthest = std::max(farthest, Imath::V3d(p).length());
     const double apart = std::max(1e-5 * box.size().length(), 5e-7 * farthest);
     if (!(apart > 0)) return false;
     PlaceNumbers numbers(apart);
