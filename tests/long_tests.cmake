@@ -1,0 +1,41 @@
+# Tests that render for long, by folder, as patterns of GoogleTest: most take 10 seconds and more. They have the label of
+# their folder with "-long" behind it. ./test.sh leaves them out, ./test.sh --all runs them, and so does .ci/run.
+set(long_agreement
+  "Counters/NarrowLobes_ShowLamps.*/broad"
+  "Counters/NarrowLobes_ShowLamps.*/brushed"
+  "Counters/NarrowLobes_ShowLamps.*/clearcoat"
+  "Counters/NarrowLobes_ShowLamps.*/marble"
+  "Counters/NarrowLobes_ShowLamps.*/sky"
+  "Counters/NarrowLobes_ShowLamps.*/two_lamps"
+  "Counters/NarrowLobes_ShowLamps.*/wide"
+  "GlazedRoom_Light.*"
+  "InvisibleLamp_Light.*"
+  "LightSeenThroughASlit_Brightness.*"
+  "LightThrough_*"
+  "MeshInstances_Light.IsThatOf*"
+  "Methods/Passes.*"
+  "NarrowBeams_Light.*"
+  "ParallelSight*"
+  "Reach_AgreesWithBidirectionalTracing.*"
+  "Rooms/Coats_AgreeWithPaths.*/daylight"
+  "Rooms/Coats_AgreeWithPaths.*/kitchen"
+  "Rooms/Coats_AgreeWithPaths.*/plastic"
+  "Rooms/Coats_AgreeWithPaths.*/rough"
+  "Rooms/Coats_AgreeWithPaths.*/smooth"
+  "ScatteringMedia_Methods.*"
+  "Scatterings/ShortPaths.*"
+  "Scenes/AlongUserPaths.*"
+  "Scenes/Mlt_AgreesWithPathTracing.*/Guided*"
+  "Shared/References_Agree.*"
+  "ShortPaths_OfTwoScatterings.*")
+set(long_furnace
+  "Methods/Furnace_HasItsClosedForm.InEveryBlock/auto_*")
+set(long_regression
+  "FailureGallery_Keyhole.*"
+  "Gallery.CrevicesHaveTheirLight"
+  "Mutated_Inputs.*")
+set(long_unit
+  "CombinedPhotons_EqualLightTracing.AlongUserPaths"
+  "CombinedPhotons_EqualLightTracing.HazyBox"
+  "LearnedScatteringOverAYard.BringsAllPowerByFewerPaths"
+  "Scenes/RanksOfAScene.*")
