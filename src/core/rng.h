@@ -69,6 +69,7 @@ enum class StreamPurpose : std::uint64_t {
     emission_trial,
     scene_hash,
     filter,
+    mirror_images,
 };
 
 /// PCG32 (O'Neill 2014). One for each chain and each pixel, never for each thread, so that a picture does not

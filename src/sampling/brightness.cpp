@@ -2,47 +2,77 @@
 
 #include "core/shared_work.h"
 #include "sampling/paths/image_lattice.h"
+#include "sampling/proposals/mirrored_light_paths.h"
 #include "scene/ray_counter.h"
 
 #include <algorithm>
-#include <cassert>
 #include <limits>
+#include <optional>
 
 namespace keyhole {
 namespace {
 
 constexpr std::int64_t kBlock = 64 * StageOne::kGroup;
 
-/// Takes from the contributions of bidirectional tracing what belongs to the guides, by the balance heuristic.
-template <class Sink> struct BesideGuides {
-    const GuidedPaths& guides;
-    Sink& sink;
-
-    void contribution(const Rgb& value, PhotonKind kind, auto&& make_path) {
-        const Path path = make_path();
-        const double guided = guides.density(path);
-        if (!(guided > 0)) return sink.contribution(value, kind, [&]() -> const Path& { return path; });
-        const double own = bidirectional_density(path);
-        sink.contribution(value * (own / (own + guided)), kind, [&]() -> const Path& { return path; });
+/// All techniques of stage one: path tracing alone, or bidirectional tracing beside what finds what it misses, user
+/// paths where there are some and light in flat mirrors, each by the balance heuristic.
+class Techniques {
+  public:
+    Techniques(const Scene& scene, const StageOneSettings& settings)
+        : scene_(scene), settings_(settings), guides_(settings.guides) {
+        if (!scene.traits().delta) return;
+        mirrors_.emplace(ProposalContext{&scene, settings.set, settings.max_scatterings});
+        if (mirrors_->empty()) mirrors_.reset();
     }
-};
 
-void trace_sample(const Scene& scene, const StageOneSettings& settings, Technique technique, std::int64_t i,
-                  auto& sink) {
-    Rng rng(settings.seed, StreamPurpose::brightness, static_cast<std::uint64_t>(i));
-    const Vec2 image = lattice_image_point(settings.seed, StreamPurpose::brightness, i);
-    const ConnectionRule wanted{settings.max_scatterings, settings.set};
-    if (settings.guides == nullptr) return trace_independent(technique, scene, image, wanted, rng, sink);
-    assert(technique == Technique::bidirectional);
-    BesideGuides<std::remove_reference_t<decltype(sink)>> rest{*settings.guides, sink};
-    trace_independent(technique, scene, image, wanted, rng, rest);
-    settings.guides->sample(image, rng, [&](const Path& path) {
-        const double guided = settings.guides->density(path);
-        if (!(guided > 0)) return; // rounding carried it out of cones or openings
-        sink.contribution(path.contribution / (guided + bidirectional_density(path)), path.storage.kind,
-                          [&]() -> const Path& { return path; });
-    });
-}
+    const Scene& scene() const { return scene_; }
+    const StageOneSettings& settings() const { return settings_; }
+
+    void trace_sample(Technique technique, std::int64_t i, auto& sink) const {
+        Rng rng(settings_.seed, StreamPurpose::brightness, static_cast<std::uint64_t>(i));
+        const Vec2 image = lattice_image_point(settings_.seed, StreamPurpose::brightness, i);
+        const ConnectionRule wanted{settings_.max_scatterings, settings_.set};
+        if (technique == Technique::path || (guides_ == nullptr && !mirrors_))
+            return trace_independent(technique, scene_, image, wanted, rng, sink);
+        BesideOthers<std::remove_reference_t<decltype(sink)>> rest{*this, sink};
+        trace_independent(technique, scene_, image, wanted, rng, rest);
+        const auto found = [&](const Path& path) {
+            const double others = density(path);
+            if (!(others > 0)) return; // rounding carried it out of cones or openings, or off a mirror
+            sink.contribution(path.contribution / (others + bidirectional_density(path)), path.storage.kind,
+                              [&]() -> const Path& { return path; });
+        };
+        if (guides_ != nullptr) guides_->sample(image, rng, found);
+        if (!mirrors_) return;
+        Failure why{};
+        const auto mirrored = mirrors_->sample(rng, why);
+        if (mirrored && mirrored->target > 0) found(*mirrored);
+    }
+
+  private:
+    /// Takes from the contributions of bidirectional tracing what belongs to the others.
+    template <class Sink> struct BesideOthers {
+        const Techniques& techniques;
+        Sink& sink;
+
+        void contribution(const Rgb& value, PhotonKind kind, auto&& make_path) {
+            const Path path = make_path();
+            const double others = techniques.density(path);
+            const double own = others > 0 ? bidirectional_density(path) : 1;
+            sink.contribution(value * (own / (own + others)), kind, [&]() -> const Path& { return path; });
+        }
+    };
+
+    /// Number density of a measured path among those that the others make.
+    double density(const Path& path) const {
+        return (guides_ != nullptr ? guides_->density(path) : 0) + (mirrors_ ? mirrors_->density(path) : 0);
+    }
+
+    const Scene& scene_;
+    const StageOneSettings& settings_;
+    const GuidedPaths* guides_;
+    std::optional<MirroredLightPaths> mirrors_;
+};
 
 /// What a contribution counts for. A connection to the lens may have led it to another pixel than its sample began at.
 double target(const PathSet& set, const Rgb& value, auto&& make_path) {
@@ -86,11 +116,11 @@ struct Block {
     auto parts() { return std::tie(brightness, caustic, groups); }
 };
 
-Block run_block(const Scene& scene, const StageOneSettings& settings, Technique technique, Range samples) {
+Block run_block(const Techniques& techniques, Technique technique, Range samples) {
     Block block;
     for (std::int64_t i = samples.begin; i < samples.end; ++i) {
-        EstimateSink sink{settings.set};
-        trace_sample(scene, settings, technique, i, sink);
+        EstimateSink sink{techniques.settings().set};
+        techniques.trace_sample(technique, i, sink);
         block.brightness.add(sink.sum);
         block.caustic.add(sink.caustic);
         if (i % StageOne::kGroup == 0) block.groups.push_back(0);
@@ -108,13 +138,11 @@ struct Trial {
 };
 
 /// A trial of a technique takes no more than what follows.
-Trial try_technique(const Scene& scene, const StageOneSettings& settings, Technique technique,
-                    const RunContext& context) {
-    const std::int64_t blocks = std::clamp<std::int64_t>(settings.samples / kBlock / 2, 1, 16);
+Trial try_technique(const Techniques& techniques, Technique technique, const RunContext& context) {
+    const std::int64_t blocks = std::clamp<std::int64_t>(techniques.settings().samples / kBlock / 2, 1, 16);
     const std::uint64_t rays = rays_traced();
-    const auto parts = make_blocks({kTrial, kTrial + blocks * kBlock}, kBlock, context, [&](Range range) {
-        return run_block(scene, settings, technique, range).brightness;
-    });
+    const auto parts = make_blocks({kTrial, kTrial + blocks * kBlock}, kBlock, context,
+                                   [&](Range range) { return run_block(techniques, technique, range).brightness; });
     Trial trial{{}, static_cast<double>(rays_traced() - rays)};
     for (const RunningStats& part : parts) trial.brightness.merge(part);
     return trial;
@@ -168,24 +196,25 @@ double StageOne::brightness_of(Range some) const {
 }
 
 StageOne run_stage_one(const Scene& scene, const StageOneSettings& settings, const RunContext& context) {
+    const Techniques techniques(scene, settings);
     StageOne stage;
     stage.technique = Technique::bidirectional;
     stage.wanted = settings.samples;
     const bool choice = !needs_light_paths(scene, settings);
     Trial bidirectional{};
     if (choice || settings.error > 0) { // else there is nothing to find out
-        bidirectional = try_technique(scene, settings, Technique::bidirectional, context);
+        bidirectional = try_technique(techniques, Technique::bidirectional, context);
         stage.wanted = enough_samples(settings, bidirectional.brightness);
     }
     if (choice) {
-        const Trial path = try_technique(scene, settings, Technique::path, context);
+        const Trial path = try_technique(techniques, Technique::path, context);
         stage.technique = choose_technique(path, bidirectional);
         if (stage.technique == Technique::path) stage.wanted = enough_samples(settings, path.brightness);
     }
     const Technique technique = stage.technique;
     const ProgressStage progress(context, "brightness", stage.wanted, "paths");
     leading_blocks(
-        stage.wanted, kBlock, context, [&](Range range) { return run_block(scene, settings, technique, range); },
+        stage.wanted, kBlock, context, [&](Range range) { return run_block(techniques, technique, range); },
         [&](const Block& block) {
             stage.brightness.merge(block.brightness);
             stage.caustic.merge(block.caustic);
@@ -219,13 +248,14 @@ std::vector<Path> choose_seeds(const Scene& scene, const StageOneSettings& setti
         before += here;
     }
 
+    const Techniques techniques(scene, settings);
     std::vector<std::optional<Path>> found(marks.size());
     parallel_for(static_cast<std::int64_t>(marks.size()), [&](std::int64_t k) {
         const Mark& mark = marks[static_cast<std::size_t>(k)];
         SeedSink sink{settings.set, mark.left};
         const std::int64_t end = std::min(stage.samples, (mark.group + 1) * StageOne::kGroup);
         for (std::int64_t i = mark.group * StageOne::kGroup; i < end && sink.left >= 0; ++i)
-            trace_sample(scene, settings, stage.technique, i, sink);
+            techniques.trace_sample(stage.technique, i, sink);
         found[static_cast<std::size_t>(k)] = std::move(sink.found);
     });
     std::vector<Path> seeds;

@@ -1,5 +1,6 @@
 // A constant factor of a density cancels where a kind is alone, and next to where it stands beside kinds that seldom
-// make the same paths. So the density of whole new paths is held against how many are made.
+// make the same paths. So the density of whole new paths is held against how many are made, joined to the lens straight
+// and by way of mirrors.
 #include "core/statistics.h"
 #include "sampling/paths/independent_paths.h"
 #include "sampling/proposals/registry.h"
@@ -11,7 +12,6 @@ namespace keyhole {
 namespace {
 
 constexpr int kMostScatterings = 8;
-constexpr std::int64_t kSamples = 60'000;
 
 Rng stream(std::uint64_t seed, std::int64_t i) { return {seed, StreamPurpose::test, static_cast<std::uint64_t>(i)}; }
 
@@ -33,19 +33,21 @@ struct DensityIntegral {
 
 struct SceneOfDensity {
     const char* name;
+    const ProposalKind* kind;
     std::unique_ptr<Scene> (*make)();
+    std::int64_t samples = 60'000;
 };
 
 class LightTracing_Density : public testing::TestWithParam<SceneOfDensity> {};
 
 TEST_P(LightTracing_Density, AddsUpToTheShareOfProposalsThatCarryLight) {
     const auto scene = GetParam().make();
-    const auto list = proposals::light_tracing.make({scene.get(), PathSet::stored, kMostScatterings});
+    const auto list = GetParam().kind->make({scene.get(), PathSet::stored, kMostScatterings});
     const Proposal<Path>& kind = *list.at(0).proposal;
 
     RunningStats integral, made;
     DensityIntegral sink{kind};
-    for (std::int64_t i = 0; i < kSamples; ++i) {
+    for (std::int64_t i = 0; i < GetParam().samples; ++i) {
         Rng rng = stream(31, i);
         const Vec2 image(static_cast<float>(rng.next()), static_cast<float>(rng.next()));
         sink.sum = 0;
@@ -62,11 +64,20 @@ TEST_P(LightTracing_Density, AddsUpToTheShareOfProposalsThatCarryLight) {
     EXPECT_NEAR(integral.mean(), made.mean(), 4 * std::hypot(integral.standard_error(), made.standard_error()));
 }
 
+const ProposalKind* const kStraight = &proposals::light_tracing;
+const ProposalKind* const kMirrored = &proposals::mirrored_light_tracing;
+std::unique_ptr<Scene> lens() { return test::mirror_glass_box(0.1f); }
+
 INSTANTIATE_TEST_SUITE_P(Scenes, LightTracing_Density,
-                         testing::Values(SceneOfDensity{"DiffuseBox", test::diffuse_box},
-                                         SceneOfDensity{"ThinLens", [] { return test::mirror_glass_box(0.1f); }},
-                                         SceneOfDensity{"PointLight", test::point_light_box},
-                                         SceneOfDensity{"Haze", test::hazy_box}),
+                         testing::Values(SceneOfDensity{"DiffuseBox", kStraight, test::diffuse_box},
+                                         SceneOfDensity{"ThinLens", kStraight, lens},
+                                         SceneOfDensity{"PointLight", kStraight, test::point_light_box},
+                                         SceneOfDensity{"Haze", kStraight, test::hazy_box},
+                                         SceneOfDensity{"MirrorCorner", kMirrored,
+                                                        [] { return test::mirror_corner_box(); }, 120'000},
+                                         SceneOfDensity{"MirrorCornerThinLens", kMirrored,
+                                                        [] { return test::mirror_corner_box(0.1f); }, 120'000},
+                                         SceneOfDensity{"MirrorCoat", kMirrored, test::coated_box, 300'000}),
                          [](const auto& info) { return info.param.name; });
 
 } // namespace

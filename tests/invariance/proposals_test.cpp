@@ -9,7 +9,13 @@ namespace keyhole {
 namespace {
 
 /// What a scene has for proposals of some kinds to do.
-enum class Specular { none, seldom_met, mirrors_and_glass };
+enum class Specular {
+    none,
+    seldom_met,
+    mirrors_and_glass,
+    flat_mirrors,
+    small_lamp_in_mirrors, ///< whose caustics, seen in a flat mirror, one independent path in 100,000 finds
+};
 
 struct SceneCase {
     const char* name;
@@ -20,8 +26,8 @@ struct SceneCase {
 
 const SceneCase kScenes[] = {
     {"DiffuseBox", test::diffuse_box, Specular::none},
-    {"MirrorGlassBox", [] { return test::mirror_glass_box(); }, Specular::mirrors_and_glass},
-    {"ThinLens", [] { return test::mirror_glass_box(0.1f); }, Specular::mirrors_and_glass},
+    {"MirrorGlassBox", [] { return test::mirror_glass_box(); }, Specular::small_lamp_in_mirrors},
+    {"ThinLens", [] { return test::mirror_glass_box(0.1f); }, Specular::small_lamp_in_mirrors},
     {"PointLight", test::point_light_box, Specular::mirrors_and_glass},
     {"TwoRooms", [] { return test::two_rooms(0.5f); }, Specular::none},
     {"RoomsLow",
@@ -29,9 +35,11 @@ const SceneCase kScenes[] = {
          return std::make_unique<Scene>(load_scene(KEYHOLE_SOURCE_DIR "/tests/data/rooms_low/rooms.yaml").description);
      },
      Specular::seldom_met},
+    {"MirrorCorner", [] { return test::mirror_corner_box(); }, Specular::flat_mirrors},
+    {"MirrorCornerThinLens", [] { return test::mirror_corner_box(0.1f); }, Specular::flat_mirrors},
     {"Furnace", [] { return test::furnace(0.6); }, Specular::none},
-    {"Haze", test::hazy_box, Specular::mirrors_and_glass},
-    {"Coat", test::coated_box, Specular::mirrors_and_glass},      // smooth, and rough below
+    {"Haze", test::hazy_box, Specular::flat_mirrors},
+    {"Coat", test::coated_box, Specular::flat_mirrors},           // smooth, and rough below
     {"Sky", test::sky_box, Specular::mirrors_and_glass, 200'000}, // few light paths come in
     {"DistantLight", test::distant_light_scene, Specular::mirrors_and_glass},
     {"Spot", test::spot_scene, Specular::mirrors_and_glass},
@@ -55,9 +63,16 @@ TEST_P(Proposal_LeavesTheTargetAlone, Alone) {
     const auto scene = scene_case.make();
     const ProposalContext context{scene.get(), PathSet::stored, 8};
     Mixture<Path> mixture;
+    if (kind.make(context).empty()) {
+        EXPECT_EQ(&kind, &proposals::mirrored_light_tracing);
+        EXPECT_LT(scene_case.specular, Specular::flat_mirrors);
+        return;
+    }
+    if (&kind == &proposals::mirrored_light_tracing && scene_case.specular == Specular::small_lamp_in_mirrors)
+        GTEST_SKIP() << "too few of the draws have what this kind makes; MirrorCorner has many";
     for (auto& [proposal, share] : kind.make(context)) mixture.add(std::move(proposal), share);
     // Caustics of lights that no ray from the eye can hit are missing from the target's draws by path tracing.
-    const bool from_light = &kind == &proposals::light_tracing;
+    const bool from_light = &kind == &proposals::light_tracing || &kind == &proposals::mirrored_light_tracing;
     const test::Invariance result =
         test::measure_invariance(*scene, mixture, PathSet::stored, scene_case.samples, 11, 8,
                                  from_light ? Technique::bidirectional : Technique::path);

@@ -151,6 +151,14 @@ std::unique_ptr<Scene> mirror_glass_box(float lens_radius) {
     return m.build();
 }
 
+std::unique_ptr<Scene> mirror_corner_box(float lens_radius) {
+    SceneMaker m = box_shell(make_mirror(Rgb(0.9)), lens_radius);
+    m.rectangle({-0.6f, 1.95f, -0.6f}, {1.2f, 0, 0}, {0, 0, 1.2f}, make_diffuse(Rgb(0.0)), Rgb(2.0));
+    m.rectangle({-0.2f, 0.2f, -0.95f}, {1.1f, 0, 0}, {0, 1.5f, 0}, make_mirror(Rgb(0.6, 0.8, 0.7)));
+    m.sphere({-0.45f, 0.4f, -0.4f}, 0.4f, make_mirror(Rgb(0.9)));
+    return m.build();
+}
+
 std::unique_ptr<Scene> parallel_sight_box(float lens_radius) {
     SceneMaker m = box_shell(make_mirror(Rgb(0.9)));
     add_light(m);

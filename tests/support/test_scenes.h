@@ -48,6 +48,10 @@ std::unique_ptr<Scene> diffuse_box();
 /// The same with a mirror wall, a mirror ball at the rear and a glass ball in front.
 std::unique_ptr<Scene> mirror_glass_box(float lens_radius = 0);
 
+/// A box with a mirror wall and a mirror before the rear wall, which meet in a corner, a mirror ball, and a lamp so
+/// large that paths from the eye find it readily.
+std::unique_ptr<Scene> mirror_corner_box(float lens_radius = 0);
+
 /// mirror_glass_box() seen along parallels from a plane within it.
 std::unique_ptr<Scene> parallel_sight_box(float lens_radius = 0);
 
