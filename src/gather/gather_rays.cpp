@@ -42,6 +42,9 @@ constexpr float kInTheSameLight = 0.5f;
 /// they are looked at there.
 constexpr double kLesserCaustic = 0.1, kLeastLook = 0.1;
 
+/// Of the radius of a lookup in the caustic map, how far photons are looked for whose light reaches its middle.
+constexpr float kFarthestReach = 1.5f;
+
 /// Photons of a caustic that are tested for sight, and photons that a lobe at the end of a gather ray is asked about.
 /// The error that a few more would save is one of this sample alone, and small beside its others.
 constexpr int kSights = 8, kPhotonsOfLobe = 16;
@@ -245,11 +248,27 @@ Rgb GatherRays::caustic_on_side(const Vertex& v, const Vec3& normal, const Vec3&
     const PhotonMap& photons = maps_.caustic->main_photons();
     const auto reflected = PhotonReflection::of_caustics(v, back, longer);
     const double area = around.area * p;
-    if (!around.partly_occluded) return estimate_density(photons, query.region, r, area, reflected).value;
-    const auto all = [&](const Photon& photon) { return luminance(reflected(photon) * photon.power()); };
+    // As much of each photon as goes by its own reach, from the surface that the lookup finds here.
+    const auto share = [&](const Photon& photon) {
+        const float reach = surroundings.reach(photon);
+        return query.region.distance2(photon.position()) <= reach * reach ? r * r / (reach * reach) : 0.0f;
+    };
+    const float farthest = std::min(kFarthestReach * r, query.max_radius);
+    if (!around.partly_occluded)
+        return estimate_density(photons, query.region, farthest, area,
+                                [&](const Photon& photon) {
+                                    const float part = share(photon);
+                                    return part > 0 ? reflected(photon) * static_cast<double>(part) : Rgb(0.0);
+                                })
+            .value;
+    const auto all = [&](const Photon& photon) {
+        return luminance(reflected(photon) * photon.power()) * static_cast<double>(share(photon));
+    };
     const auto seen = weight_in_sight(scene_, query.region, r, reflected);
-    const auto light = [&](const Photon& photon) { return seen(photon) * photon.power(); };
-    return sum_over_few(photons, {query.region, r, kSights}, all, light, source) / area;
+    const auto light = [&](const Photon& photon) {
+        return seen(photon) * photon.power() * static_cast<double>(share(photon));
+    };
+    return sum_over_few(photons, {query.region, farthest, kSights}, all, light, source) / area;
 }
 
 Rgb GatherRays::outlying_on_side(const Vertex& v, const Vec3& normal, const Vec3& back, int longer) const {

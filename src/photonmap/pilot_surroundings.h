@@ -1,4 +1,4 @@
-// What surface lies around pilot photons, for lookups near them.
+// What pilot photons tell of their surroundings: what surface lies there, and how far photons near them light it.
 #pragma once
 
 #include "photonmap/piloted_map.h"
@@ -16,9 +16,9 @@ namespace keyhole {
 /// first.
 class PilotSurroundings {
   public:
-    /// Refers to `pilots` and `patches`. The regions are those of queries for `k` photons within `max_radius` [m] that
+    /// Refers to `map` and `patches`. The regions are those of queries for `k` photons within `max_radius` [m] that
     /// shrink by `shrink` (PhotonQuery).
-    PilotSurroundings(const PhotonMap& pilots, const SurfacePatches& patches, int k, float max_radius, float shrink);
+    PilotSurroundings(const PilotedMap& map, const SurfacePatches& patches, int k, float max_radius, float shrink);
 
     /// Whether only what the middle of a region sees counts there.
     bool partly_occluded(const SurfaceRegion& region, const PilotedRegion& piloted) const;
@@ -26,7 +26,13 @@ class PilotSurroundings {
     /// measured: the pilot photons near by lie farther from the edge than a lookup at it.
     Surroundings around(const SurfaceRegion& region, const PilotedRegion& piloted) const;
 
-    std::size_t bytes() const { return known_.size() * sizeof(known_[0]); }
+    /// Radius of the region around a main photon itself [m]: as far as its light goes in an estimate that conserves
+    /// power (a kernel of variable width, Breiman, Meisel and Purcell 1977). A lookup's own region does not: one in the
+    /// dark grows until it has taken in k photons of the next spot, however far that is, and by 1 / r^2 a spot
+    /// of k photons would bring several times its power to all the surface around it.
+    float reach(const Photon& photon) const;
+
+    std::size_t bytes() const { return (known_.size() + reaches_.size()) * sizeof(Packed); }
 
   private:
     /// Share of the disc in steps of 1/255, a flag, and how far nothing stands around; 0: nobody asked yet.
@@ -37,11 +43,12 @@ class PilotSurroundings {
     Packed measure(const Photon& pilot) const;
     Surroundings own(const SurfaceRegion& region, float r) const;
 
-    const PhotonMap& pilots_;
+    const PhotonMap &pilots_, &main_photons_;
     const SurfacePatches& patches_;
     int k_;
     float max_radius_, shrink_;
     mutable std::vector<std::atomic<Packed>> known_;
+    mutable std::vector<std::atomic<std::uint16_t>> reaches_; ///< by photon, logarithms; 0: nobody asked yet
 };
 
 } // namespace keyhole

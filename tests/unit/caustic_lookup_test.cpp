@@ -32,7 +32,7 @@ TEST(CausticLookup, IsRightOnAverageWhereItIsDoneByChance) {
     const SurfacePatches patches(*scene);
     Rng rng = make_rng(1);
     const PilotedMap map({.pilots = throw_photons(kFloor, 500, rng), .main_photons = throw_photons(kFloor, 2000, rng)});
-    const PilotSurroundings surroundings(map.pilots(), patches, 40, 0.3f, 1);
+    const PilotSurroundings surroundings(map, patches, 40, 0.3f, 1);
     const GatherRays rays(*scene, {.caustic = &map, .caustic_surroundings = &surroundings, .patches = &patches},
                           {.nearest = 40, .max_radius = 0.3f, .caustic_radius = 0.3f}, 5);
     for (const Vec2& image : {Vec2(0.5f, 0.5f), Vec2(0.72f, 0.55f)}) {
@@ -63,7 +63,7 @@ TEST(CausticLookup, TellsWhatFallsOnTheFloorBesideAWall) {
         Rng rng = make_rng(i);
         const PilotedMap map(
             {.pilots = throw_photons(kFloor, 5000, rng), .main_photons = throw_photons(kFloor, 20'000, rng)});
-        const PilotSurroundings surroundings(map.pilots(), patches, 200, 0.3f, 1);
+        const PilotSurroundings surroundings(map, patches, 200, 0.3f, 1);
         const GatherRays rays(*scene, {.caustic = &map, .caustic_surroundings = &surroundings, .patches = &patches},
                               {.nearest = 200, .max_radius = 0.3f, .caustic_radius = 0.3f}, 5);
         for (std::size_t k = 0; k < places.size(); ++k) {
@@ -86,18 +86,9 @@ TEST(CausticLookup, TellsWhatFallsOnTheFloorBesideAWall) {
     }
 }
 
-/// Its region is four times as wide as that of a lookup, and ends before the floor and the wall do.
-TEST(CausticLookup, FindsAllThePowerOfAPhotonThatStandsAlone) {
-    const auto scene = fine_floor();
-    const SurfacePatches patches(*scene);
+/// Light that lookups find on the floor [W], by a lattice of points seen from above: what it reflects over 0.5 / pi.
+double power_found(const Scene& scene, const GatherRays& rays) {
     const Vec3 up(0, 1, 0);
-    PilotedMap map({.pilots = {}, .main_photons = {Photon({0.25f, 0, 0.5f}, up, up, Rgb(3.0))}});
-    const OutlyingPhotons outlying(map, 40, 0.05f, 1, &patches);
-    ASSERT_EQ(outlying.size(), 1u);
-    const PilotSurroundings surroundings(map.pilots(), patches, 40, 0.05f, 1);
-    const GatherRays rays(
-        *scene, {.caustic = &map, .caustic_surroundings = &surroundings, .outlying = &outlying, .patches = &patches},
-        {.nearest = 40, .max_radius = 0.05f, .caustic_radius = 0.05f}, 5);
     Rng rng = make_rng(1);
     constexpr int kPoints = 200; // across the floor
     double sum = 0;
@@ -106,11 +97,54 @@ TEST(CausticLookup, FindsAllThePowerOfAPhotonThatStandsAlone) {
         above.site = Site::point;
         above.p = {(static_cast<float>(i % kPoints) + 0.5f) / kPoints, 1,
                    (static_cast<float>(i / kPoints) + 0.5f) / kPoints};
-        const auto seen = next_vertex(*scene, above, -up);
-        if (seen->point.ng.y < 0.5f && seen->point.ng.y > -0.5f) continue; // the wall's edge
+        const auto seen = next_vertex(scene, above, -up);
+        if (std::abs(seen->point.ng.y) < 0.5f) continue; // the wall's edge
         sum += luminance(rays.caustic(seen.value(), up, 0, 1, rng)) / (kPoints * kPoints);
     }
-    EXPECT_NEAR(sum, 0.5 / kPi * 3, 0.02 * 0.5 / kPi * 3);
+    return sum / (0.5 / kPi);
+}
+
+/// Spots as a ball of small mirrors throws them, each of half as many photons again as a lookup asks for. By lookups
+/// that grow in the dark until they have so many, the floor between them had several times the power of the spots.
+TEST(CausticLookup, FindsNoMoreThanThePowerOfManySpots) {
+    const auto scene = fine_floor();
+    const SurfacePatches patches(*scene);
+    const Vec3 up(0, 1, 0);
+    Rng rng = make_rng(1);
+    PhotonSet photons;
+    constexpr int kPhotons = 90, kNearest = 60;
+    int spots = 0;
+    for (const float x : {0.125f, 0.375f, 0.625f, 0.875f})
+        for (const float z : {0.15f, 0.4f, 0.65f, 0.9f}) {
+            ++spots;
+            for (int i = 0; i < kPhotons + kPhotons / (kPilotEvery - 1); ++i) {
+                const auto [u, v] = rng.next_point();
+                const auto r = static_cast<float>(0.02 * std::sqrt(u)), angle = static_cast<float>(2 * kPi * v);
+                (i < kPhotons ? photons.main_photons : photons.pilots)
+                    .emplace_back(Vec3(x + r * std::cos(angle), 0, z + r * std::sin(angle)), up, up, Rgb(1.0));
+            }
+        }
+    const PilotedMap map(std::move(photons));
+    const PilotSurroundings surroundings(map, patches, kNearest, 0.3f, 1);
+    const GatherRays rays(*scene, {.caustic = &map, .caustic_surroundings = &surroundings, .patches = &patches},
+                          {.nearest = kNearest, .max_radius = 0.3f, .caustic_radius = 0.3f}, 5);
+    const double all = kPhotons * spots;
+    EXPECT_NEAR(power_found(*scene, rays), all, 0.05 * all);
+}
+
+/// Its region is four times as wide as that of a lookup, and ends before the floor and the wall do.
+TEST(CausticLookup, FindsAllThePowerOfAPhotonThatStandsAlone) {
+    const auto scene = fine_floor();
+    const SurfacePatches patches(*scene);
+    const Vec3 up(0, 1, 0);
+    PilotedMap map({.pilots = {}, .main_photons = {Photon({0.25f, 0, 0.5f}, up, up, Rgb(3.0))}});
+    const OutlyingPhotons outlying(map, 40, 0.05f, 1, &patches);
+    ASSERT_EQ(outlying.size(), 1u);
+    const PilotSurroundings surroundings(map, patches, 40, 0.05f, 1);
+    const GatherRays rays(
+        *scene, {.caustic = &map, .caustic_surroundings = &surroundings, .outlying = &outlying, .patches = &patches},
+        {.nearest = 40, .max_radius = 0.05f, .caustic_radius = 0.05f}, 5);
+    EXPECT_NEAR(power_found(*scene, rays), 3, 0.06);
 }
 
 } // namespace

@@ -70,7 +70,7 @@ std::vector<std::string> warnings(int spots, std::int64_t passes) {
     for (int i = 0; i < spots; ++i) throw_photons(floor, 1, rng, set.main_photons, Rgb(60.0 / spots));
     const PilotedMap map(std::move(set));
     const SurfacePatches patches(scene->shapes());
-    const PilotSurroundings surroundings(map.pilots(), patches, LookupOptions{}.nearest, 0.1f, 1);
+    const PilotSurroundings surroundings(map, patches, LookupOptions{}.nearest, 0.1f, 1);
     const GatherRays rays(*scene, {.caustic = &map, .caustic_surroundings = &surroundings, .patches = &patches},
                           {.max_radius = 0.1f, .caustic_radius = 0.1f}, 24);
     const FinalGather gather(rays, nullptr, nullptr, {.light = 4, .rays = 1});

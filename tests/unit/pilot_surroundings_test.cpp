@@ -38,7 +38,7 @@ RunningStats densities(const Scene& scene, float x) {
     RunningStats found;
     for (std::uint64_t i = 0; i < 200; ++i) {
         const PilotedMap map(photons_on_floor(i));
-        const PilotSurroundings surroundings(map.pilots(), patches, kNearest, kReach, 1);
+        const PilotSurroundings surroundings(map, patches, kNearest, kReach, 1);
         RunningStats along; // lookups of one map share photons
         for (float z = 0.05f; z < 1; z += 0.1f) {
             const SurfaceRegion region{{x, 0, z}, kUp};
@@ -80,7 +80,7 @@ TEST(PilotSurroundings, BeforeAWallAreNotThoseOfPhotonsBehindIt) {
     throw_photons(bright, 4000, rng, photons.main_photons);
     throw_photons(bright, 4000 / (kPilotEvery - 1), rng, photons.pilots);
     const PilotedMap map(std::move(photons));
-    const PilotSurroundings surroundings(map.pilots(), patches, kNearest, kReach, 1);
+    const PilotSurroundings surroundings(map, patches, kNearest, kReach, 1);
     for (float z = 0.05f; z < 1; z += 0.1f) {
         const SurfaceRegion region{{0.45f, 0, z}, kUp};
         const PilotedRegion piloted = piloted_region(map.pilots(), {region, kReach, kNearest});
@@ -94,8 +94,8 @@ TEST(PilotSurroundings, DoNotDependOnWhoAsksFirst) {
     const auto scene = floor_with_wall();
     const SurfacePatches patches(*scene);
     const PilotedMap map(photons_on_floor(1));
-    const PilotSurroundings up(map.pilots(), patches, kNearest, kReach, 1);
-    const PilotSurroundings down(map.pilots(), patches, kNearest, kReach, 1);
+    const PilotSurroundings up(map, patches, kNearest, kReach, 1);
+    const PilotSurroundings down(map, patches, kNearest, kReach, 1);
     const auto area = [&](const PilotSurroundings& surroundings, int i) {
         const SurfaceRegion region{{0.01f * static_cast<float>(i), 0, 0.5f}, kUp};
         return surroundings.around(region, piloted_region(map.pilots(), {region, kReach, kNearest})).area;

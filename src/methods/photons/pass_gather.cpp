@@ -58,8 +58,7 @@ PassGather::PassGather(const SamplerContext& c, const RenderPlan& plan, std::int
         const StageClock clock(stats, stages::irradiance);
         estimate_irradiance(c, radii, seed, stats, context);
         outlying_ = OutlyingPhotons(caustic_, static_cast<int>(s.nearest), radii.caustic, radii.shrink, &c.patches);
-        caustic_surroundings_.emplace(caustic_.pilots(), c.patches, static_cast<int>(s.nearest), radii.caustic,
-                                      radii.shrink);
+        caustic_surroundings_.emplace(caustic_, c.patches, static_cast<int>(s.nearest), radii.caustic, radii.shrink);
         stats.photon_bytes = std::max<std::uint64_t>(
             stats.photon_bytes, global_.bytes() + caustic_.bytes() + caustic_surroundings_->bytes() +
                                     (irradiance_ ? irradiance_->bytes() + direct_irradiance_->bytes() : 0));
