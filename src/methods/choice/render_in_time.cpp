@@ -143,7 +143,7 @@ class RenderInTime {
         tried_ = try_methods(trial_context());
         forget_rough_findings();
         if (tried_.empty()) return use(methods::path);
-        remarks_.push_back(describe_choice(tried_));
+        remarks_.push_back(describe_choice(trial_context(), tried_));
         take_over(tried_.front());
         at_choice_ = left();
     }
