@@ -142,9 +142,8 @@ void print_plan(const Json& plan) {
     std::string stages;
     for (const auto& [name, seconds] : plan["stages"].items())
         stages += fmt::format("{}{} {}", stages.empty() ? "" : ", ", name, duration(seconds.get<double>()));
-    fmt::print("{:<12}about {} of CPU time, besides {}the search for openings: {}\n", "time",
-               duration(plan["cpu_seconds"].get<double>()), plan["stages"].contains("trials") ? "" : "trials and ",
-               stages);
+    fmt::print("{:<12}about {} of CPU time{}: {}\n", "time", duration(plan["cpu_seconds"].get<double>()),
+               plan["stages"].contains("trials") ? "" : ", besides trials", stages);
 }
 
 } // namespace

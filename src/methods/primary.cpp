@@ -23,7 +23,7 @@ namespace {
 /// Rounds after the first batch: the brightness that weights refer to is brought up to date between them.
 constexpr std::int64_t kRounds = 64;
 
-/// Steps of all chains that a stop waits for, at most: a second or two.
+/// Steps of all chains in a round at most.
 constexpr std::int64_t kMostSteps = 1 << 20;
 
 /// So many steps of each chain, in `least` rounds at least.
@@ -152,8 +152,9 @@ bool draw(PrimaryChains& chains, const Scene& scene, const Settings& settings, W
     const LargeStepRule rule = large_step_rule(chains.counts());
     const PrimaryKernel kernel{settings.failures, settings.p_large.value.value_or(rule.p_large)};
     report_large_steps(rule, kernel.p_large, stats);
-    const std::int64_t drawn = rounds_of(batch.rest, chains.size(), kRounds).run(context, [&](std::int64_t n) {
-        chains.advance(kernel, n, context, deposit);
+    std::int64_t drawn = 0; // less than its rounds where one of them was stopped
+    rounds_of(batch.rest, chains.size(), kRounds).run(context, [&](std::int64_t n) {
+        drawn += chains.advance(kernel, n, context, deposit);
     });
     if (drawn < batch.rest && !work.is_first()) return false;
     work.unit().drawn->add(film, window.pixels() / static_cast<double>(drawn * chains.size()), work.half());

@@ -2,14 +2,12 @@
 
 #include "core/shared_work.h"
 #include "film/filter.h"
+#include "methods/choice/choose_by_work.h"
 #include "methods/choice/first_look.h"
-#include "methods/choice/method_trials.h"
 #include "methods/learned_direct_light_scope.h"
 #include "methods/method.h"
 #include "methods/render_paths.h"
 #include "session/work.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <string>
@@ -21,27 +19,6 @@ namespace {
 
 /// Photons that are read leave no choice.
 bool may_choose(const Settings& s) { return s.method == &methods::automatic && s.load_map.empty(); }
-
-/// By trials of a known amount of work. @param choice receives the choice in words.
-Settings choose(const TrialContext& c, std::string& choice) {
-    const std::vector<TriedMethod> tried = try_methods_by_work(c);
-    if (tried.empty()) { // none is done with the window without leaving holes in it
-        Settings s = c.settings;
-        s.method = can_show(c.scene, methods::ipm) ? &methods::ipm : &methods::path;
-        return s;
-    }
-    c.findings.forget_coverage();
-    choice = describe_choice(tried);
-    if (c.findings.plan && !c.findings.plan->photons)
-        choice += "; no photon maps: " + c.findings.plan->items.front().why;
-    Settings chosen = settings_of_same_work(c, tried);
-    for (const auto& [member, what] :
-         {std::pair{&Settings::spp, "samples a pixel"}, std::pair{&Settings::mutations, "mutations"}})
-        if (chosen.*member != c.settings.*member)
-            choice += fmt::format("; {} {} instead of {} take the work that the settings ask for", chosen.*member, what,
-                                  c.settings.*member);
-    return chosen;
-}
 
 } // namespace
 
@@ -67,14 +44,14 @@ RenderResult render(Scene& scene, const Settings& settings, const RunContext& co
         const RenderPaths found(scene, settings, user_paths, deciding);
         const UserPaths& paths = found.paths();
         findings.gain_by_openings = found.gain();
-        std::string choice;
-        const Settings chosen =
-            may_choose(settings) ? choose({scene, settings, none, deciding, paths, findings}, choice) : settings;
-        result = render_by_method({scene, chosen, paths, context, share, findings});
+        const ChosenByWork chosen = may_choose(settings)
+                                        ? choose_by_work({scene, settings, none, deciding, paths, findings})
+                                        : ChosenByWork{settings, ""};
+        result = render_by_method({scene, chosen.settings, paths, context, share, findings});
         result.settings = settings;
         direct_light.report(result.stats);
         found.report(result.stats);
-        if (!choice.empty()) result.stats.remarks.insert(result.stats.remarks.begin(), choice);
+        if (!chosen.why.empty()) result.stats.remarks.insert(result.stats.remarks.begin(), chosen.why);
     } catch (const Interrupted&) { // before there was a picture
         result.settings = settings;
         result.stats.complete = false;

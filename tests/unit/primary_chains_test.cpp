@@ -37,6 +37,30 @@ TEST(PrimaryChains, DepositTheBrightnessWithEveryStep) {
         }
 }
 
+// Whoever stops a render doesn't wait for the end of a round; what chains have found by then is a shorter one.
+TEST(PrimaryChains, EndAnywhereInARoundWhereTheyAreStopped) {
+    const auto scene = test::mirror_glass_box();
+    PrimaryStart start = PrimaryStart::by_length({scene.get(), 8}, nullptr, {.samples = 5000, .seed = 1}, RunContext{});
+    PrimaryChains chains(start.choose_seeds(30, 0), 1, false);
+    const double brightness = chains.brightness();
+    StopToken stop;
+    RunContext context;
+    context.stop = &stop;
+    double luminances = 0;
+    with_threads(1, [&] {
+        const std::int64_t done =
+            chains.advance({Failures::exclude_large, 0.3}, 100'000, context, [&](const Splat& s, double factor) {
+                stop.request();
+                luminances += luminance(s.value) * factor;
+            });
+        EXPECT_LT(done, 100);
+        EXPECT_EQ(chains.steps(), done);
+        const double expected = static_cast<double>(done * chains.size()) * brightness;
+        EXPECT_NEAR(luminances, expected, 1e-9 * expected);
+        EXPECT_EQ(chains.advance({Failures::exclude_large, 0.3}, 1, context), 1);
+    });
+}
+
 // Numbers written where the other technique doesn't read them lead to another path. That is found out only where they
 // are read: moves would be made one way and refused the other, and one technique starved.
 TEST(PrimaryChains, ChangeTechniquesOnlyWhereTheWayBackIsThere) {

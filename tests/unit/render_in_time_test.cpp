@@ -121,6 +121,21 @@ TEST(AutoInTime, ChoosesAMethodThatKeepsPhotonsWhereTheyAreToBeSaved) {
     EXPECT_TRUE(std::filesystem::exists(s.save_map));
 }
 
+// A method that isn't named is taken for one that has lost.
+TEST(AutoInTime, NamesEveryMethodThatItTriedOrHadNoTimeFor) {
+    const auto scene = test::diffuse_box();
+    const RenderResult result = render_by_auto(*scene, {}, 0.5 * test::kSlowdown);
+    const auto choice = std::ranges::find_if(result.stats.remarks, [&](const std::string& remark) {
+        return remark.find("chosen by trial") != std::string::npos;
+    });
+    ASSERT_NE(choice, result.stats.remarks.end());
+    for (const Method* method : all_methods()) {
+        if (method->trial.share > 0) {
+            EXPECT_THAT(*choice, testing::ContainsRegex("[ ,]" + std::string(method->name) + "( |,|$)"));
+        }
+    }
+}
+
 TEST(AutoInTime, SaysWhenThereIsNoTimeForPhotonsThatWereToBeSaved) {
     const auto scene = ball_outdoors();
     const ScratchDirectory directory;

@@ -1,7 +1,9 @@
 #include "methods/choice/expected_cost.h"
 
-#include "methods/choice/method_trials.h"
-#include "methods/method.h"
+#include "core/shared_work.h"
+#include "methods/choice/choose_by_work.h"
+#include "methods/learned_direct_light_scope.h"
+#include "methods/render_paths.h"
 
 #include <algorithm>
 
@@ -9,18 +11,52 @@ namespace keyhole {
 namespace {
 
 /// What a trial of one method should take, and may take; what those of all methods may [s].
-constexpr double kTrialOfCost = 0.1, kLongest = 0.6, kAll = 0.6;
+constexpr double kTrialOfCost = 0.1, kLongest = 0.6, kAll = 3;
 /// More time than any trial waits for: only the caps on trials count.
 constexpr double kEver = 1e6;
+/// A plan prepares for no more than so many seconds: of what a longer render finds out, this is told by as much.
+constexpr double kPrepared = 60;
 
-/// Trials with so much time left.
-template <class Body> auto with_time(const TrialContext& c, double seconds, const Body& body) {
-    StopToken stop;
-    stop.set_cpu_limit(cpu_seconds() + seconds);
+/// So much CPU time from now on.
+class TimeLeft {
+  public:
+    explicit TimeLeft(double seconds) {
+        stop_.set_cpu_limit(cpu_seconds() + seconds);
+        context.stop = &stop_;
+    }
+    TimeLeft(const TimeLeft&) = delete;
+    TimeLeft& operator=(const TimeLeft&) = delete;
+
     RunContext context;
-    context.stop = &stop;
-    return body(TrialContext{c.scene, c.settings, c.given, context, c.user_paths, c.findings});
-}
+
+  private:
+    StopToken stop_;
+};
+
+/// What a render finds out before its trials, and makes them with.
+class Preparation {
+  public:
+    /// @throws InputError and Interrupted
+    Preparation(Scene& scene, const Settings& settings, const UserPathFile& user_paths, const RunContext& context)
+        : direct_light_(scene, settings, context), paths_(scene, settings, user_paths, context) {
+        findings_.gain_by_openings = paths_.gain();
+    }
+    const UserPaths& paths() const { return paths_.paths(); }
+    Findings& findings() { return findings_; }
+
+    void report(ExpectedCost& expected) const {
+        RenderStats stats;
+        direct_light_.report(stats);
+        paths_.report(stats);
+        for (const StageStats& stage : stats.stages) expected.stages.emplace_back(stage.stage->name, stage.cpu_seconds);
+        expected.remarks.insert(expected.remarks.end(), stats.remarks.begin(), stats.remarks.end());
+    }
+
+  private:
+    LearnedDirectLightScope direct_light_;
+    RenderPaths paths_;
+    Findings findings_; // of trials: those of a plan come from more paths
+};
 
 Settings settings_in_time(const TrialCost& cost, Settings s, const std::set<std::string>& given, double pixels,
                           double seconds) {
@@ -32,7 +68,63 @@ Settings settings_in_time(const TrialCost& cost, Settings s, const std::set<std:
 }
 
 std::optional<TrialCost> cost_of(const TrialContext& c, const Method& method) {
-    return with_time(c, kEver, [&](const TrialContext& t) { return try_cost(t, method, kTrialOfCost, kLongest); });
+    const TimeLeft ever(kEver);
+    return try_cost({c.scene, c.settings, c.given, ever.context, c.user_paths, c.findings}, method, kTrialOfCost,
+                    kLongest);
+}
+
+/// The method of `s` for a render of so many seconds becomes the one that `auto` takes. @returns its cost
+std::optional<TrialCost> choose_in_time(const TrialContext& c, Settings& s, ExpectedCost& expected) {
+    std::vector<TriedMethod> tried = try_methods(c, kAll);
+    if (tried.empty()) {
+        s.method = &methods::path;
+        return std::nullopt;
+    }
+    expected.remarks.push_back(describe_choice(c, tried));
+    s.method = tried.front().method;
+    return std::move(tried.front().of);
+}
+
+void add_stages(ExpectedCost& expected, const Experience& cost, const Settings& s, double pixels) {
+    for (const auto& [stage, taken] : cost.stages)
+        expected.stages.emplace_back(stage->name, cost.predict(*stage, taken, s, pixels));
+}
+
+/// Of a render that the settings say the length of.
+void expect_by_work(ExpectedCost& expected, Scene& scene, Settings& s, const UserPathFile& user_paths) {
+    const RunContext none;
+    const std::set<std::string> given;
+    Preparation before(scene, s, user_paths, none);
+    const TrialContext c{scene, s, given, none, before.paths(), before.findings()};
+    if (s.method == &methods::automatic) {
+        ChosenByWork chosen = choose_by_work(c);
+        if (!chosen.why.empty()) expected.remarks.push_back(std::move(chosen.why));
+        s = std::move(chosen.settings);
+    }
+    before.report(expected);
+    if (const auto cost = cost_of(c, *s.method)) add_stages(expected, cost->cost, s, scene.camera().window().size());
+}
+
+/// Of one that fills a time. It has its trials within that, and makes none where somebody named a method that samples
+/// pixels.
+void expect_in_time(ExpectedCost& expected, Scene& scene, Settings& s, const UserPathFile& user_paths, double time,
+                    const std::set<std::string>& given) {
+    if (!given.contains("brightness_error")) s.brightness_error = 0; // stage one gets its part, no more
+    const TimeLeft all(time), prepared(std::min(time, kPrepared));
+    Preparation before(scene, s, user_paths, prepared.context);
+    const TrialContext c{scene, s, given, all.context, before.paths(), before.findings()};
+    const double start = cpu_seconds(), pixels = scene.camera().window().size();
+    const bool chooses = s.method == &methods::automatic, tries = chooses || !s.method->samples_pixels;
+    Settings chosen = s;
+    std::optional<TrialCost> cost;
+    if (chooses) cost = choose_in_time(c, chosen, expected);
+    if (!cost) cost = cost_of(c, *chosen.method);
+    s = std::move(chosen);
+    before.report(expected);
+    if (!cost) return;
+    if (tries) expected.stages.emplace_back(stages::trials.name, std::min(cpu_seconds() - start, time));
+    s = settings_in_time(*cost, s, given, pixels, std::max(0.0, time - expected.cpu_seconds()));
+    add_stages(expected, cost->cost, s, pixels);
 }
 
 } // namespace
@@ -43,44 +135,19 @@ double ExpectedCost::cpu_seconds() const {
     return sum;
 }
 
-ExpectedCost expect_cost(Scene& scene, const Settings& settings, const UserPathFile& user_paths, Findings& findings,
-                         std::optional<double> time, const std::set<std::string>& given) {
-    const double start = cpu_seconds();
-    double trials = 0; // CPU seconds of those that a render makes as well
-    const UserPaths paths = bind_user_paths(scene, user_paths);
-    const RunContext none;
-    Settings s = settings;
-    const TrialContext c{scene, s, given, none, paths, findings};
-    const double pixels = scene.camera().window().size();
+ExpectedCost expect_cost(Scene& scene, const Settings& settings, const UserPathFile& user_paths,
+                         const Findings& findings, std::optional<double> time, const std::set<std::string>& given) {
     ExpectedCost expected;
-    if (settings.method == &methods::automatic) {
-        double seconds = time.value_or(kEver);
-        if (!time) {
-            s.method = &methods::ipm;
-            const auto ipm = can_show(scene, *s.method) ? cost_of(c, *s.method) : std::nullopt;
-            if (ipm) seconds = ipm->cost.predict(s, pixels);
-        }
-        const auto tried = with_time(c, seconds, [](const TrialContext& t) { return try_methods(t, kAll); });
-        trials = cpu_seconds() - start;
-        if (!tried.empty()) {
-            expected.remarks.push_back(describe_choice(tried));
-            if (time)
-                s.method = tried.front().method;
-            else
-                s = settings_of_same_work(c, tried);
-        }
+    Settings s = settings;
+    try {
+        if (time)
+            expect_in_time(expected, scene, s, user_paths, *time, given);
+        else
+            expect_by_work(expected, scene, s, user_paths);
+    } catch (const Interrupted&) { // too slow to tell
+        if (s.method == &methods::automatic) s.method = &methods::path;
     }
     expected.method = s.method->name;
-    const auto cost = cost_of(c, *s.method);
-    if (cost && time) {
-        // A render has its trials within the time, and makes none where somebody named a method that samples pixels.
-        if (settings.method != &methods::automatic && !s.method->samples_pixels) trials = cpu_seconds() - start;
-        if (trials > 0) expected.stages.emplace_back(stages::trials.name, std::min(trials, *time));
-        s = settings_in_time(*cost, s, given, pixels, *time - expected.cpu_seconds());
-    }
-    if (cost)
-        for (const auto& [stage, taken] : cost->cost.stages)
-            expected.stages.emplace_back(stage->name, cost->cost.predict(*stage, taken, s, pixels));
     if (s.method->keeps_photons && findings.plan && findings.plan->photons)
         expected.photon_bytes = static_cast<std::uint64_t>(s.photon_memory);
     return expected;

@@ -15,6 +15,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace keyhole {
 namespace {
@@ -119,18 +120,16 @@ std::optional<TrialRender> render_trial(const TrialContext& c, Settings settings
     // Light paths that are told where to go bring many times the photons of a trial's: up to what is allowed, then.
     settings.photons = std::max<std::int64_t>(
         1, static_cast<std::int64_t>(r.stats.photons_global + r.stats.photons_caustic) / settings.passes);
-    const Experience cost = in_time ? Experience(settings, effort, pixels, r.stats, start - context.seconds_left())
-                                    : Experience::in_rays(settings, effort, pixels, r.stats);
+    TrialCost of = in_time ? cost_of_render(settings, effort, pixels, r.stats, start - context.seconds_left())
+                           : TrialCost{.cost = Experience::in_rays(settings, effort, pixels, r.stats),
+                                       .taken = 0,
+                                       .samples = r.stats.samples,
+                                       .balance = {},
+                                       .noise = std::nullopt};
+    if (!in_time) of.taken = of.cost.total();
     Image all = luminance_of(r.picture);
     const double caustic = share_of(luminance_of(r.picture, "caustic"), all);
-    return TrialRender{std::move(all),
-                       luminance_of(r.picture, "direct"),
-                       caustic,
-                       {.cost = cost,
-                        .taken = in_time ? start - context.seconds_left() : cost.total(),
-                        .samples = r.stats.samples,
-                        .balance = in_time ? rebalance({}, r.stats) : StageBalance(),
-                        .noise = in_time ? r.stats.photon_quality.noise : std::nullopt}};
+    return TrialRender{std::move(all), luminance_of(r.picture, "direct"), caustic, std::move(of)};
 }
 
 /// The same under a cap; none if it was given up.
@@ -226,6 +225,11 @@ std::optional<TriedMethod> try_method(const TrialContext& c, const Method& metho
     });
 }
 
+/// In a time.
+bool may_try(const TrialContext& c, const Method& method) {
+    return method.trial.share > 0 && can_do(c.scene, c.settings, method);
+}
+
 /// Rays that light tracing by importance would take with the settings, or else the first of the methods.
 double work_asked_for(const TrialContext& c, std::span<const TriedMethod> tried) {
     const double pixels = c.scene.camera().window().size();
@@ -253,6 +257,15 @@ Settings TrialCost::settings_for(const Settings& s, const std::set<std::string>&
     return noise ? split_stage_three(even, cost, *noise, pixels, given) : even;
 }
 
+TrialCost cost_of_render(const Settings& settings, double effort, double pixels, const RenderStats& stats,
+                         double seconds) {
+    return {.cost = Experience(settings, effort, pixels, stats, seconds),
+            .taken = seconds,
+            .samples = stats.samples,
+            .balance = rebalance({}, stats),
+            .noise = stats.photon_quality.noise};
+}
+
 std::optional<TrialCost> try_cost(const TrialContext& c, const Method& method, double seconds, double most) {
     const WindowScope window(c.scene, c.settings, trial_window(c.scene.camera().window(), kTrialsOfATrial * seconds));
     Settings s = trial_settings(c, method, effort_of(seconds));
@@ -270,7 +283,7 @@ std::vector<TriedMethod> try_methods(const TrialContext& c, double most) {
     std::vector<TriedMethod> tried;
     for (const Method* method : all_methods()) {
         const double part = method->trial.share * budget;
-        if (part == 0 || !can_do(c.scene, c.settings, *method)) continue;
+        if (!may_try(c, *method)) continue;
         const double before = start - c.context.stop->seconds_left();
         if (c.context.stopped() || before - beyond + part > budget || before > kMostWithPhotons * start) break;
         if (method->keeps_photons && !plan(c, std::min(kPlan * start, most))) continue;
@@ -323,12 +336,19 @@ Settings settings_of_same_work(const TrialContext& c, std::span<const TriedMetho
     return s;
 }
 
-std::string describe_choice(std::span<const TriedMethod> tried) {
+std::string describe_choice(const TrialContext& c, std::span<const TriedMethod> tried) {
     std::string text =
         fmt::format("method {} chosen by trial: squared relative errors for this time or work would be about",
                     tried.front().method->name);
     for (const TriedMethod& t : tried)
         text += fmt::format("{} {} {:.2g}", &t == tried.data() ? "" : ",", t.method->name, t.predicted);
+    const char* before = "; there was too little time to try ";
+    for (const Method* method : all_methods()) {
+        if (!std::isfinite(c.context.seconds_left()) || !may_try(c, *method) ||
+            std::ranges::find(tried, method, &TriedMethod::method) != tried.end())
+            continue;
+        text += std::exchange(before, ", ") + std::string(method->name);
+    }
     return text;
 }
 

@@ -30,6 +30,10 @@ struct TrialCost {
                           double& effort) const;
 };
 
+/// What a render of so many seconds tells.
+TrialCost cost_of_render(const Settings& settings, double effort, double pixels, const RenderStats& stats,
+                         double seconds);
+
 /// A method after its trial: two independent renders of a small window.
 struct TriedMethod {
     const Method* method;
@@ -70,8 +74,8 @@ std::vector<TriedMethod> try_methods_by_work(const TrialContext& c);
 /// `c`, found by try_methods_by_work().
 Settings settings_of_same_work(const TrialContext& c, std::span<const TriedMethod> tried);
 
-/// In words, for the record: the method, and by how much it is ahead.
-std::string describe_choice(std::span<const TriedMethod> tried);
+/// In words, for the record: the method, by how much it is ahead, and what there was too little time to try.
+std::string describe_choice(const TrialContext& c, std::span<const TriedMethod> tried);
 
 /// Warns of light that `method` found in a few bright samples of its trial only, and another one everywhere.
 void warn_of_dots(const Method& method, const TrialError& error, RenderStats& stats);

@@ -3,6 +3,8 @@
 #include "core/error.h"
 #include "core/shared_work.h"
 #include "methods/choice/affordable.h"
+#include "methods/choice/differences.h"
+#include "methods/choice/effort.h"
 #include "methods/choice/filtered_grain.h"
 #include "methods/choice/first_look.h"
 #include "methods/choice/mean_render.h"
@@ -44,22 +46,10 @@ constexpr double kTooMuch = 0.8;
 constexpr double kLeast = 0.05;
 /// The trial of a method by name: of the time, what it is to take and what it may take.
 constexpr double kTrialShare = 0.02, kLongestTrial = 0.6, kTrialSeconds = 0.5;
-
-/// " key=value" for each setting of `b` that `a` has otherwise.
-std::string differences(const Settings& a, const Settings& b) {
-    const auto list = [](const Settings& s) {
-        std::vector<std::string> texts;
-        visit_settings(s, [&](const char* key, const auto& value, const auto&...) {
-            texts.push_back(fmt::format(" {}={}", key, printable(value)));
-        });
-        return texts;
-    };
-    const std::vector<std::string> from = list(a), to = list(b);
-    std::string text;
-    for (std::size_t i = 0; i < to.size(); ++i)
-        if (to[i] != from[i]) text += to[i];
-    return text;
-}
+/// The same of one with photons: the least that it can do may take most of the time, and makes a picture.
+constexpr double kLongestWithPhotons = 0.25;
+/// Of the first render where a trial took too long, whose cost tells what others take.
+constexpr double kEffortWithoutTrial = 1e-4;
 
 /// Renders a scene for as long as there is time.
 class RenderInTime {
@@ -133,17 +123,17 @@ class RenderInTime {
             if (method_->samples_pixels && !fills_passes(settings_)) return;
             const StageClock clock(trials_, stages::trials);
             const double seconds = std::min(kTrialShare * start_, kTrialSeconds);
-            cost_ = try_cost(trial_context(), *method_, seconds,
-                             method_->samples_pixels ? seconds : kLongestTrial * start_);
+            const double longest = (method_->keeps_photons ? kLongestWithPhotons : kLongestTrial) * start_;
+            cost_ = try_cost(trial_context(), *method_, seconds, method_->samples_pixels ? seconds : longest);
             forget_rough_findings();
-            if (!cost_ && !method_->samples_pixels) throw Interrupted();
+            if (!cost_ && !method_->samples_pixels && !method_->keeps_photons) throw Interrupted();
             return;
         }
         const StageClock clock(trials_, stages::trials);
         tried_ = try_methods(trial_context());
         forget_rough_findings();
         if (tried_.empty()) return use(methods::path);
-        remarks_.push_back(describe_choice(tried_));
+        remarks_.push_back(describe_choice(trial_context(), tried_));
         take_over(tried_.front());
         at_choice_ = left();
     }
@@ -218,6 +208,7 @@ class RenderInTime {
             if (!given_.contains("spp")) s.spp = 1 << 24;
             return s;
         }
+        if (!cost_) return with_effort(s, effort_ = kEffortWithoutTrial, static_cast<std::int64_t>(pixels_), given_);
         s = cost_->settings_for(s, given_, pixels_, kUse * seconds, effort_);
         gives_too_much_ = cost_of_given(cost_->cost, settings_, given_, pixels_) > kTooMuch * seconds;
         planned_spp_ = s.spp;
@@ -267,8 +258,9 @@ class RenderInTime {
         limited.whole_round = last && mean_.empty(); // a noisy picture is better than one with holes
         if (!last) limited.reserve = std::max(0.0, start - seconds);
         WorkPartition share = share_to_look_at();
-        limited.by_time = last && chosen.passes == 1 && !given_.contains("cache_rays") && !given_.contains("spp");
-        if (method_->keeps_photons) {
+        limited.by_time = last && chosen.passes == 1 && (cost_ || !method_->keeps_photons) &&
+                          !given_.contains("cache_rays") && !given_.contains("spp");
+        if (method_->keeps_photons && cost_) {
             if (cost_->noise)
                 limited.rays_for_pixel = rays_for_pixel(*cost_->noise, cost_->cost, static_cast<double>(planned_spp_));
             Settings planned = chosen;
@@ -291,7 +283,9 @@ class RenderInTime {
         if (effort_ > 0) result.stats.effort = effort_;
         result.stats.remarks.push_back("set by the time:" + differences(settings_, chosen));
         result.settings = chosen;
-        if (cost_ && (method_->keeps_photons || result.stats.complete))
+        if (method_->keeps_photons && !cost_ && !fills_passes(settings_))
+            cost_ = cost_of_render(chosen, effort_, pixels_, result.stats, start - left());
+        else if (cost_ && (method_->keeps_photons || result.stats.complete))
             cost_->cost = Experience(chosen, effort_, pixels_, result.stats, start - left());
         used_up_ = used_up_ || fills_passes(settings_);
         return Part{std::move(result), start - left()};

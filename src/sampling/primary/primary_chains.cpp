@@ -2,6 +2,8 @@
 
 #include "core/parallel.h"
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -14,6 +16,9 @@ constexpr int kMostLeftOut = 10'000;
 
 /// How often a change of technique goes before a step.
 constexpr double kChange = 0.25;
+
+/// From one look at the stop to the next, about [s]: who stops a render waits a second at most.
+constexpr double kBetweenLooks = 0.1;
 
 /// The number that chooses a technique, where a seed prescribes one.
 class Fixed final : public SampleSource {
@@ -37,9 +42,10 @@ template <class Store> class PrimaryChains::DepositingChain {
     DepositingChain(Chain& chain, bool large_count, Store store)
         : chain_(chain), large_count_(large_count), store_(std::move(store)) {}
 
-    /// Makes so many steps and deposits all that they bring. `change` goes before some of them.
+    /// Makes so many steps. `change` goes before some of them. What they bring is deposited by then or by finish(), so
+    /// that a round is the same however its steps are parted.
     void make_steps(const PrimaryKernel& kernel, std::int64_t steps, const std::optional<ReversibleJump>& change) {
-        int left_out = 0;
+        chain_.state.set_path_kept(false); // others had the thread's rooms
         for (std::int64_t done = 0; done < steps;) {
             if (change && chain_.rng.next() < kChange) {
                 drop_candidate();
@@ -47,10 +53,13 @@ template <class Store> class PrimaryChains::DepositingChain {
                 if (change->move(chain_.state, chain_.rng, chain_.changes)) leave(chain_.state.candidate());
             }
             const bool counts = kernel.step(*this, chain_.rng, chain_.counts, *this);
-            left_out = counts ? 0 : left_out + 1;
-            if (left_out == kMostLeftOut) (*this)(false, 1, false), left_out = 0, ++done;
+            chain_.left_out = counts ? 0 : chain_.left_out + 1;
+            if (chain_.left_out == kMostLeftOut) (*this)(false, 1, false), chain_.left_out = 0, ++done;
             done += counts ? 1 : 0;
         }
+    }
+    /// Ends a round.
+    void finish() {
         drop_candidate();
         leave(chain_.state.sample());
         for (std::uint64_t i = 0; i < chain_.counts.large.failed; ++i) chain_.large.add(0); // of target 0
@@ -64,7 +73,7 @@ template <class Store> class PrimaryChains::DepositingChain {
     double target() const { return chain_.state.target(); }
     void accept() {
         leave(chain_.state.sample());
-        chain_.stay = std::exchange(candidate_, 0);
+        chain_.stay = std::exchange(chain_.candidate, 0);
         chain_.state.accept();
     }
     void operator()(bool candidate, double weight, bool large) {
@@ -73,14 +82,14 @@ template <class Store> class PrimaryChains::DepositingChain {
             return;
         }
         if (large) chain_.large.add(chain_.state.candidate().target());
-        candidate_ = weight + (large && large_count_ ? 1 : 0);
+        chain_.candidate = weight + (large && large_count_ ? 1 : 0);
     }
 
   private:
     /// Deposits what wasn't accepted.
     void drop_candidate() {
-        if (candidate_ > 0) store_(chain_.state.candidate(), candidate_);
-        candidate_ = 0;
+        if (chain_.candidate > 0) store_(chain_.state.candidate(), chain_.candidate);
+        chain_.candidate = 0;
     }
     /// Deposits `state`, which is the chain's or was it until now.
     void leave(const PathSample& state) {
@@ -91,7 +100,6 @@ template <class Store> class PrimaryChains::DepositingChain {
     Chain& chain_;
     bool large_count_;
     Store store_;
-    double candidate_ = 0; ///< weight that the candidate is to be deposited with
 };
 
 PrimaryChains::PrimaryChains(const std::vector<PrimaryStratum>& strata, std::uint64_t seed, bool mis_of_large_steps,
@@ -130,33 +138,57 @@ PrimaryChains::Weights PrimaryChains::weights(std::size_t stratum, const Primary
             static_cast<double>(size()) / static_cast<double>(members_[stratum])};
 }
 
-void PrimaryChains::advance(const PrimaryKernel& kernel, std::int64_t steps, const RunContext& context,
-                            const Deposit& deposit) {
+std::int64_t PrimaryChains::advance(const PrimaryKernel& kernel, std::int64_t steps, const RunContext& context,
+                                    const Deposit& deposit) {
     std::vector<Weights> by_stratum;
     for (std::size_t k = 0; k < strata_->size(); ++k) by_stratum.push_back(weights(k, kernel));
     const double brightness = this->brightness();
-    parallel_for(size(), [&](std::int64_t c) {
-        Chain& chain = *chains_[static_cast<std::size_t>(c)];
-        const Weights& weights = by_stratum[chain.stratum];
-        chain.begin_round();
-        DepositingChain space(chain, weights.large > 0, [&](const PathSample& sample, double weight) {
-            if (!deposit) return;
-            const double factor = weight * weights.factor(sample.target());
-            for (const Splat& s : sample.splats()) {
-                monitor_.add(c, s.image, luminance(s.value) * factor / brightness);
-                deposit(s, factor);
-            }
+    const auto for_each = [&](const auto& body) {
+        parallel_for(size(), [&](std::int64_t c) {
+            Chain& chain = *chains_[static_cast<std::size_t>(c)];
+            const Weights& weights = by_stratum[chain.stratum];
+            DepositingChain space(chain, weights.large > 0, [&](const PathSample& sample, double weight) {
+                if (!deposit) return;
+                const double factor = weight * weights.factor(sample.target());
+                for (const Splat& s : sample.splats()) {
+                    monitor_.add(c, s.image, luminance(s.value) * factor / brightness);
+                    deposit(s, factor);
+                }
+            });
+            body(space, (*strata_)[chain.stratum]);
         });
-        space.make_steps(kernel, steps, (*strata_)[chain.stratum].change);
-        context.advance(steps);
+    };
+    for (const auto& chain : chains_) chain->begin_round();
+    const std::int64_t done = run_until_stopped(steps, context, [&](std::int64_t n) {
+        for_each([&](auto& space, const PrimaryStratum& stratum) {
+            space.make_steps(kernel, n, stratum.change);
+            context.advance(n);
+        });
     });
+    for_each([](auto& space, const PrimaryStratum& /*stratum*/) { space.finish(); });
     for (const auto& chain : chains_) {
         counts_[chain->stratum] += chain->counts;
         large_[chain->stratum].merge(chain->large);
         changes_ += chain->changes;
     }
-    if (deposit) monitor_.end_round(steps);
-    steps_ += steps;
+    if (deposit) monitor_.end_round(done);
+    steps_ += done;
+    return done;
+}
+
+template <class Make>
+std::int64_t PrimaryChains::run_until_stopped(std::int64_t steps, const RunContext& context, const Make& make) {
+    using Clock = StopToken::Clock;
+    std::int64_t done = 0;
+    while (done < steps && !(done > 0 && context.stopped())) {
+        const std::int64_t n = std::min(between_looks_, steps - done);
+        const auto start = Clock::now();
+        make(n);
+        done += n;
+        const bool soon = std::chrono::duration<double>(Clock::now() - start).count() < kBetweenLooks;
+        between_looks_ = soon ? std::max(between_looks_, 2 * n) : std::max<std::int64_t>(1, n / 2);
+    }
+    return done;
 }
 
 PrimaryCounts PrimaryChains::counts() const {

@@ -29,9 +29,10 @@ class PrimaryChains {
 
     /// Advances every chain by `steps` steps, some of them after a change of technique where the stratum has that, not
     /// counting proposals that are left out. Without a first batch nothing is known of how many are: see
-    /// PrimaryKernel::failures. Without `deposit` nothing is deposited.
-    void advance(const PrimaryKernel& kernel, std::int64_t steps, const RunContext& context,
-                 const Deposit& deposit = nullptr);
+    /// PrimaryKernel::failures. Without `deposit` nothing is deposited. After a stop all chains end at the same,
+    /// earlier step: a valid shorter round. @returns the steps that each chain has made, one at least
+    std::int64_t advance(const PrimaryKernel& kernel, std::int64_t steps, const RunContext& context,
+                         const Deposit& deposit = nullptr);
 
     std::int64_t size() const { return static_cast<std::int64_t>(chains_.size()); }
     /// Counted steps that each chain has made.
@@ -54,8 +55,10 @@ class PrimaryChains {
         PrimaryState state;
         PrimaryCounts counts;
         ChangeCounts changes;
-        RunningStats large; ///< targets of large steps, of a round
-        double stay = 0;    ///< weight that the state has gained and not yet deposited
+        RunningStats large;   ///< targets of large steps, of a round
+        double stay = 0;      ///< weight that the state has gained and not yet deposited
+        double candidate = 0; ///< weight that the candidate is to be deposited with
+        int left_out = 0;     ///< proposals in a row
 
         Chain(const PathBuilder& builder, std::size_t of, const Rng& random)
             : stratum(of), rng(random), state(builder, rng) {}
@@ -63,7 +66,7 @@ class PrimaryChains {
             counts = {};
             changes = {};
             large = {};
-            state.set_path_kept(false);
+            left_out = 0;
         }
     };
     /// What a deposit is divided by.
@@ -77,6 +80,9 @@ class PrimaryChains {
         double mean, error; ///< of the brightness of a stratum
     };
     template <class Store> class DepositingChain;
+    /// Calls make(n) for n steps of each chain at a time. @returns the steps that were made
+    template <class Make>
+    std::int64_t run_until_stopped(std::int64_t steps, const RunContext& context, const Make& make);
     Estimate estimate(std::size_t stratum) const;
     Weights weights(std::size_t stratum, const PrimaryKernel& kernel) const;
 
@@ -89,6 +95,7 @@ class PrimaryChains {
     ChangeCounts changes_;
     ConvergenceMonitor monitor_;
     std::int64_t steps_ = 0;
+    std::int64_t between_looks_ = 8; ///< steps of each chain, from one look at the stop to the next
 };
 
 } // namespace keyhole
