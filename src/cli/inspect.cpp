@@ -4,6 +4,7 @@
 #include "cli/pictures/files_apart.h"
 #include "cli/program.h"
 #include "cli/progress/interrupt.h"
+#include "cli/progress/terminal_progress.h"
 #include "cli/words/report.h"
 #include "cli/words/tell.h"
 #include "core/error.h"
@@ -80,8 +81,8 @@ int run(InspectOptions o) {
     settings.save_map = o.save_map;
     StopToken stop;
     const InterruptHandler interrupts(stop);
-    RunContext context;
-    context.stop = &stop;
+    const auto progress = progress_on_stderr(stop); // of renders that may take a minute
+    RunContext context{&stop, progress.get()};
     std::string page;
     std::optional<std::string> unsaved;
     with_threads(o.threads, [&] {

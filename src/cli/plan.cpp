@@ -75,6 +75,7 @@ Json found_json(const Scene& scene, const SceneSurvey& survey) {
               {"caustic", light(LightClass::caustic)}}},
             {"emitters", emitters},
             {"textures", loaded_images().size()},
+            {"caustics_possible", scene.traits().delta},
             {"paths", survey.samples}};
 }
 
@@ -116,13 +117,23 @@ void print_shares(const char* name, const Json& shares) {
     fmt::print("{:<12}{}\n", name, text);
 }
 
+/// Shares that add up to more than this count something twice, whatever the rounding.
+constexpr double kMoreThanAll = 1.005;
+
 /// Lists longer than this end in a summary; --json has all of it.
 constexpr std::size_t kMostEmitters = 8;
 
 void print_plan(const Json& plan) {
     const Json& found = plan["found"];
     print_shares("surfaces", found["surfaces"]);
+    double surfaces = 0;
+    for (const auto& [kind, share] : found["surfaces"].items()) surfaces += share.get<double>();
+    if (surfaces > kMoreThanAll) fmt::print("{:<12}some are of several kinds, and count for each\n", "");
     print_shares("light", found["light"]);
+    if (found["caustics_possible"].get<bool>())
+        fmt::print("{:<12}as {} paths from the eye find it: caustics of lamps that these hardly ever meet may be far "
+                   "more\n",
+                   "", found["paths"].get<std::int64_t>());
     std::vector<Json> emitters(found["emitters"].begin(), found["emitters"].end());
     const auto seen = [](const Json& e) { return e["seen"].is_null() ? 0.0 : e["seen"].get<double>(); };
     std::ranges::stable_sort(emitters, [&](const Json& a, const Json& b) { return seen(a) > seen(b); });

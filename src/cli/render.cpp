@@ -22,6 +22,7 @@
 #include "methods/choice/render_in_time.h"
 #include "methods/masks.h"
 #include "methods/method.h"
+#include "methods/photons/photon_file.h"
 #include "sampling/guidance/user_paths.h"
 #include "sampling/scene_hash.h"
 #include "scene/load/load.h"
@@ -32,14 +33,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <set>
 #include <sstream>
 #include <string_view>
-#include <sys/ioctl.h>
-#include <unistd.h>
 
 namespace keyhole {
 namespace {
@@ -67,17 +65,6 @@ struct RenderOptions {
                load_map.empty() && checkpoints.found(outputs.exr).empty();
     }
 };
-
-/// Null for --quiet. Refers to `stop`.
-std::unique_ptr<TerminalProgress> make_progress(bool quiet, const StopToken& stop) {
-    if (quiet) return nullptr;
-    const char* term = std::getenv("TERM");
-    const bool terminal = isatty(STDERR_FILENO) != 0 && term != nullptr && std::string_view(term) != "dumb";
-    winsize size{};
-    const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
-    return std::make_unique<TerminalProgress>(stderr, terminal, known ? size.ws_col : 80, &TerminalProgress::Clock::now,
-                                              [&stop] { return stop.seconds_left(); });
-}
 
 /// Shares of one render, of which either may hold no unit at all, as one.
 Picture join_parts(Picture a, Picture b) {
@@ -150,7 +137,7 @@ RenderResult render_scene(LoadedScene& loaded, RenderOptions& options, std::vect
                              static_cast<std::size_t>(window.width) * static_cast<std::size_t>(window.height),
                              options.threads};
         start_clock(options, stop);
-        const auto progress = make_progress(options.quiet, stop);
+        const auto progress = options.quiet ? nullptr : progress_on_stderr(stop);
         RunContext context{&stop, progress.get()};
         const std::set<std::string> named = named_settings(options.overrides);
         PassesInTime passes;
@@ -292,6 +279,7 @@ int run(RenderOptions options) {
     if (options.writes()) options.outputs.check();
     for (const std::string& file : {checkpoint, options.save_map})
         if (!file.empty()) check_writable(file);
+    if (!options.load_map.empty()) check_photon_file(options.load_map);
     std::vector<NamedFile> outputs = options.outputs.files();
     outputs.insert(outputs.end(), {{"--save-map", options.save_map}, {"the checkpoint", checkpoint}});
     check_apart(outputs, {{"--load-map", options.load_map}});

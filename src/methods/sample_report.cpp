@@ -2,6 +2,7 @@
 
 #include "core/rng.h"
 #include "methods/enclosure.h"
+#include "methods/lit_specular.h"
 
 #include <fmt/format.h>
 
@@ -99,8 +100,7 @@ void report_black(const RunningStats& luminance, const Scene& scene, RenderStats
 }
 
 void report_lost_caustics(const Scene& scene, RenderStats& stats) {
-    const bool no_extent = std::ranges::any_of(scene.emitters(), [](const auto& e) { return e->is_delta(); });
-    if (!no_extent || !scene.traits().delta) return;
+    if (!may_light_specular(scene)) return;
     stats.warn(Doubt::caustics,
                fmt::format("light from emitters without extent that comes through specular surfaces is missing, or "
                            "what is seen of it in others: no path that is joined to the eye can carry it. {}",

@@ -156,6 +156,16 @@ TEST_F(Program, PlanTellsWhatIsLeftOutAndWhy) {
     EXPECT_NEAR(timed["cpu_seconds"], 3, 1.5);
     ASSERT_EQ(run("plan scene.yaml -D light_paths=20k"), 0);
     EXPECT_THAT(read("out"), HasSubstr("off         caustic map and proposals: "));
+    EXPECT_THAT(read("out"), Not(HasSubstr("paths from the eye find it")));
+}
+
+TEST_F(Program, PlanSaysWhatItsSharesAreOf) {
+    std::string shiny = kScene;
+    shiny.replace(shiny.find("{type: diffuse}"), 15, "{type: plastic, roughness: 0}");
+    scratch.write("shiny.yaml", shiny);
+    ASSERT_EQ(run("plan shiny.yaml -D light_paths=20k"), 0) << read("err");
+    EXPECT_THAT(read("out"), HasSubstr("some are of several kinds, and count for each"));
+    EXPECT_THAT(read("out"), HasSubstr("as 4096 paths from the eye find it: caustics of lamps that these hardly ever"));
 }
 
 TEST_F(Program, ChartGoesOnWhereItStopped) {

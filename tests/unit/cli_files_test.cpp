@@ -45,6 +45,17 @@ TEST_F(Files, OutputsNeverReplaceInputsOrEachOther) {
     EXPECT_EQ(run("render scene.yaml -q -o a.exr --png /dev/null --stats /dev/null"), 0) << read("err");
 }
 
+/// Before a scene is loaded, which may take minutes.
+TEST_F(Files, PhotonMapsThatAreNoneAreRefusedAtOnce) {
+    scratch.write("short.photons", "KHPH");
+    for (const char* file : {"none.photons", "short.photons", "scene.yaml"}) {
+        EXPECT_EQ(run("render none.yaml --method ipm --load-map " + std::string(file)), 2) << file;
+        EXPECT_THAT(read("err"), HasSubstr(file)) << file;
+    }
+    EXPECT_EQ(run("info none.glb"), 2);
+    EXPECT_THAT(read("err"), HasSubstr("none.glb: found no such file, expected a scene file"));
+}
+
 TEST_F(Files, OutputsReplaceNothingThatASceneIsReadFrom) {
     scratch.write("red.ppm", "P3 1 1 255 255 0 0\n");
     scratch.write("sky.ppm", "P3 2 1 255 9 9 9 9 9 9\n");

@@ -182,6 +182,7 @@ TEST_F(Program, WordsThatAreNotUtf8AreWarnedOf) {
 TEST_F(Program, NamesThatAreNotUtf8LoseNoPage) {
     std::filesystem::copy(scratch.path("scene.yaml"), scratch.path("caf\xe9.yaml"));
     EXPECT_EQ(run("inspect caf\xe9.yaml -o page.html --resolution 8x6 -D light_paths=1000"), 0) << read("err");
+    EXPECT_THAT(read("err"), HasSubstr("gather: ")) << "what takes long says what it does";
     EXPECT_THAT(read("page.html"), HasSubstr("caf\xEF\xBF\xBD"));
     EXPECT_EQ(run("chart caf\xe9.yaml --methods path --times 0.3 --reference-time 2 --repeats 1 -o report"), 0)
         << read("err");

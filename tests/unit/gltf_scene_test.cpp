@@ -289,7 +289,7 @@ TEST_F(GltfScene, BrokenFilesAreErrors) {
         }
         return std::string("no error");
     };
-    EXPECT_THAT(whole(""), HasSubstr("found broken JSON"));
+    EXPECT_THAT(whole(""), HasSubstr("found broken JSON (parse error at line 1"));
     EXPECT_THAT(whole("{}"), HasSubstr("found the glTF version ''"));
     EXPECT_THAT(whole(R"({"asset": {"version": "1.0"}})"), HasSubstr("found the glTF version '1.0'"));
     EXPECT_THAT(whole(std::string("glTF\2\0\0\0\x20\0\0\0\xFF\xFF\xFF\x7FJSON{}  ", 24)),

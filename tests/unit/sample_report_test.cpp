@@ -3,6 +3,7 @@
 #include "methods/method.h"
 #include "methods/sample_report.h"
 #include "scene/emitters/emitters.h"
+#include "scene/textures/function_texture.h"
 #include "support/settings_from.h"
 #include "support/test_scenes.h"
 
@@ -55,6 +56,34 @@ TEST(LostCaustics, AreSaidToNeedPhotonsWhereThereMayBeSome) {
         EXPECT_EQ(testing::Value(stats.warnings[0], HasSubstr("such as ipm's")), !foggy) << stats.warnings[0];
         EXPECT_EQ(testing::Value(stats.warnings[0], HasSubstr("some extent")), foggy) << stats.warnings[0];
     }
+}
+
+/// Warnings of light that methods lose, for a lamp and a ball of glass within walls or outside.
+std::size_t losses(const Vec3& glass, float radius, std::unique_ptr<Emitter> lamp, const MaterialPtr& walls) {
+    SceneMaker m;
+    m.box({-1, -1, -1}, {1, 1, 1}, walls).sphere(glass, radius, make_glass(1.5)).emitter(std::move(lamp));
+    const auto scene = m.camera({0, 0, 0.9f}, {0, 0, 0}, 40).window(8, 6).build();
+    RenderStats stats;
+    report_lost_caustics(*scene, stats);
+    return stats.warnings.size();
+}
+
+/// Nobody misses light that no specular surface gets, such as that of a sun outside closed walls.
+TEST(LostCaustics, AreThoseOfLightThatMeetsSpecularSurfaces) {
+    const MaterialPtr white = make_diffuse(Rgb(0.5));
+    const auto sun = [] { return make_distant_emitter({0, -1, 0}, Rgb(2.0)); };
+    EXPECT_EQ(losses({0, 0, 0}, 0.3f, sun(), white), 0u);
+    EXPECT_EQ(losses({0, 0, 0}, 0.3f, make_point_emitter({0, 3, 0}, Rgb(1.0)), white), 0u);
+    EXPECT_EQ(losses({0, 2, 0}, 0.3f, sun(), white), 1u);
+    EXPECT_EQ(losses({0, 0, 0}, 0.3f, make_point_emitter({0, 0.9f, 0}, Rgb(1.0)), white), 1u);
+    EXPECT_EQ(losses({1.5f, 0, 0}, 1e-3f, sun(), white), 1u) << "a pearl that hardly a ray meets";
+    EXPECT_EQ(losses({0, 0, 0}, 0.3f, sun(), make_interface()), 1u);
+    const auto mirrors = [&](double share) {
+        return make_mix(white, make_mirror(Rgb(0.9)),
+                        function_texture<double>([=](const SurfacePoint&) { return share; }));
+    };
+    EXPECT_EQ(losses({0, 0, 0}, 0.3f, sun(), mirrors(0)), 0u) << "what might be a mirror, but nowhere is";
+    EXPECT_EQ(losses({0, 0, 0}, 0.3f, sun(), mirrors(0.1)), 1u);
 }
 
 /// A lit floor, and a box.

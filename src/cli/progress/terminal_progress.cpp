@@ -7,7 +7,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
+#include <string_view>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
 namespace keyhole {
 namespace {
@@ -109,6 +113,15 @@ std::string TerminalProgress::line(double seconds, std::uint64_t done) const {
         if (has_end) text += fmt::format("  {} left", duration(seconds * (1 - share) / share));
     }
     return text;
+}
+
+std::unique_ptr<TerminalProgress> progress_on_stderr(const StopToken& stop) {
+    const char* term = std::getenv("TERM");
+    const bool terminal = isatty(STDERR_FILENO) != 0 && term != nullptr && std::string_view(term) != "dumb";
+    winsize size{};
+    const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+    return std::make_unique<TerminalProgress>(stderr, terminal, known ? size.ws_col : 80, &TerminalProgress::Clock::now,
+                                              [&stop] { return stop.seconds_left(); });
 }
 
 } // namespace keyhole

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdio>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <string>
 
@@ -58,5 +59,8 @@ class TerminalProgress final : public Progress {
     std::uint64_t drawn_done_ = 0;
     double drawn_share_ = 0;
 };
+
+/// On stderr, whatever that is. Refers to `stop`.
+std::unique_ptr<TerminalProgress> progress_on_stderr(const StopToken& stop);
 
 } // namespace keyhole

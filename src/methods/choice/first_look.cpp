@@ -10,8 +10,8 @@
 namespace keyhole {
 namespace {
 
-/// Who stops a render waits a second at most.
-constexpr double kPathSeconds = 0.5;
+/// Who stops a render waits this much longer at most, and has no black pixels where that is enough.
+constexpr double kPathSeconds = 0.9;
 
 double pixels(const Picture& picture) { return static_cast<double>(picture.width) * picture.height; }
 

@@ -11,7 +11,7 @@ bool has_picture(const RenderResult& result);
 /// Pixels without a sample; 0 where the method doesn't count them.
 double empty_pixels(const RenderResult& result);
 
-/// A sample a pixel by path tracing, as far as half a second goes, from the top. Says so in a warning.
+/// A sample a pixel by path tracing, as far as nine tenths of a second go, from the top. Says so in a warning.
 RenderResult first_look(const Scene& scene, const Settings& settings);
 
 } // namespace keyhole

@@ -46,8 +46,18 @@ static_assert(std::is_trivially_copyable_v<Header> && sizeof(Header) == 88);
     throw InputError(fmt::format("{}: {}", path, why));
 }
 
-void check(const std::string& path, const Header& found, const PhotonFileKey& key) {
+std::ifstream opened(const std::string& path) {
+    std::ifstream file(path, std::ios::binary | std::ios::ate);
+    if (!file) refuse(path, fmt::format("cannot be opened: {}", std::strerror(errno)));
+    return file;
+}
+
+void check_magic(const std::string& path, const Header& found) {
     if (found.magic != kMagic) refuse(path, "found no photon map, expected a file that --save-map wrote");
+}
+
+void check(const std::string& path, const Header& found, const PhotonFileKey& key) {
+    check_magic(path, found);
     if (found.byte_order != kByteOrder) refuse(path, "found a photon map from a machine of another byte order");
     if (found.version != kVersion)
         refuse(path, fmt::format("found a photon map of version {}, expected version {}", found.version, kVersion));
@@ -102,9 +112,16 @@ void save_photons(const std::string& path, const PhotonFileKey& key, const Photo
     write_file_atomically(path, bytes); // a copy of them all would go beyond the memory that they may take
 }
 
+void check_photon_file(const std::string& path) {
+    std::ifstream file = opened(path);
+    Header header;
+    file.seekg(0);
+    if (!file.read(reinterpret_cast<char*>(&header), sizeof header)) header.magic = {};
+    check_magic(path, header);
+}
+
 Photons load_photons(const std::string& path, const PhotonFileKey& key) {
-    std::ifstream file(path, std::ios::binary | std::ios::ate);
-    if (!file) refuse(path, fmt::format("cannot be opened: {}", std::strerror(errno)));
+    std::ifstream file = opened(path);
     const auto size = static_cast<std::uint64_t>(file.tellg());
     Header header;
     if (size < sizeof header) refuse(path, "found no photon map, expected a file that --save-map wrote");

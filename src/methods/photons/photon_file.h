@@ -24,6 +24,9 @@ PhotonFileKey photon_file_key(const Scene& scene, const Settings& settings, cons
 /// Writes the photons of a pass, as a whole or not at all. @throws InputError if it can't be written.
 void save_photons(const std::string& path, const PhotonFileKey& key, const Photons& photons);
 
+/// @throws InputError if there is no such file, or none that begins as these do.
+void check_photon_file(const std::string& path);
+
 /// @throws InputError, with what was found and expected, if there is no such file, or it is none of these, of another
 ///     version, of another scene or depth, or damaged.
 Photons load_photons(const std::string& path, const PhotonFileKey& key);

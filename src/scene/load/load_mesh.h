@@ -96,6 +96,8 @@ void append_grid(TriangleMesh& mesh, std::uint32_t first, std::uint32_t columns,
 
 /// |det| of the linear part over the product of its rows' lengths: 1 for rotations and scalings, 0 when singular.
 double regularity(const Transform& t);
+/// Whether what it moves keeps its dimensions, but for rounding.
+inline bool is_regular(const Transform& t) { return regularity(t) > 1e-12; }
 
 /// Moves it to where `t` (regular) takes it. A sphere stays one where `t` scales all directions alike, else it becomes
 /// a mesh with normals.

@@ -31,7 +31,7 @@ constexpr NumberRange kCoordinate{"a coordinate", -1e12, 1e12};
 constexpr NumberRange kLength{"a length", 1e-12, 1e12};
 constexpr NumberRange kReflectance{"a reflectance", 0, 1};
 constexpr NumberRange kShare{"a share", 0, 1};
-constexpr NumberRange kNormal{"a direction's coordinate", 0, 1};
+constexpr NumberRange kNormal{"a coordinate of a normal map", 0, 1};
 constexpr NumberRange kNotNegative{"a number", 0, 1e12};
 constexpr NumberRange kFactor{"a factor", -1e12, 1e12};
 constexpr NumberRange kLight{"an amount of light", 0, 1e30};

@@ -38,6 +38,7 @@ std::size_t AccessorReader::size_of(int component) const {
 
 std::string_view AccessorReader::view(std::size_t index) {
     const std::size_t buffer = document_.buffer_of_view(index);
+    if (document_.is_binary(buffer)) return document_.view_within(document_.binary(), index);
     const auto [known, fresh] = buffers_.try_emplace(buffer);
     if (fresh) known->second = document_.buffer_bytes(buffer);
     return document_.view_within(known->second, index);
@@ -81,7 +82,7 @@ double AccessorReader::number(const Rows& rows, std::size_t row, std::size_t col
 }
 
 /// Puts the rows of the sparse part in their places.
-void AccessorReader::replace(const Json& sparse, const Rows& like, NumberTable& table) {
+template <class T> void AccessorReader::replace(const Json& sparse, const Rows& like, Table<T>& table) {
     const auto count = sparse.at("count").get<std::size_t>();
     const Rows places = rows(sparse.at("indices"), 1, count, "indices of a sparse accessor");
     Json values = sparse.at("values");
@@ -93,13 +94,13 @@ void AccessorReader::replace(const Json& sparse, const Rows& like, NumberTable& 
         if (row >= table.count)
             document_.fail(fmt::format("found entry {} replaced, expected one of {}", row, table.count));
         for (std::size_t c = 0; c < table.width; ++c)
-            table.values[row * table.width + c] = static_cast<float>(number(from, i, c));
+            table.values[row * table.width + c] = static_cast<T>(number(from, i, c));
     }
 }
 
-NumberTable AccessorReader::read(std::size_t index) {
+template <class T> Table<T> AccessorReader::read_as(std::size_t index) {
     const Json& accessor = document_.entry("accessors", index);
-    NumberTable table;
+    Table<T> table;
     const auto type = accessor.at("type").get<std::string>();
     const auto* const known = std::ranges::find(kTypes, type);
     if (type.empty() || known == kTypes.end())
@@ -118,9 +119,23 @@ NumberTable AccessorReader::read(std::size_t index) {
     table.values.resize(table.count * table.width);
     for (std::size_t i = 0; listed && i < table.count; ++i)
         for (std::size_t c = 0; c < table.width; ++c)
-            table.values[i * table.width + c] = static_cast<float>(number(from, i, c));
+            table.values[i * table.width + c] = static_cast<T>(number(from, i, c));
     if (const auto sparse = accessor.find("sparse"); sparse != accessor.end()) replace(*sparse, from, table);
     return table;
 }
+
+std::vector<std::uint32_t> AccessorReader::read_indices(std::size_t index) {
+    const Json& accessor = document_.entry("accessors", index);
+    const auto type = accessor.at("type").get<std::string>();
+    if (type != "SCALAR") document_.fail(fmt::format("found indices of the type '{}', expected SCALAR", type));
+    constexpr std::array kWhole{5121, 5123, 5125};
+    const auto component = accessor.at("componentType").get<int>();
+    if (std::ranges::find(kWhole, component) == kWhole.end())
+        document_.fail(
+            fmt::format("found indices of the component type {}, expected one of 5121, 5123, 5125", component));
+    return read_as<std::uint32_t>(index).values;
+}
+
+template Table<float> AccessorReader::read_as<float>(std::size_t);
 
 } // namespace keyhole::gltf

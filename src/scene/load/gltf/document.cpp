@@ -38,10 +38,13 @@ std::string chunk(std::uint32_t kind, std::string bytes, char padding) {
     return bytes_of_word(bytes.size()) + bytes_of_word(kind) + bytes;
 }
 
-std::string read_bytes(const std::string& path) {
+std::string read_bytes(const std::string& path, const char* what) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error))
-        throw InputError({path, 0, 0}, "found no such file, expected one that glTF names");
+        throw InputError(
+            {path, 0, 0},
+            fmt::format("found {}, expected {}",
+                        std::filesystem::exists(path, error) ? "something that is not a file" : "no such file", what));
     std::ifstream file(path, std::ios::binary);
     std::ostringstream text;
     text << file.rdbuf();
@@ -71,6 +74,12 @@ std::string ending_of(const std::string& bytes) {
     return bytes.starts_with("\x89PNG") ? ".png" : "";
 }
 
+/// What nlohmann says, without its "[json.exception.out_of_range.403] ".
+std::string without_id(std::string said) {
+    if (const auto end = said.find("] "); said.starts_with('[') && end != std::string::npos) said.erase(0, end + 2);
+    return said;
+}
+
 std::string replaced(std::string text, const std::string& old, const std::string& with) {
     for (auto at = text.find(old); at != std::string::npos; at = text.find(old, at + with.size()))
         text.replace(at, old.size(), with);
@@ -80,7 +89,7 @@ std::string replaced(std::string text, const std::string& old, const std::string
 } // namespace
 
 Document::Document(const std::string& path, Warnings& warnings) : path_(path), warnings_(warnings) {
-    std::string text = read_bytes(path);
+    std::string text = read_bytes(path, "a scene file");
     if (text.starts_with("glTF")) {
         packed_ = true;
         constexpr std::size_t kStart = 20; // of its JSON
@@ -104,7 +113,7 @@ Document::Document(const std::string& path, Warnings& warnings) : path_(path), w
             return true;
         });
     } catch (const Json::exception& e) {
-        fail(fmt::format("found broken JSON ({}), expected a glTF file", e.what()));
+        fail(fmt::format("found broken JSON ({}), expected a glTF file", without_id(e.what())));
     }
     const std::string version = root_.is_object() ? member(root_, "asset").value("version", "") : "";
     if (!version.starts_with("2.")) fail(fmt::format("found the glTF version '{}', expected 2.0", version));
@@ -155,7 +164,7 @@ std::string Document::uri_path(const std::string& uri) const {
 }
 
 std::string Document::uri_bytes(const std::string& uri) const {
-    if (!is_data(uri)) return read_bytes(uri_path(uri));
+    if (!is_data(uri)) return read_bytes(uri_path(uri), "one that glTF names");
     const auto comma = uri.find(',');
     if (comma == std::string::npos) fail("found a data URI without data");
     return from_base64(std::string_view(uri).substr(comma + 1));
@@ -208,7 +217,8 @@ void Document::fail_of_image(std::size_t index, const std::string& file, std::st
         if (why.starts_with(file + ": ")) why = why.substr(file.size() + 2);
         why = replaced(why, file, "it");
     }
-    fail(fmt::format("image {}{}: {}", index, named ? fmt::format(" '{}'", name->get<std::string>()) : "", why));
+    const std::string image_name = named ? fmt::format(" '{}'", name->get<std::string>()) : "";
+    throw InputError({path_, 0, 0}, fmt::format("image {}{}: {}", index, image_name, why));
 }
 
 const Json& member(const Json& object, const char* key) {
@@ -223,12 +233,47 @@ const Json* extension(const Json& object, const char* name) {
     return found == all.end() ? nullptr : &*found;
 }
 
-Rgb color_or(const Json& object, const char* key, const Rgb& otherwise) {
+Rgb color_or(const Json& object, const char* key, const Rgb& otherwise, std::size_t count) {
     const auto found = object.find(key);
     if (found == object.end()) return otherwise;
-    const auto list = found->get<std::vector<double>>();
-    if (list.size() < 3) throw InputError(fmt::format("found {} numbers in '{}', expected three", list.size(), key));
-    return {list[0], list[1], list[2]};
+    check_numbers(*found, key, count);
+    return {(*found)[0].get<double>(), (*found)[1].get<double>(), (*found)[2].get<double>()};
+}
+
+std::string words_of(const std::exception& error) {
+    const auto* json = dynamic_cast<const Json::exception*>(&error);
+    if (json == nullptr) return error.what();
+    const std::string said = without_id(error.what());
+    constexpr int kMissingKey = 403; // key 'count' not found
+    const auto first = said.find('\''), last = said.rfind('\'');
+    if (json->id == kMissingKey && first < last)
+        return fmt::format("found no {}, expected one", said.substr(first, last + 1 - first));
+    return fmt::format("found what glTF doesn't have at that place: {}", said);
+}
+
+std::string called(const char* what, std::size_t index, const Json& object) {
+    const auto name = object.is_object() ? object.find("name") : object.end();
+    const bool named = name != object.end() && name->is_string() && !name->get_ref<const std::string&>().empty();
+    return fmt::format("the {} {}{}", what, index,
+                       named ? fmt::format(" '{}'", name->get_ref<const std::string&>()) : "");
+}
+
+void fail_of_value(const Json& found, const char* key, const std::string& expected) {
+    const std::string type = found.type_name();
+    const bool vowel = type == "array" || type == "object";
+    throw BadValue(fmt::format("found {}{} in '{}', expected {}",
+                               found.is_null() ? ""
+                               : vowel         ? "an "
+                                               : "a ",
+                               type, key, expected));
+}
+
+void check_numbers(const Json& list, const char* key, std::size_t count) {
+    if (!list.is_array()) fail_of_value(list, key, fmt::format("{} numbers", count));
+    for (const Json& x : list)
+        if (!x.is_number()) fail_of_value(x, key, "numbers alone");
+    if (list.size() != count)
+        throw BadValue(fmt::format("found {} numbers in '{}', expected {}", list.size(), key, count));
 }
 
 } // namespace keyhole::gltf

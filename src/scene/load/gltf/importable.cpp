@@ -3,6 +3,7 @@
 #include "core/base64.h"
 #include "scene/load/gltf/accessors.h"
 #include "scene/load/gltf/extensions.h"
+#include "scene/load/gltf/primitives.h"
 #include "scene/load/load_mesh.h"
 
 #include <fmt/format.h>
@@ -42,18 +43,20 @@ void add_ones(NumberTable& table) {
 
 class Rewriter {
   public:
-    explicit Rewriter(const Document& document) : document_(document), root_(document.root()), reader_(document) {}
+    explicit Rewriter(const Document& document)
+        : document_(document), root_(document.root()), reader_(document), indices_(document, reader_) {}
 
     std::string rewrite() {
         check_extensions(document_);
         keep_meshes();
         number_materials();
-        for (Json& mesh : list_of(root_, "meshes"))
-            for (Json& primitive : list_of(mesh, "primitives")) {
-                widen(primitive);
-                check_indices(primitive);
-                if (primitive.is_object()) primitive.erase("targets");
-            }
+        name_nodes();
+        Json& meshes = list_of(root_, "meshes");
+        for (std::size_t i = 0; i < meshes.size(); ++i)
+            document_.within(called("mesh", i, meshes[i]), [&] {
+                for (Json& primitive : list_of(meshes[i], "primitives"))
+                    if (primitive.is_object()) rewrite(primitive);
+            });
         for (const char* owner : {"meshes", "nodes"})
             for (const Json& entry : list_of(root_, owner)) tell_of_targets(entry);
         check_matrices();
@@ -65,6 +68,14 @@ class Rewriter {
     }
 
   private:
+    void rewrite(Json& primitive) {
+        const bool packed = stays_packed(primitive);
+        check_indices(primitive);
+        if (!packed) indices_.check(primitive); // before positions are others
+        if (!packed) widen(primitive);
+        primitive.erase("targets");
+    }
+
     /// The list at a key; an empty one where there is none.
     Json& list_of(Json& object, const char* key) {
         const auto found = object.is_object() ? object.find(key) : object.end();
@@ -81,6 +92,20 @@ class Rewriter {
             if (!node.is_object()) continue;
             for (const char* key : {"camera", "skin"}) node.erase(key);
             if (extension(node, kLights) != nullptr) node["extensions"].erase(kLights);
+        }
+    }
+
+    /// Those with a mesh, by which shapes are called: Assimp makes up names of its own.
+    void name_nodes() {
+        Json& nodes = list_of(root_, "nodes");
+        const Json& meshes = list_of(root_, "meshes");
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            if (!nodes[i].is_object() || nodes[i].contains("name") || !nodes[i].contains("mesh")) continue;
+            nodes[i]["name"] = fmt::format("node {}", i);
+            const Json& mesh = nodes[i]["mesh"];
+            if (!mesh.is_number_unsigned() || mesh.get<std::size_t>() >= meshes.size()) continue;
+            const Json& name = member(meshes[mesh.get<std::size_t>()], "name");
+            if (name.is_string()) nodes[i]["name"] = name;
         }
     }
 
@@ -133,18 +158,16 @@ class Rewriter {
     }
 
     void widen(Json& primitive) {
-        if (!primitive.is_object() || !member(primitive, "attributes").is_object() || stays_packed(primitive)) return;
+        if (!member(primitive, "attributes").is_object() || !primitive.contains("attributes")) return;
         for (auto& [name, accessor] : primitive["attributes"].items())
-            if (name.starts_with("COLOR_"))
-                accessor = in_floats(accessor.get<std::size_t>(), true);
-            else if (is_vector(name))
-                accessor = in_floats(accessor.get<std::size_t>(), false);
+            if (const bool color = name.starts_with("COLOR_"); color || is_vector(name))
+                accessor = in_floats(value_of<std::size_t>(accessor, name.c_str()), color);
     }
 
     /// By the format indices lie tight. Assimp reads sparse ones as if they did.
     void check_indices(const Json& primitive) const {
-        if (!primitive.is_object() || !primitive.contains("indices")) return;
-        const auto index = primitive["indices"].get<std::size_t>();
+        if (!primitive.contains("indices")) return;
+        const auto index = value_of<std::size_t>(primitive["indices"], "indices");
         const Json& accessor = document_.entry("accessors", index);
         if (accessor.contains("sparse") && accessor.contains("bufferView") &&
             document_.entry("bufferViews", accessor["bufferView"].get<std::size_t>()).contains("byteStride"))
@@ -255,6 +278,7 @@ class Rewriter {
     const Document& document_;
     Json root_;
     AccessorReader reader_;
+    IndexCheck indices_;
     /// Accessors, each as colours or not, and those that stand for them.
     std::map<std::pair<std::size_t, bool>, std::size_t> widened_;
     std::string numbers_; ///< of a buffer that is added

@@ -148,7 +148,9 @@ class SceneBuilder {
 
     MaterialData read(std::size_t material, const gltf::VertexColors& colors) {
         const Json& all = gltf::member(document_.root(), "materials");
-        return gltf::read_material(document_, material < all.size() ? all[material] : Json::object(), colors);
+        if (material >= all.size()) return gltf::read_material(document_, Json::object(), colors);
+        return document_.within(gltf::called("material", material, all[material]),
+                                [&] { return gltf::read_material(document_, all[material], colors); });
     }
 
     std::string name_of(std::size_t material) const {
@@ -179,7 +181,9 @@ template <class Read> auto with_errors_of(const std::string& path, Read&& read) 
     try {
         return read();
     } catch (const Json::exception& e) {
-        throw InputError({path, 0, 0}, std::string("found what glTF doesn't have at that place: ") + e.what());
+        throw InputError({path, 0, 0}, gltf::words_of(e));
+    } catch (const gltf::BadValue& e) {
+        throw InputError({path, 0, 0}, gltf::words_of(e));
     }
 }
 

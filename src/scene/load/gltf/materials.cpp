@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string_view>
+#include <vector>
 
 namespace keyhole::gltf {
 namespace {
@@ -87,7 +89,7 @@ class Reader {
             return from_specular_glossiness(document_, *glossy_);
         }
         constexpr const char* kBoth = "metallicRoughnessTexture";
-        return {color(document_, metal_, "baseColorFactor", "baseColorTexture"),
+        return {color(document_, metal_, "baseColorFactor", "baseColorTexture", 4),
                 number(document_, metal_, "metallicFactor", 1, kBoth, kBlue),
                 number(document_, metal_, "roughnessFactor", 1, kBoth, kGreen)};
     }
@@ -142,12 +144,15 @@ class Reader {
 
     FloatTexture opacity() const {
         const auto mode = value_or<std::string>(material_, "alphaMode", "OPAQUE");
+        const std::vector<std::string_view> known{"OPAQUE", "MASK", "BLEND"};
+        if (std::ranges::find(known, mode) == known.end())
+            document_.fail(fmt::format("found the alphaMode '{}', {}", mode, expected_one_of(mode, known)));
         if (mode == "OPAQUE") return nullptr;
         const Json& owner = glossy_ != nullptr ? *glossy_ : metal_;
         const char* const texture = glossy_ != nullptr ? "diffuseTexture" : "baseColorTexture";
         const auto factor =
-            value_or(owner, glossy_ != nullptr ? "diffuseFactor" : "baseColorFactor", std::vector<double>{1, 1, 1, 1});
-        FloatTexture alpha = constant_texture(factor.size() == 4 ? std::clamp(factor[3], 0.0, 1.0) : 1.0);
+            value_or(owner, glossy_ != nullptr ? "diffuseFactor" : "baseColorFactor", std::array{1.0, 1.0, 1.0, 1.0});
+        FloatTexture alpha = constant_texture(std::clamp(factor[3], 0.0, 1.0));
         if (owner.contains(texture))
             alpha = scale_texture<double>(picture<double>(document_, owner[texture], Encoding::linear, kAlpha), alpha);
         if (colors_.opacity != nullptr) alpha = scale_texture<double>(alpha, colors_.opacity);

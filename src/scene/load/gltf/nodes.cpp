@@ -1,6 +1,7 @@
 #include "scene/load/gltf/nodes.h"
 
 #include "scene/emitters/emitters.h"
+#include "scene/load/gltf/primitives.h"
 #include "scene/load/load_mesh.h"
 
 #include <Imath/ImathQuat.h>
@@ -20,7 +21,7 @@ constexpr int kPlainWidth = 640, kPlainHeight = 480;
 Transform transform_of(const Json& node) {
     Transform t;
     if (node.contains("matrix")) { // by columns, for column vectors: Imath's rows
-        const auto m = node["matrix"].get<std::array<double, 16>>();
+        const auto m = value_or(node, "matrix", std::array<double, 16>{});
         std::copy(m.begin(), m.end(), &t[0][0]);
         return t;
     }
@@ -40,7 +41,7 @@ Vec3 turned(const Transform& t, const Imath::V3d& direction) {
 
 class Walker {
   public:
-    explicit Walker(const Document& document) : document_(document) {}
+    explicit Walker(const Document& document) : document_(document), left_out_(document) {}
 
     LightsAndCamera walk() {
         const Json& root = document_.root();
@@ -58,16 +59,28 @@ class Walker {
             if (std::ranges::find(above_, index) != above_.end())
                 document_.fail(fmt::format("found node {} below itself, expected no recursive nodes", index));
             const Json& node = document_.entry("nodes", index);
-            const Transform to_world = transform_of(node) * parent;
-            if (node.contains("mesh")) document_.entry("meshes", node["mesh"].get<std::size_t>());
-            if (node.contains("camera") && !things_.view) read_camera(node["camera"].get<std::size_t>(), to_world);
-            if (const Json* light = extension(node, "KHR_lights_punctual"))
-                read_light(light->at("light").get<std::size_t>(), to_world);
-            if (node.contains("skin")) document_.warn("skins are left out: meshes stand as they are bound");
+            const Transform to_world =
+                document_.within(called("node", index, node), [&] { return read_node(node, parent); });
             above_.push_back(index);
             visit_all(value_or(node, "children", std::vector<std::size_t>{}), to_world);
             above_.pop_back();
         }
+    }
+
+    /// What hangs on a node. Returns where that is.
+    Transform read_node(const Json& node, const Transform& parent) {
+        const Transform to_world = transform_of(node) * parent;
+        if (node.contains("mesh")) {
+            left_out_.note(value_of<std::size_t>(node["mesh"], "mesh"));
+            if (!is_regular(to_world))
+                document_.fail("found a placement that flattens its mesh, expected a regular one");
+        }
+        if (node.contains("camera") && !things_.view)
+            read_camera(value_of<std::size_t>(node["camera"], "camera"), to_world);
+        if (const Json* light = extension(node, "KHR_lights_punctual"))
+            read_light(value_of<std::size_t>(light->at("light"), "light"), to_world);
+        if (node.contains("skin")) document_.warn("skins are left out: meshes stand as they are bound");
+        return to_world;
     }
 
     void read_camera(std::size_t index, const Transform& to_world) {
@@ -96,6 +109,10 @@ class Walker {
         if (all == nullptr || !all->contains("lights") || index >= (*all)["lights"].size())
             document_.fail(fmt::format("found no light {}, which is referred to", index));
         const Json& light = (*all)["lights"][index];
+        document_.within(called("light", index, light), [&] { place_light(light, to_world); });
+    }
+
+    void place_light(const Json& light, const Transform& to_world) {
         const auto type = light.at("type").get<std::string>();
         // What is wrong is said in the units of the file.
         const Rgb amount =
@@ -113,13 +130,20 @@ class Walker {
             document_.fail(fmt::format("found a light of type '{}', expected point, spot or directional", type));
     }
 
-    static SpotParameters spot(const Json& cone, const Vec3& place, const Vec3& forward, const Rgb& intensity) {
+    SpotParameters spot(const Json& cone, const Vec3& place, const Vec3& forward, const Rgb& intensity) const {
+        constexpr double kMost = kPi / 2 + 1e-6; // which floats may round up
         const double outer = value_or(cone, "outerConeAngle", kPi / 4), inner = value_or(cone, "innerConeAngle", 0.0);
+        if (!(inner >= 0 && inner <= outer && outer > 0 && outer <= kMost))
+            document_.fail(
+                fmt::format("found 'innerConeAngle' {} and 'outerConeAngle' {}, expected 0 <= inner <= outer "
+                            "<= pi/2, and some width",
+                            inner, outer));
         return {place, forward, intensity, inner * 180 / kPi, outer * 180 / kPi, SpotFade::squared};
     }
 
     const Document& document_;
     LightsAndCamera things_;
+    LeftOutParts left_out_;
     std::vector<std::size_t> above_; ///< nodes that hold the one that is read
 };
 

@@ -51,7 +51,7 @@ double reflectance_of(const Rgb& diffuse, const Rgb& specular) {
 MetallicRoughness from_specular_glossiness(Document& document, const Json& extension) {
     constexpr const char* kBoth = "specularGlossinessTexture";
     constexpr int kAlpha = 3;
-    const ColorTexture diffuse = color(document, extension, "diffuseFactor", "diffuseTexture"),
+    const ColorTexture diffuse = color(document, extension, "diffuseFactor", "diffuseTexture", 4),
                        specular = color(document, extension, "specularFactor", kBoth);
     const FloatTexture glossiness = number(document, extension, "glossinessFactor", 1, kBoth, kAlpha);
     return {computed_texture(base_of, diffuse, specular), computed_texture(metallic_of, diffuse, specular),

@@ -76,8 +76,9 @@ std::shared_ptr<const Texture<T>> picture(Document& document, const Json& refere
 template std::shared_ptr<const Texture<Rgb>> picture<Rgb>(Document&, const Json&, Encoding, int);
 template std::shared_ptr<const Texture<double>> picture<double>(Document&, const Json&, Encoding, int);
 
-ColorTexture color(Document& document, const Json& object, const char* factor, const char* texture) {
-    Rgb tint = color_or(object, factor, Rgb(1.0));
+ColorTexture color(Document& document, const Json& object, const char* factor, const char* texture,
+                   std::size_t numbers) {
+    Rgb tint = color_or(object, factor, Rgb(1.0), numbers);
     for (int c = 0; c < 3; ++c) tint[c] = document.checked_share(tint[c], factor);
     if (!object.contains(texture)) return constant_texture(tint);
     ColorTexture image = picture<Rgb>(document, object[texture], Encoding::srgb);

@@ -16,7 +16,8 @@ std::shared_ptr<const Texture<T>> picture(Document& document, const Json& refere
 
 /// The colour under the key `factor`, white if none is given, perhaps times the picture under `texture`. This and the
 /// next have factors within 0 and 1, and warn where the file doesn't.
-ColorTexture color(Document& document, const Json& object, const char* factor, const char* texture);
+ColorTexture color(Document& document, const Json& object, const char* factor, const char* texture,
+                   std::size_t numbers = 3);
 
 /// A number, perhaps times a channel of a texture.
 FloatTexture number(Document& document, const Json& object, const char* factor, double otherwise, const char* texture,

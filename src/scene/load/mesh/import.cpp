@@ -142,16 +142,16 @@ class Collector {
                 place(source, to_world, node.mName.C_Str());
                 continue;
             }
-            check_regular(to_world);
+            check_regular(to_world, node.mName.C_Str());
             if (copy == nullptr) copy = std::make_shared<const ObjectToWorld>(to_world);
             place_copy(number, copy, node.mName.C_Str());
         }
         for (unsigned i = 0; i < node.mNumChildren; ++i) visit(*node.mChildren[i], to_world, depth + 1);
     }
 
-    void check_regular(const Transform& to_world) const {
-        if (!(regularity(to_world) > 1e-12))
-            fail(path_, "found a singular placement of a part, expected a regular one");
+    void check_regular(const Transform& to_world, const std::string& name) const {
+        if (!is_regular(to_world))
+            fail(path_, fmt::format("found a placement that flattens the mesh '{}', expected a regular one", name));
     }
 
     void hold(std::size_t triangles, std::size_t positions) {
@@ -164,7 +164,7 @@ class Collector {
     void place(const aiMesh& source, const Transform& to_world, const char* name) {
         hold(source.mNumFaces, source.mNumVertices);
         TriangleMesh part = convert(source);
-        check_regular(to_world);
+        check_regular(to_world, name);
         any_ = any_ || !part.triangles.empty();
         transform_mesh(part, to_world);
         mend(part, name);

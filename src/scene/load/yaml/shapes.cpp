@@ -153,7 +153,9 @@ void ShapeReader::read_shape(const YamlNode& node, const Placement& placement) {
     if (type == "mesh" && !has_area(shape.geometry))
         return warnings_.add_flat_mesh(node.position(), fmt::format("mesh '{}'", map.at("file").text));
     const double area = is_copy ? 0 : surface_area(shape); // no copy emits
-    if (!is_copy && !(area > 0)) fail(node, "found a shape without area, expected one that can be seen");
+    if (!is_copy && !(area > 0))
+        fail(node, "found a shape without area, expected one that can be seen: of coordinates about 7 "
+                   "digits are kept, and small shapes far from the origin lose their area");
 
     const YamlNode* emission = map.find("emission");
     if (emission != nullptr) shape.emission = read_emission(*emission, area);
