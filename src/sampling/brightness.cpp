@@ -27,6 +27,8 @@ class Techniques {
 
     const Scene& scene() const { return scene_; }
     const StageOneSettings& settings() const { return settings_; }
+    /// Whether path tracing is out of the question.
+    bool need_light_paths() const;
 
     void trace_sample(Technique technique, std::int64_t i, auto& sink) const {
         Rng rng(settings_.seed, StreamPurpose::brightness, static_cast<std::uint64_t>(i));
@@ -148,13 +150,13 @@ Trial try_technique(const Techniques& techniques, Technique technique, const Run
     return trial;
 }
 
-/// Whether path tracing is out of the question.
-bool needs_light_paths(const Scene& scene, const StageOneSettings& settings) {
-    // Who gives user paths says that light is hard to find. What they leave out a trial would see too little of.
-    if (settings.guides != nullptr) return true;
+bool Techniques::need_light_paths() const {
+    // Who gives user paths says that light is hard to find, and so do mirrors. What these leave out a trial would see
+    // too little of.
+    if (guides_ != nullptr || mirrors_) return true;
     // Caustics of emitters that no ray can hit are found from the light alone; a trial couldn't know what it missed.
     const auto is_delta = [](const auto& emitter) { return emitter->is_delta(); };
-    return scene.traits().delta && std::any_of(scene.emitters().begin(), scene.emitters().end(), is_delta);
+    return scene_.traits().delta && std::any_of(scene_.emitters().begin(), scene_.emitters().end(), is_delta);
 }
 
 /// The technique that needs fewer rays for the same error, tried. Rays and not seconds, so that the choice is the same
@@ -200,7 +202,7 @@ StageOne run_stage_one(const Scene& scene, const StageOneSettings& settings, con
     StageOne stage;
     stage.technique = Technique::bidirectional;
     stage.wanted = settings.samples;
-    const bool choice = !needs_light_paths(scene, settings);
+    const bool choice = !techniques.need_light_paths();
     Trial bidirectional{};
     if (choice || settings.error > 0) { // else there is nothing to find out
         bidirectional = try_technique(techniques, Technique::bidirectional, context);

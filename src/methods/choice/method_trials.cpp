@@ -120,7 +120,7 @@ std::optional<TrialRender> render_trial(const TrialContext& c, Settings settings
     // Light paths that are told where to go bring many times the photons of a trial's: up to what is allowed, then.
     settings.photons = std::max<std::int64_t>(
         1, static_cast<std::int64_t>(r.stats.photons_global + r.stats.photons_caustic) / settings.passes);
-    TrialCost of = in_time ? cost_of_render(settings, effort, pixels, r.stats, start - context.seconds_left())
+    TrialCost of = in_time ? cost_of_render(c.scene, settings, effort, pixels, r.stats, start - context.seconds_left())
                            : TrialCost{.cost = Experience::in_rays(settings, effort, pixels, r.stats),
                                        .taken = 0,
                                        .samples = r.stats.samples,
@@ -257,12 +257,12 @@ Settings TrialCost::settings_for(const Settings& s, const std::set<std::string>&
     return noise ? split_stage_three(even, cost, *noise, pixels, given) : even;
 }
 
-TrialCost cost_of_render(const Settings& settings, double effort, double pixels, const RenderStats& stats,
-                         double seconds) {
+TrialCost cost_of_render(const Scene& scene, const Settings& settings, double effort, double pixels,
+                         const RenderStats& stats, double seconds) {
     return {.cost = Experience(settings, effort, pixels, stats, seconds),
             .taken = seconds,
             .samples = stats.samples,
-            .balance = rebalance({}, stats),
+            .balance = rebalance({}, stats, scene.traits().delta),
             .noise = stats.photon_quality.noise};
 }
 

@@ -31,8 +31,8 @@ struct TrialCost {
 };
 
 /// What a render of so many seconds tells.
-TrialCost cost_of_render(const Settings& settings, double effort, double pixels, const RenderStats& stats,
-                         double seconds);
+TrialCost cost_of_render(const Scene& scene, const Settings& settings, double effort, double pixels,
+                         const RenderStats& stats, double seconds);
 
 /// A method after its trial: two independent renders of a small window.
 struct TriedMethod {

@@ -284,7 +284,7 @@ class RenderInTime {
         result.stats.remarks.push_back("set by the time:" + differences(settings_, chosen));
         result.settings = chosen;
         if (method_->keeps_photons && !cost_ && !fills_passes(settings_))
-            cost_ = cost_of_render(chosen, effort_, pixels_, result.stats, start - left());
+            cost_ = cost_of_render(scene_, chosen, effort_, pixels_, result.stats, start - left());
         else if (cost_ && (method_->keeps_photons || result.stats.complete))
             cost_->cost = Experience(chosen, effort_, pixels_, result.stats, start - left());
         used_up_ = used_up_ || fills_passes(settings_);

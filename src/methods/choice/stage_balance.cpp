@@ -77,14 +77,18 @@ double rays_for_pixel(const PhotonQuality::Noise& noise, const Experience& cost,
                              : std::numeric_limits<double>::infinity();
 }
 
-StageBalance rebalance(const StageBalance& balance, const RenderStats& stats) {
+/// Least factor on stage one where there may be caustics. Of those seen by way of glass one path in thousands tells,
+/// and without one brightness seems well known; wrong, it is wrong in all of the caustics.
+constexpr double kLeastForCaustics = 0.8;
+
+StageBalance rebalance(const StageBalance& balance, const RenderStats& stats, bool caustics) {
     const double one = seconds_of(Stage::Work::brightness, stats), two = seconds_of(Stage::Work::chains, stats);
     if (!stats.agreement || !(stats.agreement->error > 0 && stats.brightness > 0 && one > 0 && two > 0)) return balance;
     const double of_one = stats.brightness_error / stats.brightness, of_two = stats.agreement->error;
     const double share = best_share_of_time(of_one * of_one * one, of_two * of_two * two);
     // Bounds, for what short renders say of their errors is vague; and groups of chains that agree too well, as those
     // do that have not mixed, think their error smaller than it is.
-    return {std::clamp(balance.brightness * share * (one + two) / one, 0.25, 1.2),
+    return {std::clamp(balance.brightness * share * (one + two) / one, caustics ? kLeastForCaustics : 0.25, 1.2),
             std::clamp(balance.chains * (1 - share) * (one + two) / two, 0.9, 4.0)};
 }
 

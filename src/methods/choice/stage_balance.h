@@ -9,8 +9,8 @@ namespace keyhole {
 
 /// The split with the least error for the time of a render with `balance`, by the errors that it had: squared errors
 /// fall as the reciprocal of time, so the best times are as errors times the roots of times. Nothing changes where an
-/// error isn't known.
-StageBalance rebalance(const StageBalance& balance, const RenderStats& stats);
+/// error isn't known. `caustics`: whether there may be any, of which a short render may have missed the brightest.
+StageBalance rebalance(const StageBalance& balance, const RenderStats& stats, bool caustics);
 
 /// `settings` with the time of stage three split between records of the irradiance cache and samples of pixels such
 /// that their squared errors add up to the least, told from the noise that a render whose cost is known had. Settings
