@@ -26,15 +26,19 @@ set(long_agreement
   "Scatterings/ShortPaths.*"
   "Scenes/AlongUserPaths.*"
   "Scenes/Mlt_AgreesWithPathTracing.*/Guided*"
+  "Scenes/Mlt_AgreesWithPathTracing.*/MirrorGlassBox"
+  "Scenes/Mps_AgreesWithPathTracing.*/rooms"
   "Shared/References_Agree.*"
   "ShortPaths_OfTwoScatterings.*")
 set(long_furnace
+  "Fog/Furnace_HasItsClosedForm.*"
   "Methods/Furnace_HasItsClosedForm.InEveryBlock/auto_*")
 set(long_regression
   "FailureGallery_Keyhole.*"
   "Gallery.CrevicesHaveTheirLight"
   "Mutated_Inputs.*")
 set(long_unit
+  "PhotonEnergy_EqualsLightTracing.GlassWall"
   "CombinedPhotons_EqualLightTracing.AlongUserPaths"
   "CombinedPhotons_EqualLightTracing.HazyBox"
   "LearnedScatteringOverAYard.BringsAllPowerByFewerPaths"

@@ -42,8 +42,11 @@ constexpr float kInTheSameLight = 0.5f;
 /// they are looked at there.
 constexpr double kLesserCaustic = 0.1, kLeastLook = 0.1;
 
-/// Of the radius of a lookup in the caustic map, how far photons are looked for whose light reaches its middle.
-constexpr float kFarthestReach = 1.5f;
+/// Of the radius of the region around a photon of the caustic map itself, how far it lights. A lookup in the dark grows
+/// until it has taken in enough photons of the next spot, however far that is: by 1 / r^2 a spot of k photons would
+/// bring several times its power to all the surface around it. Where photons are spread evenly, all in a lookup light
+/// it.
+constexpr float kLit = 1.5f;
 
 /// Photons of a caustic that are tested for sight, and photons that a lobe at the end of a gather ray is asked about.
 /// The error that a few more would save is one of this sample alone, and small beside its others.
@@ -248,27 +251,20 @@ Rgb GatherRays::caustic_on_side(const Vertex& v, const Vec3& normal, const Vec3&
     const PhotonMap& photons = maps_.caustic->main_photons();
     const auto reflected = PhotonReflection::of_caustics(v, back, longer);
     const double area = around.area * p;
-    // As much of each photon as goes by its own reach, from the surface that the lookup finds here.
-    const auto share = [&](const Photon& photon) {
-        const float reach = surroundings.reach(photon);
-        return query.region.distance2(photon.position()) <= reach * reach ? r * r / (reach * reach) : 0.0f;
+    const auto lit = [&](const Photon& photon) {
+        const float reach = kLit * surroundings.radius(photon);
+        return query.region.distance2(photon.position()) <= reach * reach;
     };
-    const float farthest = std::min(kFarthestReach * r, query.max_radius);
     if (!around.partly_occluded)
-        return estimate_density(photons, query.region, farthest, area,
-                                [&](const Photon& photon) {
-                                    const float part = share(photon);
-                                    return part > 0 ? reflected(photon) * static_cast<double>(part) : Rgb(0.0);
-                                })
+        return estimate_density(photons, query.region, r, area,
+                                [&](const Photon& photon) { return lit(photon) ? reflected(photon) : Rgb(0.0); })
             .value;
     const auto all = [&](const Photon& photon) {
-        return luminance(reflected(photon) * photon.power()) * static_cast<double>(share(photon));
+        return lit(photon) ? luminance(reflected(photon) * photon.power()) : 0.0;
     };
     const auto seen = weight_in_sight(scene_, query.region, r, reflected);
-    const auto light = [&](const Photon& photon) {
-        return seen(photon) * photon.power() * static_cast<double>(share(photon));
-    };
-    return sum_over_few(photons, {query.region, farthest, kSights}, all, light, source) / area;
+    const auto light = [&](const Photon& photon) { return seen(photon) * photon.power(); };
+    return sum_over_few(photons, {query.region, r, kSights}, all, light, source) / area;
 }
 
 Rgb GatherRays::outlying_on_side(const Vertex& v, const Vec3& normal, const Vec3& back, int longer) const {

@@ -14,8 +14,8 @@ constexpr unsigned kLevelShift = 9, kMostLevel = 15;
 /// Of a pilot photon's radius, how far it looks for what may stand around: lookups of about its radius reach so far.
 constexpr float kClear = 1.5f;
 
-/// Steps to which reaches are known, in each of which they are by 0.07 % less, and the last of them.
-constexpr float kReachSteps = 1024, kLeastReach = 65534;
+/// Steps to which radii are known, in each of which they are by 0.07 % less, and the last of them.
+constexpr float kRadiusSteps = 1024, kLeastRadius = 65534;
 
 float clear_distance(unsigned packed, float max_radius) {
     const unsigned level = packed >> kLevelShift;
@@ -27,18 +27,18 @@ float clear_distance(unsigned packed, float max_radius) {
 PilotSurroundings::PilotSurroundings(const PilotedMap& map, const SurfacePatches& patches, int k, float max_radius,
                                      float shrink)
     : pilots_(map.pilots()), main_photons_(map.main_photons()), patches_(patches), k_(k), max_radius_(max_radius),
-      shrink_(shrink), known_(pilots_.photons().size()), reaches_(main_photons_.photons().size()) {}
+      shrink_(shrink), known_(pilots_.photons().size()), radii_(main_photons_.photons().size()) {}
 
-float PilotSurroundings::reach(const Photon& photon) const {
-    std::atomic<std::uint16_t>& known = reaches_[static_cast<std::size_t>(&photon - main_photons_.photons().data())];
+float PilotSurroundings::radius(const Photon& photon) const {
+    std::atomic<std::uint16_t>& known = radii_[static_cast<std::size_t>(&photon - main_photons_.photons().data())];
     std::uint16_t code = known.load(std::memory_order_relaxed);
     if (code == 0) {
         const SurfaceRegion region{photon.position(), photon.normal().decode()};
         const float r = piloted_radius(pilots_, {region, max_radius_, k_, shrink_});
-        const float steps = std::min(kReachSteps * std::log2(max_radius_ / r), kLeastReach);
+        const float steps = std::min(kRadiusSteps * std::log2(max_radius_ / r), kLeastRadius);
         known.store(code = static_cast<std::uint16_t>(1 + std::lround(steps)), std::memory_order_relaxed);
     }
-    return max_radius_ * std::exp2(static_cast<float>(1 - code) / kReachSteps);
+    return max_radius_ * std::exp2(static_cast<float>(1 - code) / kRadiusSteps);
 }
 
 bool PilotSurroundings::partly_occluded(const SurfaceRegion& region, const PilotedRegion& piloted) const {

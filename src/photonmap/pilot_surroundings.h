@@ -1,4 +1,5 @@
-// What pilot photons tell of their surroundings: what surface lies there, and how far photons near them light it.
+// What pilot photons tell of their surroundings: what surface lies there, and how
+// close photons are to each other.
 #pragma once
 
 #include "photonmap/piloted_map.h"
@@ -26,13 +27,10 @@ class PilotSurroundings {
     /// measured: the pilot photons near by lie farther from the edge than a lookup at it.
     Surroundings around(const SurfaceRegion& region, const PilotedRegion& piloted) const;
 
-    /// Radius of the region around a main photon itself [m]: as far as its light goes in an estimate that conserves
-    /// power (a kernel of variable width, Breiman, Meisel and Purcell 1977). A lookup's own region does not: one in the
-    /// dark grows until it has taken in k photons of the next spot, however far that is, and by 1 / r^2 a spot
-    /// of k photons would bring several times its power to all the surface around it.
-    float reach(const Photon& photon) const;
+    /// Radius of the region around a main photon itself [m], which says how close others are to it.
+    float radius(const Photon& photon) const;
 
-    std::size_t bytes() const { return (known_.size() + reaches_.size()) * sizeof(Packed); }
+    std::size_t bytes() const { return (known_.size() + radii_.size()) * sizeof(Packed); }
 
   private:
     /// Share of the disc in steps of 1/255, a flag, and how far nothing stands around; 0: nobody asked yet.
@@ -48,7 +46,7 @@ class PilotSurroundings {
     int k_;
     float max_radius_, shrink_;
     mutable std::vector<std::atomic<Packed>> known_;
-    mutable std::vector<std::atomic<std::uint16_t>> reaches_; ///< by photon, logarithms; 0: nobody asked yet
+    mutable std::vector<std::atomic<std::uint16_t>> radii_; ///< by photon, logarithms; 0: nobody asked yet
 };
 
 } // namespace keyhole

@@ -66,7 +66,7 @@ class RenderInTime {
 
     RenderResult run() {
         try {
-            choose();
+            choose(kLongestWithPhotons);
             if (is_close()) spend_in_parts();
             while (mean_.empty() || (left() > kLeast * start_ && !used_up_)) {
                 if (context_.stop->requested() || (context_.stopped() && !method_->samples_pixels)) break;
@@ -80,7 +80,7 @@ class RenderInTime {
 
     PassesInTime choose_passes() {
         try {
-            choose();
+            choose(kLongestTrial);     // passes follow from what it tells
         } catch (const Interrupted&) { // too slow for a trial
             if (method_ == &methods::automatic) use(methods::path);
         }
@@ -113,8 +113,8 @@ class RenderInTime {
         return !t.method->samples_pixels || kSamplesOfPart * t.of.per_sample(pixels_) < kPart * left();
     }
 
-    /// The method, and what it costs.
-    void choose() {
+    /// The method, and what it costs; of the time, what the trial of one with photons may take.
+    void choose(double longest_with_photons) {
         direct_light_.emplace(scene_, settings_, context_);
         paths_.emplace(scene_, settings_, given_paths_, context_);
         findings_.gain_by_openings = paths_->gain();
@@ -123,7 +123,7 @@ class RenderInTime {
             if (method_->samples_pixels && !fills_passes(settings_)) return;
             const StageClock clock(trials_, stages::trials);
             const double seconds = std::min(kTrialShare * start_, kTrialSeconds);
-            const double longest = (method_->keeps_photons ? kLongestWithPhotons : kLongestTrial) * start_;
+            const double longest = (method_->keeps_photons ? longest_with_photons : kLongestTrial) * start_;
             cost_ = try_cost(trial_context(), *method_, seconds, method_->samples_pixels ? seconds : longest);
             forget_rough_findings();
             if (!cost_ && !method_->samples_pixels && !method_->keeps_photons) throw Interrupted();

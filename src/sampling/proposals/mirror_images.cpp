@@ -10,7 +10,7 @@
 namespace keyhole {
 namespace {
 
-constexpr int kRays = 4096;
+constexpr int kRays = 1024;
 constexpr int kFewest = 4; // rays that take a way: those of a curved mirror meet as many planes as there are rays
 constexpr std::size_t kMostWays = 64;
 constexpr double kLeastCosine = 1 - 1e-6; // between normals of one plane, as exact as floats have them
