@@ -23,8 +23,8 @@ import numpy
 from common import luminance
 
 KINDS = {
-    "bidirectional": "BD", "light_tracing": "LT", "lens_subpath": "LS", "lens_perturbation": "LP", "multi_chain_perturbation": "MC",
-    "caustic_perturbation": "CP", "photon_map": "PM",
+    "bidirectional": "BD", "light_tracing": "LT", "mirrored_light_tracing": "LM", "lens_subpath": "LS", "lens_perturbation": "LP",
+    "multi_chain_perturbation": "MC", "caustic_perturbation": "CP", "photon_map": "PM",
 }
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
 
