@@ -59,7 +59,8 @@ bool may_light_specular(const Scene& scene) {
         if (emitter->is_delta() && emitter->power() > 0) emitters.push_back(emitter.get());
     std::vector<const Shape*> shapes;
     for (const Shape& shape : scene.shapes())
-        if (shape.material != nullptr && shape.material->traits().delta) shapes.push_back(&shape);
+        if (shape.material != nullptr && shape.material->traits().delta && !is_invisible_light(shape))
+            shapes.push_back(&shape);
     if (emitters.empty() || shapes.empty()) return false;
     const std::size_t pairs = emitters.size() * shapes.size();
     if (std::max(pairs, emitters.size()) > kRays / kFewest) return true;

@@ -86,6 +86,16 @@ TEST(LostCaustics, AreThoseOfLightThatMeetsSpecularSurfaces) {
     EXPECT_EQ(losses({0, 0, 0}, 0.3f, sun(), mirrors(0.1)), 1u);
 }
 
+/// Its mirror is not there.
+TEST(LostCaustics, AreNotThoseOfAnAreaLightWithoutASurface) {
+    SceneMaker m;
+    m.rectangle({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, make_diffuse(Rgb(0.5)));
+    m.rectangle({-0.3f, 1, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}, make_mirror(Rgb(0.9)), Rgb(20.0)).alpha(0);
+    m.emitter(make_point_emitter({0, 2, 0}, Rgb(1.0)));
+    const auto scene = m.camera({0, 1, 3}, {0, 0, 0}, 42).window(8, 6).build();
+    EXPECT_THAT(rendered(*scene, "path").stats.warnings, Not(Contains(HasSubstr("without extent"))));
+}
+
 /// A lit floor, and a box.
 SceneMaker lit_floor(const Vec3& lower, const Vec3& upper, const MaterialPtr& box) {
     SceneMaker m;
