@@ -26,7 +26,10 @@ set(long_agreement
   "Scatterings/ShortPaths.*"
   "Scenes/AlongUserPaths.*"
   "Scenes/Mlt_AgreesWithPathTracing.*/Guided*"
+  "Scenes/Mlt_AgreesWithPathTracing.*/Haze"
   "Scenes/Mlt_AgreesWithPathTracing.*/MirrorGlassBox"
+  "Scenes/Mlt_AgreesWithPathTracing.*/RoomsLow"
+  "Scenes/Mps_AgreesWithPathTracing.*/lantern"
   "Scenes/Mps_AgreesWithPathTracing.*/rooms"
   "Shared/References_Agree.*"
   "ShortPaths_OfTwoScatterings.*")
@@ -39,6 +42,8 @@ set(long_regression
   "Mutated_Inputs.*")
 set(long_unit
   "PhotonEnergy_EqualsLightTracing.GlassWall"
+  "PhotonEnergy_EqualsLightTracing.MirrorGlassBox"
+  "PhotonEnergy_EqualsLightTracing.OutsideGatherCoverage"
   "CombinedPhotons_EqualLightTracing.AlongUserPaths"
   "CombinedPhotons_EqualLightTracing.HazyBox"
   "LearnedScatteringOverAYard.BringsAllPowerByFewerPaths"
