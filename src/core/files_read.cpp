@@ -1,5 +1,6 @@
 #include "core/files_read.h"
 
+#include <filesystem>
 #include <mutex>
 #include <set>
 
@@ -17,6 +18,11 @@ Notes& notes() {
 }
 
 } // namespace
+
+std::string_view found_in_place_of_file(const std::string& path) {
+    std::error_code error;
+    return std::filesystem::exists(path, error) ? "something that is not a file" : "no such file";
+}
 
 void note_file_read(const std::string& path) {
     const std::lock_guard lock(notes().mutex);

@@ -4,9 +4,8 @@
 #include "film/filter.h"
 #include "methods/choice/choose_by_work.h"
 #include "methods/choice/first_look.h"
-#include "methods/learned_direct_light_scope.h"
 #include "methods/method.h"
-#include "methods/render_paths.h"
+#include "methods/preparation.h"
 #include "session/work.h"
 
 #include <algorithm>
@@ -33,24 +32,21 @@ RenderResult render(Scene& scene, const Settings& settings, const RunContext& co
                     const WorkPartition& share) {
     require_can_show(scene, settings);
     set_window_margin(scene, settings);
-    Findings findings;
     RenderResult result;
     // A group of processes has to come to one choice: who is stopped in the middle of a trial would make another.
     const std::set<std::string> none;
     RunContext deciding = context.alone();
     if (share.communicator != nullptr) deciding.stop = nullptr;
     try {
-        const LearnedDirectLightScope direct_light(scene, settings, deciding);
-        const RenderPaths found(scene, settings, user_paths, deciding);
-        const UserPaths& paths = found.paths();
-        findings.gain_by_openings = found.gain();
+        Preparation before(scene, settings, user_paths, deciding);
+        const UserPaths& paths = before.paths();
+        Findings& findings = before.findings();
         const ChosenByWork chosen = may_choose(settings)
                                         ? choose_by_work({scene, settings, none, deciding, paths, findings})
                                         : ChosenByWork{settings, ""};
         result = render_by_method({scene, chosen.settings, paths, context, share, findings});
         result.settings = settings;
-        direct_light.report(result.stats);
-        found.report(result.stats);
+        before.report(result.stats);
         if (!chosen.why.empty()) result.stats.remarks.insert(result.stats.remarks.begin(), chosen.why);
     } catch (const Interrupted&) { // before there was a picture
         result.settings = settings;

@@ -54,7 +54,7 @@ DensityEstimate estimate_density(const PhotonMap& map, const PhotonQuery& query,
 }
 
 /// The same over a region of radius `radius` [m] that doesn't follow from the photons of `map`, in which `area` [m^2]
-/// of surface lies.
+/// of surface lies. `weight` may ask maps for what is nearest, but not for what is within a radius.
 template <class Weight>
 DensityEstimate estimate_density(const PhotonMap& map, const SurfaceRegion& region, float radius, double area,
                                  Weight&& weight) {

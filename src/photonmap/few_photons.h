@@ -18,8 +18,8 @@ struct FewOfRegion {
 /// Expectation: the sum of light(photon) over the photons of the region. Where there are more than `few`, so many are
 /// drawn in proportion to importance(photon) >= 0, spread evenly over their order in the tree, in which neighbours
 /// follow each other (systematic resampling), and only these are asked for their light: what that costs, a line of
-/// sight or a lobe, is paid for them alone. `importance` must be positive wherever light is, and must not query a
-/// photon map; `light` may.
+/// sight or a lobe, is paid for them alone. `importance` must be positive wherever light is, and may ask maps for
+/// what is nearest, but not for what is within a radius; `light` may ask anything.
 template <class Importance, class Light>
 Rgb sum_over_few(const PhotonMap& map, const FewOfRegion& of, const Importance& importance, const Light& light,
                  SampleSource& source) {

@@ -1,5 +1,4 @@
-// What pilot photons tell of their surroundings: what surface lies there, and how
-// close photons are to each other.
+// What pilot photons tell of their surroundings: what surface lies there, and how close photons are to each other.
 #pragma once
 
 #include "photonmap/piloted_map.h"

@@ -25,7 +25,6 @@ class Techniques {
         if (mirrors_->empty()) mirrors_.reset();
     }
 
-    const Scene& scene() const { return scene_; }
     const StageOneSettings& settings() const { return settings_; }
     /// Whether path tracing is out of the question.
     bool need_light_paths() const;
@@ -47,7 +46,7 @@ class Techniques {
         if (guides_ != nullptr) guides_->sample(image, rng, found);
         if (!mirrors_) return;
         Failure why{};
-        const auto mirrored = mirrors_->sample(rng, why);
+        const auto mirrored = mirrors_->draw(rng, why);
         if (mirrored && mirrored->target > 0) found(*mirrored);
     }
 
@@ -67,7 +66,7 @@ class Techniques {
 
     /// Number density of a measured path among those that the others make.
     double density(const Path& path) const {
-        return (guides_ != nullptr ? guides_->density(path) : 0) + (mirrors_ ? mirrors_->density(path) : 0);
+        return (guides_ != nullptr ? guides_->density(path) : 0) + (mirrors_ ? mirrors_->draw_density(path) : 0);
     }
 
     const Scene& scene_;

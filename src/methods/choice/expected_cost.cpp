@@ -2,8 +2,7 @@
 
 #include "core/shared_work.h"
 #include "methods/choice/choose_by_work.h"
-#include "methods/learned_direct_light_scope.h"
-#include "methods/render_paths.h"
+#include "methods/preparation.h"
 
 #include <algorithm>
 
@@ -33,30 +32,12 @@ class TimeLeft {
     StopToken stop_;
 };
 
-/// What a render finds out before its trials, and makes them with.
-class Preparation {
-  public:
-    /// @throws InputError and Interrupted
-    Preparation(Scene& scene, const Settings& settings, const UserPathFile& user_paths, const RunContext& context)
-        : direct_light_(scene, settings, context), paths_(scene, settings, user_paths, context) {
-        findings_.gain_by_openings = paths_.gain();
-    }
-    const UserPaths& paths() const { return paths_.paths(); }
-    Findings& findings() { return findings_; }
-
-    void report(ExpectedCost& expected) const {
-        RenderStats stats;
-        direct_light_.report(stats);
-        paths_.report(stats);
-        for (const StageStats& stage : stats.stages) expected.stages.emplace_back(stage.stage->name, stage.cpu_seconds);
-        expected.remarks.insert(expected.remarks.end(), stats.remarks.begin(), stats.remarks.end());
-    }
-
-  private:
-    LearnedDirectLightScope direct_light_;
-    RenderPaths paths_;
-    Findings findings_; // of trials: those of a plan come from more paths
-};
+void add_preparation(ExpectedCost& expected, const Preparation& before) {
+    RenderStats stats;
+    before.report(stats);
+    for (const StageStats& stage : stats.stages) expected.stages.emplace_back(stage.stage->name, stage.cpu_seconds);
+    expected.remarks.insert(expected.remarks.end(), stats.remarks.begin(), stats.remarks.end());
+}
 
 Settings settings_in_time(const TrialCost& cost, Settings s, const std::set<std::string>& given, double pixels,
                           double seconds) {
@@ -101,7 +82,7 @@ void expect_by_work(ExpectedCost& expected, Scene& scene, Settings& s, const Use
         if (!chosen.why.empty()) expected.remarks.push_back(std::move(chosen.why));
         s = std::move(chosen.settings);
     }
-    before.report(expected);
+    add_preparation(expected, before);
     if (const auto cost = cost_of(c, *s.method)) add_stages(expected, cost->cost, s, scene.camera().window().size());
 }
 
@@ -120,7 +101,7 @@ void expect_in_time(ExpectedCost& expected, Scene& scene, Settings& s, const Use
     if (chooses) cost = choose_in_time(c, chosen, expected);
     if (!cost) cost = cost_of(c, *chosen.method);
     s = std::move(chosen);
-    before.report(expected);
+    add_preparation(expected, before);
     if (!cost) return;
     if (tries) expected.stages.emplace_back(stages::trials.name, std::min(cpu_seconds() - start, time));
     s = settings_in_time(*cost, s, given, pixels, std::max(0.0, time - expected.cpu_seconds()));

@@ -10,9 +10,8 @@
 #include "methods/choice/mean_render.h"
 #include "methods/choice/method_trials.h"
 #include "methods/choice/stage_balance.h"
-#include "methods/learned_direct_light_scope.h"
 #include "methods/method.h"
-#include "methods/render_paths.h"
+#include "methods/preparation.h"
 #include "session/passes.h"
 #include "session/stage_clock.h"
 
@@ -100,7 +99,9 @@ class RenderInTime {
 
   private:
     double left() const { return context_.stop->seconds_left(); }
-    TrialContext trial_context() { return {scene_, settings_, given_, context_, paths_->paths(), findings_}; }
+    TrialContext trial_context() {
+        return {scene_, settings_, given_, context_, before_->paths(), before_->findings()};
+    }
     /// Whether two methods are so close that a longer look is worth its time. Several small photon maps are worse than
     /// a large one, and what they show of it is little.
     bool is_close() const {
@@ -115,9 +116,7 @@ class RenderInTime {
 
     /// The method, and what it costs; of the time, what the trial of one with photons may take.
     void choose(double longest_with_photons) {
-        direct_light_.emplace(scene_, settings_, context_);
-        paths_.emplace(scene_, settings_, given_paths_, context_);
-        findings_.gain_by_openings = paths_->gain();
+        before_.emplace(scene_, settings_, given_paths_, context_);
         if (settings_.method != &methods::automatic) {
             use(*settings_.method);
             if (method_->samples_pixels && !fills_passes(settings_)) return;
@@ -138,7 +137,7 @@ class RenderInTime {
         at_choice_ = left();
     }
     /// How far gather rays come is found out anew, with more rays than trials spend on it, where it matters.
-    void forget_rough_findings() { findings_.forget_coverage(); }
+    void forget_rough_findings() { before_->findings().forget_coverage(); }
     void use(const Method& method) { method_ = &method; }
     void take_over(const TriedMethod& t) {
         use(*t.method);
@@ -271,7 +270,7 @@ class RenderInTime {
         }
         chosen.seed = seed_of_render(settings_, renders_++);
         if (renders_ > 1) chosen.save_map.clear();
-        RenderResult result = render_by_method({scene_, chosen, paths_->paths(), limited, share, findings_});
+        RenderResult result = render_by_method({scene_, chosen, before_->paths(), limited, share, before_->findings()});
         used_up_ = last && method_->samples_pixels && given_.contains("spp");
         const bool holes = empty_pixels(result) > 0;
         if (!has_picture(result) || (holes && (!last || !mean_.empty()))) {
@@ -332,8 +331,7 @@ class RenderInTime {
                                           start_));
         for (const TriedMethod& t : tried_)
             if (t.method == method_) warn_of_dots(*method_, t.error, result.stats);
-        if (direct_light_) direct_light_->report(result.stats);
-        if (paths_) paths_->report(result.stats);
+        if (before_) before_->report(result.stats);
         return result;
     }
 
@@ -352,9 +350,7 @@ class RenderInTime {
     const WorkPartition& share_;
     const double start_; // of time, in the beginning [s]
     double pixels_ = 0;
-    std::optional<LearnedDirectLightScope> direct_light_;
-    std::optional<RenderPaths> paths_;
-    Findings findings_;
+    std::optional<Preparation> before_;
     const Method* method_;           // the one that was asked for, until one is chosen
     std::optional<TrialCost> cost_;  // of the method; none for those that sample pixels
     std::vector<TriedMethod> tried_; // the best first

@@ -52,12 +52,15 @@ std::ifstream opened(const std::string& path) {
     return file;
 }
 
-void check_magic(const std::string& path, const Header& found) {
-    if (found.magic != kMagic) refuse(path, "found no photon map, expected a file that --save-map wrote");
+Header read_header(std::ifstream& file, const std::string& path) {
+    Header header;
+    file.seekg(0);
+    if (!file.read(reinterpret_cast<char*>(&header), sizeof header) || header.magic != kMagic)
+        refuse(path, "found no photon map, expected a file that --save-map wrote");
+    return header;
 }
 
 void check(const std::string& path, const Header& found, const PhotonFileKey& key) {
-    check_magic(path, found);
     if (found.byte_order != kByteOrder) refuse(path, "found a photon map from a machine of another byte order");
     if (found.version != kVersion)
         refuse(path, fmt::format("found a photon map of version {}, expected version {}", found.version, kVersion));
@@ -114,19 +117,13 @@ void save_photons(const std::string& path, const PhotonFileKey& key, const Photo
 
 void check_photon_file(const std::string& path) {
     std::ifstream file = opened(path);
-    Header header;
-    file.seekg(0);
-    if (!file.read(reinterpret_cast<char*>(&header), sizeof header)) header.magic = {};
-    check_magic(path, header);
+    read_header(file, path);
 }
 
 Photons load_photons(const std::string& path, const PhotonFileKey& key) {
     std::ifstream file = opened(path);
     const auto size = static_cast<std::uint64_t>(file.tellg());
-    Header header;
-    if (size < sizeof header) refuse(path, "found no photon map, expected a file that --save-map wrote");
-    file.seekg(0);
-    read(file, bytes_of(&header), path);
+    const Header header = read_header(file, path);
     check(path, header, key);
     const std::uint64_t most = (size - sizeof header) / sizeof(Photon);
     std::uint64_t all = 0;

@@ -3,36 +3,10 @@
 // has no peaks where one connection's edge is short: unlike UP it leaves from, and comes to, such paths as readily as
 // others.
 #include "sampling/guidance/guided_paths.h"
-#include "sampling/proposals/edit.h"
+#include "sampling/proposals/new_path_proposal.h"
 #include "sampling/proposals/registry.h"
 
 namespace keyhole {
-namespace {
-
-class GuidedPathProposal final : public Proposal<Path> {
-  public:
-    GuidedPathProposal(const ProposalContext& context, const UserPaths& paths)
-        : scene_(*context.scene), guides_(*context.scene, paths, context.set, context.max_scatterings) {}
-
-    std::string_view name() const override { return "user paths, independent"; }
-    double suitability(const Path& /*x*/) const override { return 1; }
-
-    std::optional<Path> propose(const Path& /*x*/, Rng& rng, Failure& why) const override {
-        auto y = guides_.draw(rng, why);
-        // What rounding carried out of cones or openings can't be proposed, if it can't be found again.
-        if (y && y->target > 0 && !(guides_.draw_density(*y) > 0)) return why = Failure::signature, std::nullopt;
-        return y;
-    }
-    double transition_density(const Path& x, const Path& y) const override {
-        return is_all_new(scene_, x, y) ? guides_.draw_density(y) : 0.0;
-    }
-
-  private:
-    const Scene& scene_;
-    GuidedPaths guides_;
-};
-
-} // namespace
 
 constinit const ProposalKind proposals::guided_path{
     .weight = {"guided_path.weight", 0.3, 0, 1,
@@ -40,7 +14,9 @@ constinit const ProposalKind proposals::guided_path{
     .needs_user_paths = true,
     .family = kNewSubPaths,
     .make = [](const ProposalContext& context) {
-        return only(std::make_unique<GuidedPathProposal>(context, context.user_paths()));
+        return only(std::make_unique<NewPathProposal<GuidedPaths>>(
+            "user paths, independent", *context.scene,
+            GuidedPaths(*context.scene, context.user_paths(), context.set, context.max_scatterings)));
     }};
 
 } // namespace keyhole

@@ -24,7 +24,7 @@ double mirrored_density(const Path& y, int last, int eye) {
 
 } // namespace
 
-std::optional<Path> MirroredLightPaths::sample(Rng& rng, Failure& why) const {
+std::optional<Path> MirroredLightPaths::draw(Rng& rng, Failure& why) const {
     SubPath light, eye;
     if (!walk_.trace(light, rng, why)) return std::nullopt;
     eye.push_back(sample_eye(scene_, rng));
@@ -41,7 +41,7 @@ std::optional<Path> MirroredLightPaths::sample(Rng& rng, Failure& why) const {
     return join(scene_, set_, light, eye, *image, why);
 }
 
-double MirroredLightPaths::density(const Path& y) const {
+double MirroredLightPaths::draw_density(const Path& y) const {
     const int eye = y.vertices() - 1, last = next_finite(y, eye, -1);
     if (last == eye - 1) return 0;
     const double way = mirrors_.probability(way_between(y, last, eye));

@@ -19,9 +19,9 @@ class MirroredLightPaths {
     bool empty() const { return mirrors_.empty(); }
 
     /// A path, evaluated; none where it can't be made, for the reason in `why`.
-    std::optional<Path> sample(Rng& rng, Failure& why) const;
-    /// Density of the measured path y among those of sample(), in the convention of measure.h.
-    double density(const Path& y) const;
+    std::optional<Path> draw(Rng& rng, Failure& why) const;
+    /// Density of the measured path y among those of draw(), in the convention of measure.h.
+    double draw_density(const Path& y) const;
 
   private:
     bool meet_mirrors(SubPath& eye, const MirrorImages::Way& way, Vec3 w, Failure& why) const;

@@ -2,29 +2,9 @@
 // mirrors. Nothing else goes straight to a caustic that is seen in a mirror: LT sees it directly only, and a chain that
 // came to it from the eye, once in thousands of proposals, stays.
 #include "sampling/proposals/mirrored_light_paths.h"
+#include "sampling/proposals/new_path_proposal.h"
 
 namespace keyhole {
-namespace {
-
-class MirroredLightTracing final : public Proposal<Path> {
-  public:
-    MirroredLightTracing(const Scene& scene, MirroredLightPaths paths) : scene_(scene), paths_(std::move(paths)) {}
-
-    std::string_view name() const override { return "mirrored_light_tracing"; }
-    double suitability(const Path& /*x*/) const override { return 1; }
-    std::optional<Path> propose(const Path& /*x*/, Rng& rng, Failure& why) const override {
-        return paths_.sample(rng, why);
-    }
-    double transition_density(const Path& x, const Path& y) const override {
-        return is_all_new(scene_, x, y) ? paths_.density(y) : 0;
-    }
-
-  private:
-    const Scene& scene_;
-    MirroredLightPaths paths_;
-};
-
-} // namespace
 
 constinit const ProposalKind proposals::mirrored_light_tracing{
     .weight = {"mirrored_light_tracing.weight", 0.1, 0, 1,
@@ -33,8 +13,9 @@ constinit const ProposalKind proposals::mirrored_light_tracing{
     .family = kNewSubPaths,
     .make = [](const ProposalContext& context) {
         MirroredLightPaths paths(context);
-        return paths.empty() ? ProposalList()
-                             : only(std::make_unique<MirroredLightTracing>(*context.scene, std::move(paths)));
+        if (paths.empty()) return ProposalList();
+        return only(std::make_unique<NewPathProposal<MirroredLightPaths>>("mirrored_light_tracing", *context.scene,
+                                                                          std::move(paths)));
     }};
 
 } // namespace keyhole

@@ -41,6 +41,7 @@ Mixture<Path> make_mixture(const ProposalContext& context, const Settings& setti
 
 ChainMixtures::ChainMixtures(const ProposalContext& context, const Settings& settings)
     : mixture(make_mixture(context, settings)) {
+    if (context.user_paths().empty()) return;
     ProposalContext unguided = context;
     unguided.guides = nullptr;
     Mixture<Path> without = make_mixture(unguided, settings);

@@ -71,9 +71,7 @@ void check_image_size(const std::string& path, std::int64_t width, std::int64_t 
 std::shared_ptr<const TextureImage> load_image(const std::string& path, ImagePart part) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error))
-        throw InputError(
-            fmt::format("{}: found {}, expected an image", path,
-                        std::filesystem::exists(path, error) ? "something that is not a file" : "no such file"));
+        throw InputError(fmt::format("{}: found {}, expected an image", path, found_in_place_of_file(path)));
     const std::pair key{std::filesystem::weakly_canonical(path, error).string(), part};
     note_file_read(key.first);
     // Readers run one at a time: scenes have few images, and two threads must not decode the same one.

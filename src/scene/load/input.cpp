@@ -115,10 +115,9 @@ std::string read_text_file(const std::string& path, std::string_view what, std::
     const auto fail = [&](const std::string& why) -> std::string { throw InputError({path, 0, 0}, why); };
     std::error_code error;
     const auto status = std::filesystem::status(path, error);
-    if (!std::filesystem::exists(status)) return fail(fmt::format("found no such file, expected {}", what));
     if (std::filesystem::is_directory(status)) return fail(fmt::format("found a directory, expected {}", what));
     if (!std::filesystem::is_regular_file(status))
-        return fail(fmt::format("found something that is not a file, expected {}", what));
+        return fail(fmt::format("found {}, expected {}", found_in_place_of_file(path), what));
     if (const auto bytes = std::filesystem::file_size(path, error); !error && bytes > most_bytes)
         return fail(fmt::format("found {} bytes, expected at most {}", bytes, most_bytes));
     std::ifstream stream(path, std::ios::binary);

@@ -1,6 +1,7 @@
 #include "scene/load/gltf/document.h"
 
 #include "core/base64.h"
+#include "core/files_read.h"
 
 #include <fmt/format.h>
 
@@ -41,10 +42,7 @@ std::string chunk(std::uint32_t kind, std::string bytes, char padding) {
 std::string read_bytes(const std::string& path, const char* what) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error))
-        throw InputError(
-            {path, 0, 0},
-            fmt::format("found {}, expected {}",
-                        std::filesystem::exists(path, error) ? "something that is not a file" : "no such file", what));
+        throw InputError({path, 0, 0}, fmt::format("found {}, expected {}", found_in_place_of_file(path), what));
     std::ifstream file(path, std::ios::binary);
     std::ostringstream text;
     text << file.rdbuf();

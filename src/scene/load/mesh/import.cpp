@@ -41,9 +41,8 @@ std::string extension_of(const std::filesystem::path& path) {
 /// @returns the extension.
 std::string check_file(const std::string& path) {
     std::error_code error;
-    const auto status = std::filesystem::status(path, error);
-    if (!std::filesystem::exists(status)) fail(path, "found no such file, expected a mesh");
-    if (!std::filesystem::is_regular_file(status)) fail(path, "found something that is not a file, expected a mesh");
+    if (!std::filesystem::is_regular_file(path, error))
+        fail(path, fmt::format("found {}, expected a mesh", found_in_place_of_file(path)));
     const std::string extension = extension_of(path);
     // Other formats that assimp knows stay shut: we don't test them.
     constexpr std::array kKnown{".obj", ".ply", ".ply.gz", ".gltf", ".glb"};
