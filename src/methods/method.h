@@ -50,6 +50,9 @@ struct Method {
         /// By how much a trial flatters its error: photons of two renders blur light alike, and chains are too short to
         /// show what they miss.
         double doubt = 1;
+        /// Not tried where another method promises a squared error below this: chains can't be so much better there
+        /// that it would be worth the time of their trial. 0: always tried.
+        double needless_below = 0;
     } trial{};
 
     /// What a unit of effort is spent on, where the method runs chains.

@@ -147,7 +147,7 @@ constinit const Method methods::mlt{.name = "mlt",
                                     .help = "Metropolis light transport: the chains of mps, drawn directly",
                                     .follows_user_paths = true,
                                     .asks_for_direct_light = true,
-                                    .trial = {.share = 0.09, .doubt = 1.5},
+                                    .trial = {.share = 0.09, .doubt = 1.5, .needless_below = 0.05},
                                     .render = render_mlt};
 
 } // namespace keyhole

@@ -207,21 +207,21 @@ template <StageOneOf start> RenderResult render_primary(const RenderTask& task) 
 constinit const Method methods::pssmlt{.name = "pssmlt",
                                        .help = "Metropolis light transport in primary sample space",
                                        .scatters_in_media = true,
-                                       .trial = {.share = 0.07, .doubt = 1.5},
+                                       .trial = {.share = 0.07, .doubt = 1.5, .needless_below = 0.05},
                                        .render = render_primary<start_pssmlt>};
 
 // Samples of all techniques, which stage one of these takes, cost as much as many of their steps.
 constinit const Method methods::mmlt{.name = "mmlt",
                                      .help = "the same as pssmlt, with chains for each length of path",
                                      .scatters_in_media = true,
-                                     .trial = {.share = 0.12, .by_work = true, .doubt = 1.5},
+                                     .trial = {.share = 0.12, .by_work = true, .doubt = 1.5, .needless_below = 0.05},
                                      .mutations_of_effort = 1500e3,
                                      .brightness_samples_of_effort = 50e3,
                                      .render = render_primary<start_mmlt>};
 
 constinit const Method methods::rjmlt{.name = "rjmlt",
                                       .help = "mmlt that changes techniques by reversible jumps",
-                                      .trial = {.share = 0.07, .doubt = 1.5},
+                                      .trial = {.share = 0.07, .doubt = 1.5, .needless_below = 0.05},
                                       .mutations_of_effort = 1500e3,
                                       .brightness_samples_of_effort = 50e3,
                                       .render = render_primary<start_rjmlt>};

@@ -237,5 +237,33 @@ TEST(TrialErrors, OfBlackPicturesAreThatEverythingIsMissing) {
     EXPECT_EQ(alone[0].grain + alone[0].blotches + alone[0].missing, 0);
 }
 
+/// Two renders with light in `lit` pixels of the first rows, in each of them with probability `found` and brighter by
+/// its reciprocal.
+TrialPictures in_a_few_pixels(int lit, double found, std::uint64_t seed) {
+    const auto render = [&](std::uint64_t of) {
+        Rng rng(of, StreamPurpose::test, 0);
+        Image image(kWidth, kHeight, 1);
+        for (int i = 0; i < lit; ++i)
+            if (rng.next() < found) image.data[static_cast<std::size_t>(i)] = static_cast<float>(1 / found);
+        return image;
+    };
+    return {render(2 * seed), render(2 * seed + 1), true};
+}
+
+TEST(TrialErrors, AreNotNoneWhereTrialsFindLittleLight) {
+    // The light of 1 % of the pixels would be left out as that of lamps, and all its errors as the largest.
+    const std::vector<TrialPictures> methods{in_a_few_pixels(30, 0.1, 1), in_a_few_pixels(30, 0.9, 2)};
+    const std::vector<TrialError> e = trial_errors(methods);
+    const auto all = [](const TrialError& of) { return of.grain + of.blotches; };
+    EXPECT_GT(all(e[0]), 4 * all(e[1])) << "9 for 1/9 by their variances";
+    EXPECT_GT(all(e[1]), 0);
+    // A black picture has all errors.
+    const std::vector<TrialPictures> none{in_a_few_pixels(30, 0, 3), methods[0]};
+    const std::vector<TrialError> of_none = trial_errors(none);
+    EXPECT_GT(of_none[0].missing, 4 * of_none[1].missing);
+    EXPECT_NEAR(share_lit(methods), 30.0 / (kWidth * kHeight), 1e-3);
+    EXPECT_EQ(share_lit(std::span(none).first(1)), 0);
+}
+
 } // namespace
 } // namespace keyhole

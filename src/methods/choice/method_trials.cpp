@@ -45,6 +45,8 @@ constexpr std::int64_t kTrialSeed = std::int64_t{1} << 20;
 constexpr double kCausticLight = 0.1;
 /// Squared error from which on dots are told: a tenth of the light.
 constexpr double kDotsToTell = 0.01;
+/// Share of the pixels with light below which what trials say is a guess.
+constexpr double kLittleLight = 0.1;
 /// Of trials by work: seconds that a window of their size is for, and samples of its pixels.
 constexpr double kTrialOfWork = 0.7;
 constexpr std::int64_t kSamplesOfTrial = 4;
@@ -242,6 +244,24 @@ double work_asked_for(const TrialContext& c, std::span<const TriedMethod> tried)
     return ipm->of.cost.predict(s, pixels);
 }
 
+/// The share of the pixels in which any trial found light.
+double share_lit(std::span<const TriedMethod> tried) {
+    std::vector<TrialPictures> pictures;
+    for (const TriedMethod& t : tried) pictures.push_back(t.pictures);
+    return keyhole::share_lit(pictures);
+}
+
+RankLimits limits_in_time(const TrialContext& c) {
+    return {.passes = fills_passes(c.settings) ? static_cast<double>(kPassesInTime) : 1};
+}
+
+/// Whether those that were tried promise so little error that another trial isn't worth its time.
+bool is_needless(const Method& method, std::vector<TriedMethod>& tried, const TrialContext& c) {
+    if (!(method.trial.needless_below > 0) || share_lit(tried) < kLittleLight) return false;
+    rank_methods(tried, c, c.context.stop->seconds_left(), limits_in_time(c));
+    return tried.front().predicted < method.trial.needless_below;
+}
+
 /// Whether each pixel gets a sample in the time that is left. Paths are traced where none has time for that.
 bool has_time_for_a_sample(const TriedMethod& t, const TrialContext& c) {
     return !t.method->samples_pixels || t.method == &methods::path ||
@@ -286,13 +306,14 @@ std::vector<TriedMethod> try_methods(const TrialContext& c, double most) {
         if (!may_try(c, *method)) continue;
         const double before = start - c.context.stop->seconds_left();
         if (c.context.stopped() || before - beyond + part > budget || before > kMostWithPhotons * start) break;
+        if (is_needless(*method, tried, c)) continue;
         if (method->keeps_photons && !plan(c, std::min(kPlan * start, most))) continue;
         if (auto t = try_method(c, *method, small, part); t && has_time_for_a_sample(*t, c))
             tried.push_back(std::move(*t));
         const double taken = start - c.context.stop->seconds_left() - before;
         if (method->keeps_photons) beyond += std::max(0.0, taken - part);
     }
-    rank_methods(tried, c, c.context.stop->seconds_left(), {.passes = fills_passes(c.settings) ? kPassesInTime : 1});
+    rank_methods(tried, c, c.context.stop->seconds_left(), limits_in_time(c));
     return tried;
 }
 
@@ -337,18 +358,30 @@ Settings settings_of_same_work(const TrialContext& c, std::span<const TriedMetho
 }
 
 std::string describe_choice(const TrialContext& c, std::span<const TriedMethod> tried) {
-    std::string text =
-        fmt::format("method {} chosen by trial: squared relative errors for this time or work would be about",
-                    tried.front().method->name);
+    const double lit = share_lit(tried);
+    if (!(lit > 0)) return fmt::format("method {} chosen, for no trial found any light", tried.front().method->name);
+    std::string text = fmt::format(
+        "method {} chosen by trial{}: squared relative errors for this time or work would be about",
+        tried.front().method->name,
+        lit < kLittleLight ? fmt::format(", a guess, for trials found light in {:.2g} % of the pixels", 100 * lit)
+                           : "");
     for (const TriedMethod& t : tried)
         text += fmt::format("{} {} {:.2g}", &t == tried.data() ? "" : ",", t.method->name, t.predicted);
-    const char* before = "; there was too little time to try ";
+    std::string needless, too_slow;
     for (const Method* method : all_methods()) {
         if (!std::isfinite(c.context.seconds_left()) || !may_try(c, *method) ||
             std::ranges::find(tried, method, &TriedMethod::method) != tried.end())
             continue;
-        text += std::exchange(before, ", ") + std::string(method->name);
+        const bool gains_nothing = lit >= kLittleLight && tried.front().predicted < method->trial.needless_below;
+        (gains_nothing ? needless : too_slow) += fmt::format(" {},", method->name);
     }
+    const auto add = [&](const char* words, std::string& names) {
+        if (names.empty()) return;
+        names.pop_back();
+        text += words + names;
+    };
+    add("; there was too little time to try", too_slow);
+    add("; the error is too small to try", needless);
     return text;
 }
 

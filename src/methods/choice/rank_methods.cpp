@@ -101,6 +101,10 @@ void rank_methods(std::vector<TriedMethod>& tried, const TrialContext& c, double
         tried[i].predicted = predict(tried[i], c, left, limits);
     }
     std::ranges::stable_sort(tried, {}, &TriedMethod::predicted);
+    // Where nobody found any, it is for those who look from both ends.
+    if (share_lit(pictures) > 0) return;
+    const auto bdpt = std::ranges::find(tried, &methods::bdpt, &TriedMethod::method);
+    if (bdpt != tried.end()) std::rotate(tried.begin(), bdpt, bdpt + 1);
 }
 
 } // namespace keyhole

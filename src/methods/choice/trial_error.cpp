@@ -48,10 +48,17 @@ double median(Values v) {
     return *middle;
 }
 
-Values without_largest(Values v, double share) {
+Values without_largest(Values v, std::size_t count) {
     std::ranges::sort(v);
-    v.resize(v.size() - static_cast<std::size_t>(std::ceil(share * static_cast<double>(v.size()))));
+    v.resize(v.size() - count);
     return v;
+}
+std::size_t count_of(double share, std::size_t count) {
+    return static_cast<std::size_t>(std::ceil(share * static_cast<double>(count)));
+}
+Values without_largest(Values v, double share) {
+    const std::size_t count = count_of(share, v.size());
+    return without_largest(std::move(v), count);
 }
 
 /// Brightness of a picture without its brightest pixels: beside a lamp in view everything else would be dark.
@@ -109,8 +116,17 @@ Grid difference_of(const Image& a, const Image& b) {
 }
 Grid difference_of(const TrialPictures& m) { return difference_of(m.first, m.second); }
 
-/// What is added to the square of each pixel of a picture, so that errors are relative to it in its darkest ones.
-double least_square(const Grid& picture) { return kDark * typical(picture.values) * typical(picture.values); }
+/// What is added to the square of each pixel of a picture, so that errors are relative to it in its darkest ones. Where
+/// fewer have any light than may show lamps, as in a dark room of which trials find a few dots, these alone count.
+double least_square(const Grid& picture) {
+    double usual = typical(picture.values);
+    if (!(usual > 0)) {
+        Values lit = picture.values;
+        std::erase(lit, 0.0);
+        usual = typical(lit);
+    }
+    return kDark * usual * usual;
+}
 
 /// Half the squared difference is the variance of one of two. Relative to `picture`; of pixels.
 Values relative_variances(const Grid& difference, const Grid& picture) {
@@ -122,14 +138,22 @@ Values relative_variances(const Grid& difference, const Grid& picture) {
     }
     return v;
 }
+/// Without so many of the pixels with light: where these are few, all of them would be left out, and no error either.
 double relative_variance(const Grid& difference, const Grid& picture, double trimmed = kTrimmed) {
-    return mean(without_largest(relative_variances(difference, picture), trimmed));
+    const auto lit = picture.values.size() - static_cast<std::size_t>(std::ranges::count(picture.values, 0.0));
+    return mean(without_largest(relative_variances(difference, picture), count_of(trimmed, lit)));
 }
 
-/// How bright the methods find most of the picture, over the one that finds it brightest.
+/// How bright the methods find most of the picture, over the one that finds it brightest. Where none finds light in
+/// most of it, in how many pixels they find any: few, bright dots are not to stand for what others see everywhere.
 Values brightness_of(std::span<const TrialPictures> methods) {
-    Values brightness;
-    for (const TrialPictures& m : methods) brightness.push_back(typical(mean_of(m).values));
+    Values brightness, lit;
+    for (const TrialPictures& m : methods) {
+        const Values v = mean_of(m).values;
+        brightness.push_back(typical(v));
+        lit.push_back(static_cast<double>(v.size()) - static_cast<double>(std::ranges::count(v, 0.0)));
+    }
+    if (!(std::ranges::max(brightness) > 0)) brightness = lit;
     const double brightest = std::ranges::max(brightness);
     for (double& b : brightness) b = brightest > 0 ? b / brightest : 1;
     return brightness;
@@ -258,6 +282,16 @@ double blur(const TrialPictures& photons, const TrialPictures& samples) {
     // The squares of light that only photons find add up to no more than it does.
     const double found = all > 0 ? std::max(0.0, excess / all) : 0;
     return std::max(0.0, stats.mean() - stats.standard_error() - found);
+}
+
+double share_lit(std::span<const TrialPictures> methods) {
+    std::vector<bool> lit(methods.empty() ? 0 : methods[0].first.data.size());
+    for (const TrialPictures& m : methods) {
+        const Values v = mean_of(m).values;
+        for (std::size_t i = 0; i < v.size(); ++i)
+            if (v[i] > 0) lit[i] = true;
+    }
+    return lit.empty() ? 0 : static_cast<double>(std::ranges::count(lit, true)) / static_cast<double>(lit.size());
 }
 
 std::vector<TrialError> trial_errors(std::span<const TrialPictures> methods) {

@@ -48,6 +48,9 @@ double share_of_grain(const TrialPictures& part, const TrialPictures& whole);
 /// samples can't find. Where photons blur, they leave the mean of the picture alone.
 double blur(const TrialPictures& photons, const TrialPictures& samples);
 
+/// The share of the pixels in which any of them finds light.
+double share_lit(std::span<const TrialPictures> methods);
+
 /// One for each of the methods. The picture that errors are relative to is the mean of all, weighted by how well the
 /// two renders of each agree. Two renders agree on what neither found: where all of a method's are darker than another
 /// one can be, what is missing is an error. So is what most pixels lack though a few bright ones bring it: their mean

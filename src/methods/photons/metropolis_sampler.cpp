@@ -82,7 +82,7 @@ constinit const Method methods::mps{.name = "mps",
                                     .follows_user_paths = true,
                                     .asks_for_direct_light = true,
                                     .importance = ImportanceUse::beside,
-                                    .trial = {.share = 0.16, .by_work = true, .doubt = 10},
+                                    .trial = {.share = 0.16, .by_work = true, .doubt = 10, .needless_below = 0.3},
                                     .render = render_photons,
                                     .make_sampler = [](const SamplerContext& c) -> std::unique_ptr<PhotonSampler> {
                                         return std::make_unique<MetropolisSampler>(c);
