@@ -48,6 +48,12 @@ constexpr double kLesserCaustic = 0.1, kLeastLook = 0.1;
 /// it.
 constexpr float kLit = 1.5f;
 
+/// Cosine between shading normal and surface below which irradiance through the surface won't do: what a bumped surface
+/// reflects of a low sun is another light.
+constexpr float kBent = 0.97f;
+
+bool is_bent(const Vertex& v) { return std::abs(v.bsdf.shading_normal().dot(v.point.ng)) < kBent; }
+
 /// Photons of a caustic that are tested for sight, and photons that a lobe at the end of a gather ray is asked about.
 /// The error that a few more would save is one of this sample alone, and small beside its others.
 constexpr int kSights = 8, kPhotonsOfLobe = 16;
@@ -140,13 +146,16 @@ Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSou
     if (!v.bsdf.traits().diffuse) return lobe(v, back, place, leg, source);
     const bool on = goes_on(leg, place, here);
     const double share = place && !on ? maps_.irradiance->share_that_reaches(*place, leg.longer()) : 1;
-    const Rgb f = v.bsdf.diffuse_reflectance(back);
-    const Rgb direct_here = direct(place, v, here, leg, source);
-    Rgb sum = end.direct = f * direct_here;
-    if (on)
-        sum += traced_on(v, back, place, direct_here + known.irradiance, leg, source);
-    else if (place)
-        sum += f * known.irradiance * share;
+    Rgb sum(0.0), direct_here(0.0);
+    if (is_bent(v)) {
+        sum = by_shading_normal(v, back, place, leg, source, end);
+    } else {
+        const Rgb f = v.bsdf.diffuse_reflectance(back);
+        direct_here = direct(place, v, here, leg, source);
+        sum = end.direct = f * direct_here;
+        if (place && !on) sum += f * known.irradiance * share;
+    }
+    if (on) sum += traced_on(v, back, place, direct_here + known.irradiance, leg, source);
     if (!v.bsdf.traits().glossy) return sum;
     // Seldom, and all the more then.
     const double p = std::max(kLeastGlossy, v.bsdf.glossy_probability(back));
@@ -156,6 +165,17 @@ Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSou
     // What is traced on brings the indirect light of all parts.
     if (place && !on) shine += photons({false, leg.longer()}, *place, glossy.v, here.normal, back, source);
     return sum + shine * (glossy.scale / p);
+}
+
+Rgb GatherRays::by_shading_normal(const Vertex& v, const Vec3& back, const std::optional<std::uint32_t>& place,
+                                  const Leg& leg, SampleSource& source, End& end) const {
+    Vertex paint = v;
+    paint.bsdf = Bsdf(Frame(v.bsdf.shading_normal()), DiffuseBsdf{v.bsdf.diffuse_reflectance(back) * kPi});
+    const SurfaceRegion here{v.point.p, facing(v.point.ng, back)};
+    Rgb sum = end.direct = direct_light(scene_, paint, back, at_end(leg), source);
+    if (place && !goes_on(leg, place, here))
+        sum += photons({false, leg.longer()}, *place, paint, here.normal, back, source);
+    return sum;
 }
 
 Rgb GatherRays::direct(const std::optional<std::uint32_t>& place, const Vertex& v, const SurfaceRegion& here,

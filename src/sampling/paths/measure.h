@@ -23,16 +23,26 @@ struct ScatterValue {
 ScatterValue scatter_specular(const SurfacePoint& point, const Bsdf& bsdf, Event event, const Vec3& to_light,
                               const Vec3& to_eye);
 
+/// Whether two directions lie on one side of a surface by its geometry and on both by its shading normal, or the other
+/// way round. A BSDF in the frame of the shading normal would send light through a wall that reflects, and closed rooms
+/// would be lit from outside (Veach 1997, 5.3).
+inline bool changes_sides(const Vec3& ng, const Vec3& ns, const Vec3& a, const Vec3& b) {
+    return ((ng.dot(a) > 0) == (ng.dot(b) > 0)) != ((ns.dot(a) > 0) == (ns.dot(b) > 0));
+}
+
 /// Scattering of kind `event` at `point` from the direction towards the light into that towards the eye.
 inline ScatterValue scatter(const SurfacePoint& point, const Bsdf& bsdf, Event event, const Vec3& to_light,
                             const Vec3& to_eye) {
     if (is_specular(event)) return scatter_specular(point, bsdf, event, to_light, to_eye);
     const double ng_light = point.abs_cos(to_light);
     if (ng_light == 0) return {};
-    const double shading = point.site == Site::surface
-                               ? std::abs(static_cast<double>(bsdf.shading_normal().dot(to_light))) / ng_light
-                               : 1.0;
     const Bsdf::Finite f = bsdf.finite(to_light, to_eye);
+    if (point.site != Site::surface) return {f.value, f.pdf_to_light, f.pdf_to_eye};
+    const Vec3& ns = bsdf.shading_normal();
+    constexpr double kRightAngle = 1e-6; // nearer to one a BSDF may see it from the other side, by rounding
+    const double ns_light = std::abs(static_cast<double>(ns.dot(to_light)));
+    const bool none = ns_light < kRightAngle || changes_sides(point.ng, ns, to_light, to_eye);
+    const double shading = none ? 0 : ns_light / ng_light;
     return {f.value * shading, f.pdf_to_light, f.pdf_to_eye};
 }
 
