@@ -5,8 +5,8 @@ import struct
 import bpy
 import numpy as np
 
-HEADER = struct.Struct("<8sIIQqq4QQQ")
-VERSION = 10
+HEADER = struct.Struct("<8sIIQqq4QQ2iQ")
+VERSION = 11
 PHOTON = np.dtype([("position", "<f4", 3), ("power", "<u2", 3), ("direction", "<i2", 2), ("normal", "i1", 2)])
 BITS, BIAS = 12, 80  # of the shared exponent: see src/photonmap/photon.h
 NAME = "Keyhole Photons"
@@ -18,7 +18,7 @@ def read(path):
         data = file.read()
     if len(data) < HEADER.size:
         raise ValueError("found no photon map")
-    magic, _, version, _, _, _, *counts, _, _ = HEADER.unpack_from(data)
+    magic, _, version, _, _, _, *counts, _, _, _, _ = HEADER.unpack_from(data)
     if magic != b"KHPHOTON" or version != VERSION:
         raise ValueError(f"found a photon map of version {version}, expected version {VERSION}")
     photons = np.frombuffer(data, PHOTON, sum(counts), HEADER.size)

@@ -104,6 +104,7 @@ Json plan_json(const PlanCommand& o) {
             {"method", cost.method},
             {"remarks", cost.remarks},
             {"photon_bytes", cost.photon_bytes},
+            {"photon_memory", loaded.settings.photon_memory},
             {"cpu_seconds", cost.cpu_seconds()},
             {"stages", stages}};
 }
@@ -148,8 +149,8 @@ void print_plan(const Json& plan) {
                    item["why"].get<std::string>());
     fmt::print("{:<12}{}\n", "method", plan["method"].get<std::string>());
     for (const Json& remark : plan["remarks"]) fmt::print("{:<12}{}\n", "", remark.get<std::string>());
-    fmt::print("{:<12}{}B for photons and what serves them\n", "memory",
-               with_prefix(plan["photon_bytes"].get<double>()));
+    fmt::print("{:<12}at most {}B for photons and what serves them, of photon_memory={}B\n", "memory",
+               with_prefix(plan["photon_bytes"].get<double>()), with_prefix(plan["photon_memory"].get<double>()));
     std::string stages;
     for (const auto& [name, seconds] : plan["stages"].items())
         stages += fmt::format("{}{} {}", stages.empty() ? "" : ", ", name, duration(seconds.get<double>()));

@@ -190,6 +190,13 @@ Settings with_effort_of(const std::string& checkpoint, Settings settings, const 
     return settings;
 }
 
+/// @throws InputError where nothing would end the passes.
+void require_end(const Settings& settings, const RenderOptions& options) {
+    if (settings.passes == 0 && settings.target_error == 0 && !options.in_time())
+        throw InputError("found passes=0 and no end, expected --timeout, --cpu-time or --target-error, or a number of "
+                         "passes");
+}
+
 /// The scene with the settings that the options ask for.
 /// @throws InputError for a scene, settings and options that don't go together.
 LoadedScene load_for(const RenderOptions& options, std::vector<std::string>& warnings) {
@@ -221,6 +228,7 @@ LoadedScene load_for(const RenderOptions& options, std::vector<std::string>& war
         loaded.settings = with_effort_at_most(loaded.settings, effort_of_pass(loaded.settings.target_error),
                                               static_cast<std::int64_t>(window.size()), named);
     loaded.settings = with_quality_of(loaded.settings, options.quality, named);
+    require_end(loaded.settings, options);
     for (const auto& [option, file] : {std::pair{"--save-map", &options.save_map}, {"--load-map", &options.load_map}})
         if (!file->empty() && !loaded.settings.method->keeps_photons)
             throw InputError(fmt::format("{}: found method {}, expected one that keeps photons: {}", option,
@@ -375,7 +383,7 @@ void add_render_command(CLI::App& app, Action& action, const std::string& comman
     command->add_option("--display-server", o->display_server, "HOST:PORT of tev, to which the picture so far is sent");
     auto* quiet = command->add_flag("-q,--quiet", o->quiet, "say nothing but errors");
     command->add_flag("-v,--verbose", o->verbose, "print statistics")->excludes(quiet);
-    command->footer(settings_help() + "Whole numbers may be written 100k, 2.5M, 1G, 1e6 or 16MiB.");
+    command->footer(settings_help() + "Whole numbers may be written 100k, 2.5M, 1G, 1e6, 16MiB or 16MB.");
     command->callback([&action, o] { action = [o] { return run(*o); }; });
 }
 

@@ -46,9 +46,11 @@ class FileSampler final : public PhotonSampler {
 
     Photons sample(std::uint64_t /*seed*/, RenderStats& stats, const RunContext& /*context*/) override {
         Photons photons = load_photons(c_.settings.load_map, photon_file_key(c_.scene, c_.settings, c_.coverage));
-        if (const std::size_t held = plan_memory(c_.settings, ImportanceUse::none, 2).photons,
-            found = photons.global.size() + photons.caustic.size();
-            found > held && c_.settings.photons == 0)
+        const std::size_t found = photons.global.size() + photons.caustic.size();
+        if (c_.settings.photons > 0)
+            stats.remarks.push_back(fmt::format("photons={} has no effect with --load-map: the {} of the file are used",
+                                                c_.settings.photons, found));
+        if (const std::size_t held = photons_held(); found > held)
             stats.warnings.push_back(fmt::format("{}: {} photons, where photon_memory holds {}: the map takes more "
                                                  "memory than it may",
                                                  c_.settings.load_map, found, held));
@@ -56,6 +58,13 @@ class FileSampler final : public PhotonSampler {
     }
 
   private:
+    /// By the memory alone.
+    std::size_t photons_held() const {
+        Settings s = c_.settings;
+        s.photons = 0;
+        return plan_memory(s, ImportanceUse::none, 2).photons;
+    }
+
     SamplerContext c_;
 };
 

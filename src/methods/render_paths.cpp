@@ -66,6 +66,8 @@ RenderPaths::RenderPaths(const Scene& scene, const Settings& settings, const Use
     if (!paths_.empty() && !settings.method->follows_user_paths)
         own_.remarks.push_back(fmt::format("user paths have no effect on method {}; expected one of {}",
                                            settings.method->name, names_of(&Method::follows_user_paths)));
+    else if (!paths_.empty() && !settings.load_map.empty())
+        own_.remarks.emplace_back("user paths have no effect with --load-map: the photons of the file are there");
     if (!settings.find_openings || !settings.method->follows_user_paths || !settings.load_map.empty() ||
         scene.has_scattering_media() || !has_emitters_with_a_place(scene) || (!paths_.empty() && !has_openings(paths_)))
         return;

@@ -221,7 +221,7 @@ EmittedPhotons emit_photons(const Scene& scene, const EmissionGuide& guide, cons
     const std::size_t for_caustic = options.rule.caustics ? learnt.weights.for_caustic(options.photons) : 0;
     MapStores stores({options.photons - for_caustic, for_caustic}, unit_of_power(scene), {}, options.seed);
     static_cast<Emission&>(out) = trace_and_store(scene, guide, options, std::move(learnt), stores, context);
-    out.bytes = stores.bytes();
+    out.bytes = stores.bytes_held();
     static_cast<Photons&>(out) = stores.release(out.scale(), out.scale());
     return out;
 }

@@ -18,6 +18,8 @@ PhotonStore::PhotonStore(std::size_t capacity, double initial_threshold, const R
     }
 }
 
+std::size_t PhotonStore::bytes_held() const { return std::max(most_, photons_.size()) * bytes_per_photon(); }
+
 void PhotonStore::absorb(PhotonBuffer& buffer) {
     for (std::size_t i = 0; i < buffer.photons.size(); ++i) deposit(buffer.photons[i], buffer.weights[i]);
     buffer.photons.clear();
@@ -53,6 +55,7 @@ void PhotonStore::raise_threshold() {
         (expected_survivors(middle) > wanted ? low : high) = middle;
     }
     threshold_ = high;
+    most_ = std::max(most_, photons_.size());
     std::size_t kept = 0, settled = 0;
     for (std::size_t i = 0; i < photons_.size(); ++i) {
         const double weight = roulette(weights_[i], threshold_, rng_);
@@ -77,6 +80,8 @@ std::vector<Photon> PhotonStore::release(double scale) {
     for (std::size_t i = 0; i < photons_.size(); ++i)
         photons_[i].set_power(photons_[i].power() * (weights_[i] * (i < settled_ ? settled_scale_ : scale)));
     std::vector<float>().swap(weights_);
+    most_ = 0;
+    if (2 * photons_.size() <= photons_.capacity()) photons_.shrink_to_fit(); // both fit where one was promised
     return std::exchange(photons_, {});
 }
 
@@ -117,9 +122,9 @@ Photons MapStores::release(double global_scale, double caustic_scale) {
             {pilots_.caustic.release(1), main_photons_.caustic.release(caustic_scale * unit_)}};
 }
 
-std::size_t MapStores::bytes() const {
-    return pilots_.global.bytes() + pilots_.caustic.bytes() + main_photons_.global.bytes() +
-           main_photons_.caustic.bytes();
+std::size_t MapStores::bytes_held() const {
+    return pilots_.global.bytes_held() + pilots_.caustic.bytes_held() + main_photons_.global.bytes_held() +
+           main_photons_.caustic.bytes_held();
 }
 
 std::size_t photons_for_caustic(double share, std::size_t photons) {

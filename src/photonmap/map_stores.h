@@ -55,13 +55,15 @@ class PhotonStore {
     void settle(double scale, double next);
 
     /// All photons, with power times weight times `scale`, those of a settled part times theirs. The store gives its
-    /// memory back or away and is finished after that.
+    /// memory back or away, as little of it as half of it has room for beside, and is finished after that.
     std::vector<Photon> release(double scale);
 
     std::size_t size() const { return photons_.size(); }
     double threshold() const { return threshold_; }
-    /// Memory held [bytes].
+    /// Memory that is there for photons, held or not [bytes].
     std::size_t bytes() const { return photons_.capacity() * sizeof(Photon) + weights_.capacity() * sizeof(float); }
+    /// Of that, what photons have lain in: the rest is only promised by the system.
+    std::size_t bytes_held() const;
     /// Memory that a store holds for one photon of its capacity [bytes].
     static constexpr std::size_t bytes_per_photon() { return sizeof(Photon) + sizeof(float); }
 
@@ -77,6 +79,7 @@ class PhotonStore {
     std::vector<float> weights_; // of photons_
     std::size_t capacity_;
     double threshold_;
+    std::size_t most_ = 0;    // photons that there have been, before they were thinned
     std::size_t settled_ = 0; // photons, the first ones
     double settled_scale_ = 1;
     Rng rng_;
@@ -131,8 +134,8 @@ class MapStores {
     /// All photons, with power times weight times unit and the map's scale. The stores are finished after that.
     Photons release(double global_scale, double caustic_scale);
 
-    /// Memory held [bytes].
-    std::size_t bytes() const;
+    /// As PhotonStore's.
+    std::size_t bytes_held() const;
 
   private:
     struct Pair {

@@ -93,7 +93,7 @@ SampledPhotons sample_photons(const ChainSeeds& seeds, const Mixture<Path>& mixt
     MapStores stores({options.global_photons, options.caustic_photons}, unit_of_power(*deposit.scene),
                      {threshold, threshold}, options.seed);
     static_cast<PhotonChains&>(out) = run_photon_chains(seeds, mixture, deposit, options, stores, context);
-    out.bytes = stores.bytes();
+    out.bytes = stores.bytes_held();
     static_cast<Photons&>(out) = stores.release(out.global_scale, out.caustic_scale);
     return out;
 }

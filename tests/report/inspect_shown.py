@@ -11,13 +11,13 @@ def photons_of(file):
     """The main photons of both maps as --save-map wrote them: (place, power) each."""
     data = file.read_bytes()
     counts = struct.unpack_from("<4Q", data, 40)
-    maps, at = [], 80
+    maps, at = [], 96
     for part, count in enumerate(counts):
         found = []
         for i in range(count):
             x, y, z, *words = struct.unpack_from("<3f3H", data, at + 24 * i)
-            exponent = sum((w >> 13) << (3 * k) for k, w in enumerate(words)) - 256 - 13
-            found.append(((x, y, z), tuple((w & 8191) * 2.0 ** exponent for w in words)))
+            exponent = (words[0] >> 12 | (words[1] >> 12 & 7) << 4) - 80 - 12  # src/photonmap/photon.h
+            found.append(((x, y, z), tuple((w & 4095) * 2.0 ** exponent for w in words)))
         at += 24 * count
         if part % 2 == 1:  # behind its pilot photons
             maps.append(found)

@@ -159,6 +159,18 @@ TEST_F(Program, PlanTellsWhatIsLeftOutAndWhy) {
     EXPECT_THAT(read("out"), Not(HasSubstr("paths from the eye find it")));
 }
 
+TEST_F(Program, PlanSaysWhatPhotonsTakeAtMostAndOfWhat) {
+    const std::string box = "plan " KEYHOLE_SOURCE_DIR "/scenes/box.yaml --method ipm -D light_paths=20k ";
+    ASSERT_EQ(run(box + "--json --photon-memory 16384GiB"), 0) << read("err");
+    const auto plan = nlohmann::json::parse(read("out"));
+    EXPECT_EQ(plan["photon_memory"], 16384ll << 30);
+    EXPECT_GT(plan["photon_bytes"], 100'000);
+    EXPECT_LT(plan["photon_bytes"], 100 << 20) << "no more than 20k light paths leave";
+    ASSERT_EQ(run(box + "--photon-memory 300kB"), 0) << read("err");
+    EXPECT_THAT(read("out"),
+                HasSubstr("memory      at most 300 kB for photons and what serves them, of photon_memory=300 kB"));
+}
+
 TEST_F(Program, PlanSaysWhatItsSharesAreOf) {
     std::string shiny = kScene;
     shiny.replace(shiny.find("{type: diffuse}"), 15, "{type: plastic, roughness: 0}");

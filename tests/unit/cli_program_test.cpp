@@ -91,6 +91,8 @@ TEST_F(Program, BadInputExitsWithTwoAndOneLine) {
                                   "render scene.yaml --method path --save-map a.photons",
                                   "render scene.yaml --method path --load-map a.photons",
                                   "render scene.yaml -t -1",
+                                  "render scene.yaml --passes 0",
+                                  "render scene.yaml --passes 0 --method ipm",
                                   "render scene.yaml --timeout -1",
                                   "render scene.yaml --cpu-time nan",
                                   "render scene.yaml --timeout nan",
@@ -139,7 +141,9 @@ TEST_F(Program, MistakesInCommandsSayWhatWasMeant) {
     EXPECT_EQ(run("info scene.yaml -D spp=3"), 2);
     EXPECT_THAT(read("err"), HasSubstr("found -D spp=3, which info doesn't take (see --help)"));
     EXPECT_EQ(run("render scene.yaml --photon-memory 1m"), 2);
-    EXPECT_THAT(read("err"), HasSubstr("expected a whole number from 256KiB to 16384GiB"));
+    EXPECT_THAT(read("err"), HasSubstr("expected a whole number from 256KiB to 16384GiB, as 32MiB or 32MB"));
+    EXPECT_EQ(run("render scene.yaml --passes 0 -o a.exr"), 2);
+    EXPECT_THAT(read("err"), HasSubstr("found passes=0 and no end, expected --timeout, --cpu-time or --target-error"));
     EXPECT_EQ(run("render scene.yaml -D spp 4"), 2);
     EXPECT_THAT(read("err"), HasSubstr("-D KEY=VALUE"));
 }

@@ -1,13 +1,16 @@
 // Saved photon maps: the same picture, or a refusal in words.
 #include "core/error.h"
 #include "methods/method.h"
+#include "sampling/guidance/user_paths.h"
 #include "support/scratch_directory.h"
 #include "support/settings_from.h"
 #include "support/test_scenes.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 
@@ -112,6 +115,51 @@ TEST_F(SavedMap, IsRefusedForAnotherScene) {
     EXPECT_THAT(refusal(*moved, loading()), HasSubstr("another scene"));
 }
 
+/// Of what a picture shows and a map of another shape lacks there is no trace: the light is missing.
+class SavedMapOfWhatIsSeen : public testing::TestWithParam<const char*> {};
+
+TEST_P(SavedMapOfWhatIsSeen, IsRefusedForAnotherShapeOfThePicture) {
+    const auto scene = test::mirror_glass_box();
+    ScratchDirectory directory;
+    Settings s = test::settings_from(GetParam(), small_settings());
+    scene->set_window({24, 16, 0});
+    s.save_map = directory.path("map.photons");
+    render(*scene, s, {});
+    std::swap(s.save_map, s.load_map);
+    for (const auto& [width, height] : {std::pair(48, 16), {16, 16}, {16, 24}}) {
+        scene->set_window({width, height, 0});
+        EXPECT_THAT(refusal(*scene, s), HasSubstr("found the photon map of a picture of 24x16"));
+        EXPECT_THAT(refusal(*scene, s), HasSubstr(fmt::format("expected one of the shape of {}x{}", width, height)));
+    }
+    for (const auto& [width, height] : {std::pair(24, 16), {48, 32}, {19, 13}, {12, 8}}) {
+        scene->set_window({width, height, 0});
+        EXPECT_EQ(refusal(*scene, s), "none") << width << "x" << height << ": the same shape, to a pixel";
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, SavedMapOfWhatIsSeen,
+                         testing::Values("method=mps mutations=5k brightness_samples=5k importons=5k",
+                                         "method=ipm importons=5k plan=all"),
+                         [](const auto& info) { return std::string(info.param, 7, 3); });
+
+TEST_F(SavedMap, IsGoodForAnotherShapeWhereItsPhotonsLieEverywhere) {
+    scene_->set_window({16, 40, 0});
+    EXPECT_EQ(refusal(*scene_, loading()), "none");
+}
+
+TEST_F(SavedMap, SaysWhatHasNoSayWhereItIsLoaded) {
+    Settings s = loading();
+    EXPECT_THAT(render(*scene_, s, {}).stats.remarks, testing::Not(testing::Contains(HasSubstr("--load-map"))));
+    s.photons = 100;
+    s.photon_memory = 1 << 18;
+    const UserPathFile paths = load_user_paths(
+        directory_.write("p.yaml", "paths: [{points: [[0, 1.95, 0], [0.6, 0, -0.7], [-1, 1, 0.5]]}]\n"));
+    const RenderStats stats = render(*scene_, s, {}, paths).stats;
+    EXPECT_THAT(stats.remarks, testing::Contains(HasSubstr("photons=100 has no effect with --load-map")));
+    EXPECT_THAT(stats.remarks, testing::Contains(HasSubstr("user paths have no effect with --load-map")));
+    EXPECT_THAT(stats.warnings, testing::Contains(HasSubstr("photon_memory holds"))) << "whatever `photons` says";
+}
+
 TEST_F(SavedMap, IsRefusedForAnotherDepth) {
     Settings s = loading();
     s.max_depth = 5;
@@ -140,6 +188,21 @@ TEST_F(SavedMap, IsRefusedWhereItIsNoWholeMap) {
     EXPECT_THAT(refusal(*scene_, loading()), HasSubstr("found no photon map"));
     std::filesystem::remove(file_);
     EXPECT_THAT(refusal(*scene_, loading()), HasSubstr("cannot be opened"));
+}
+
+TEST_F(SavedMap, IsRefusedWhereItsCountsAreOthersOfTheSameSum) {
+    std::fstream f(file_, std::ios::binary | std::ios::in | std::ios::out);
+    constexpr std::streamoff kCounts = 40; // in the header
+    std::array<std::uint64_t, 4> counts{};
+    const auto bytes = static_cast<std::streamsize>(sizeof counts);
+    f.seekg(kCounts);
+    f.read(reinterpret_cast<char*>(counts.data()), bytes);
+    ASSERT_GT(counts[1], 0u);
+    --counts[1], ++counts[2];
+    f.seekp(kCounts);
+    f.write(reinterpret_cast<const char*>(counts.data()), bytes);
+    f.close();
+    EXPECT_THAT(refusal(*scene_, loading()), HasSubstr("damaged"));
 }
 
 TEST_F(SavedMap, IsOnePass) {

@@ -1,4 +1,5 @@
 // The ceiling on the memory of photons holds, by what was allocated, and thins without bias.
+#include "methods/method.h"
 #include "methods/photons/memory_plan.h"
 #include "methods/render.h"
 #include "support/settings_from.h"
@@ -38,8 +39,35 @@ TEST_P(PhotonMemory_StaysUnderItsCeiling, AtEverySize) {
     }
 }
 
+TEST_P(PhotonMemory_StaysUnderItsCeiling, AndSaysWhatIsHeld) {
+    const auto scene = test::mirror_glass_box();
+    scene->set_window({24, 16, 0});
+    const Settings s = settings_for(GetParam(), std::int64_t{1} << 30);
+    const RenderStats stats = render(*scene, s, {}).stats;
+    const std::uint64_t most = most_photon_bytes(s, method_named(GetParam()).importance, 2);
+    EXPECT_LE(stats.photon_bytes, most);
+    EXPECT_LE(most, 128u << 20) << "a tenth of the ceiling: that is what so little work can fill";
+    // A photon takes 32 bytes, 24 more for lookups where there is room; an importon no more.
+    const auto kept = stats.photons_global + stats.photons_caustic + stats.importons;
+    EXPECT_LE(stats.photon_bytes, 64 * kept + (1 << 20));
+}
+
 INSTANTIATE_TEST_SUITE_P(Methods, PhotonMemory_StaysUnderItsCeiling, testing::Values("mps", "ipm", "pm", "cps"),
                          [](const auto& info) { return std::string(info.param); });
+
+TEST(PhotonMemory, IsPlannedByTheWorkWhereThatFillsLess) {
+    Settings s = settings_for("ipm", std::int64_t{1} << 44);
+    const auto most = [&] { return most_photon_bytes(s, methods::ipm.importance, 2); };
+    const std::uint64_t little = most();
+    EXPECT_LT(little, 128u << 20);
+    s.light_paths *= 10;
+    EXPECT_GT(most(), 5 * little);
+    s.photon_memory = 1 << 20;
+    EXPECT_EQ(most(), 1u << 20);
+    s.photons = 1000;
+    s.importons = 1000;
+    EXPECT_LT(most(), 1u << 19);
+}
 
 TEST(PhotonMemory, IsForLookupsWherePhotonsLeaveRoom) {
     const Settings s = settings_for("ipm", 1 << 20); // of which 20,000 photons take two thirds

@@ -71,6 +71,18 @@ TEST(PhotonStore, KeepsEverythingAsItIsWhileThereIsRoom) {
     EXPECT_EQ(store.bytes(), 0u);
 }
 
+TEST(PhotonStore, SaysWhatItHoldsAndNotWhatItMay) {
+    constexpr std::size_t capacity = 1000;
+    PhotonStore store(capacity, 0, make_rng(0));
+    EXPECT_EQ(store.bytes_held(), 0u);
+    for (int i = 0; i < 10; ++i) store.deposit(photon_in(0, 0.5), 1);
+    EXPECT_EQ(store.bytes_held(), 10 * PhotonStore::bytes_per_photon());
+    EXPECT_EQ(store.release(1).capacity(), 10u) << "what nobody needs is given back";
+    PhotonStore full(capacity, 0, make_rng(0));
+    fill(full, 10 * capacity);
+    EXPECT_EQ(full.bytes_held(), full.bytes()) << "they were there, before they were thinned";
+}
+
 TEST(PhotonStore, RefusesWeightsThatAreNoNumbers) {
     PhotonStore store(10, 0, make_rng(0));
     for (int i = 0; i < 100; ++i) store.deposit(photon_in(0, 0.5), std::numeric_limits<double>::infinity());

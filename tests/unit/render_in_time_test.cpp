@@ -2,6 +2,7 @@
 #include "core/error.h"
 #include "core/statistics.h"
 #include "film/join.h"
+#include "methods/choice/differences.h"
 #include "methods/choice/experience.h"
 #include "methods/choice/render_in_time.h"
 #include "methods/method.h"
@@ -122,6 +123,15 @@ TEST(AutoInTime, ChoosesAMethodThatKeepsPhotonsWhereTheyAreToBeSaved) {
 }
 
 // A method that isn't named is taken for one that has lost.
+// Renders that fill a time have seeds of their own; that is nobody's choice.
+TEST(DifferencesOfSettings, AreThoseThatSomebodyOrTheTimeHasSet) {
+    Settings a, b;
+    b.seed = 553'099'248'985'520;
+    EXPECT_EQ(differences(a, b), "");
+    b.spp = 3;
+    EXPECT_EQ(differences(a, b), " spp=3");
+}
+
 TEST(AutoInTime, NamesEveryMethodThatItTriedOrHadNoTimeFor) {
     const auto scene = test::diffuse_box();
     const RenderResult result = render_by_auto(*scene, {}, 0.5 * test::kSlowdown);

@@ -331,6 +331,23 @@ TEST_F(SceneYaml, OverridesFollowTheFileInTheirOrder) {
     EXPECT_EQ(scene.settings.proposals[proposals::lens_subpath.weight], 0.25);
 }
 
+/// What plans print is what settings take.
+TEST(ApplyOverride, TakesBytesByThousandsToo) {
+    Settings settings;
+    for (const auto& [text, bytes] : {std::pair("33.6MB", 33'600'000ll),
+                                      {"300kB", 300'000},
+                                      {"2GB", 2'000'000'000},
+                                      {"17TB", 17'000'000'000'000},
+                                      {"1TiB", 1ll << 40},
+                                      {"500000B", 500'000},
+                                      {"32MiB", 32ll << 20}}) {
+        apply_override(settings, std::string("photon_memory=") + text);
+        EXPECT_EQ(settings.photon_memory, bytes) << text;
+    }
+    for (const char* text : {"MB", "B", "32mB", "32MBB", "32iB", "32BB", "32MB ", "32 MB", "32kBi", "1e6iB"})
+        EXPECT_THROW(apply_override(settings, std::string("photon_memory=") + text), InputError) << text;
+}
+
 TEST(ApplyOverride, RefusesWhatIsNotASetting) {
     Settings settings;
     for (const char* text : {"",

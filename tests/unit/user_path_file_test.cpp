@@ -116,7 +116,12 @@ std::vector<Mistake> unusable() {
         in_scene(light + "[1, 0.5, 0.2], [0.6, 0, -0.7]]", "point 3: found that the specular vertex at point 2 sends"),
         in_scene("beta: [5, 0], " + light + "[0.6, 0, -0.7], [-1, 1, 0.5]]", "point 3: found a cone of no width"),
         in_scene(light + "[0.6, 0, -0.7], " + kOpening + ", [1, 1.9, -1]]",
-                 "point 4: found that the segment from point 2 "),
+                 "point 4: found that the segment from point 2 leads away from its opening"),
+        in_scene(light + "[0.6, 0, -0.7], " + kOpening + ", [-1, 1, 0.5]]",
+                 "passes beside its opening: it crosses the plane at (-0.06667, 0.4167, -0.2), 0.107 m off"),
+        in_scene(light +
+                     "[0.6, 0, -0.7], {through: {corner: [0, 0, 1], u: [0.5, 0, 0], v: [0, 0, 0.5]}}, [-1, 1, 0.5]]",
+                 "point 4: found that the segment from point 2 begins in the plane of its opening"),
         in_scene(light + "[1, 0.5, 0.2], " + kOpening + ", [-1, 1, 0.5]]",
                  "point 4: found an opening behind the specular"),
         in_scene(light + "{bounces: [1, 3]}, " + kOpening + ", [0.6, 0.5, -0.7]]",

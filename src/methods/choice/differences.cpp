@@ -6,7 +6,8 @@
 
 namespace keyhole {
 
-std::string differences(const Settings& a, const Settings& b) {
+std::string differences(const Settings& a, Settings b) {
+    b.seed = a.seed;
     const auto list = [](const Settings& s) {
         std::vector<std::string> texts;
         visit_settings(s, [&](const char* key, const auto& value, const auto&...) {

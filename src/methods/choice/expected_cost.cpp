@@ -2,6 +2,7 @@
 
 #include "core/shared_work.h"
 #include "methods/choice/choose_by_work.h"
+#include "methods/photons/memory_plan.h"
 #include "methods/preparation.h"
 
 #include <algorithm>
@@ -130,7 +131,8 @@ ExpectedCost expect_cost(Scene& scene, const Settings& settings, const UserPathF
     }
     expected.method = s.method->name;
     if (s.method->keeps_photons && findings.plan && findings.plan->photons)
-        expected.photon_bytes = static_cast<std::uint64_t>(s.photon_memory);
+        expected.photon_bytes =
+            most_photon_bytes(s, s.method->importance, findings.plan->caustics || findings.plan->coverage ? 2 : 1);
     return expected;
 }
 

@@ -116,7 +116,8 @@ class CombinedSampler final : public PhotonSampler {
                                                pass.stores, context);
         stats.values["light paths"] += static_cast<double>(emission.paths);
         stats.values["photons before storing"] += static_cast<double>(emission.arrivals);
-        stats.photon_bytes = std::max<std::uint64_t>(stats.photon_bytes, pass.stores.bytes() + stats.importon_bytes);
+        stats.photon_bytes =
+            std::max<std::uint64_t>(stats.photon_bytes, pass.stores.bytes_held() + stats.importon_bytes);
         return pass.stores.release(emission.scale(), emission.scale());
     }
 

@@ -21,6 +21,9 @@ constexpr std::size_t kForLookups = 24;
 /// The memory over what photons take, from which on there is.
 constexpr double kRoom = 1.5;
 
+/// A chain leaves its state and its candidate.
+constexpr double kPhotonsOfStep = 2;
+
 /// Longest paths, in scatterings, whose last ones count: with an albedo of 0.8 those after this bring half a percent.
 constexpr std::int64_t kLongPath = 24;
 
@@ -58,6 +61,20 @@ MemoryPlan plan_memory(const Settings& settings, ImportanceUse use, int maps) {
                              (memory - photons * kInStageTwo) / (places * maps));
     return {static_cast<std::size_t>(photons),
             std::clamp<std::int64_t>(static_cast<std::int64_t>(importons), 1, settings.importons)};
+}
+
+std::uint64_t most_photon_bytes(const Settings& settings, ImportanceUse use, int maps) {
+    const auto memory = static_cast<double>(settings.photon_memory);
+    const bool chains = use == ImportanceUse::beside || use == ImportanceUse::both;
+    double photons = 0;
+    if (use != ImportanceUse::beside) photons += static_cast<double>(settings.light_paths * settings.max_depth);
+    if (chains) photons += kPhotonsOfStep * static_cast<double>(settings.mutations);
+    const MemoryPlan plan = plan_memory(settings, use, maps);
+    photons = std::min(photons, static_cast<double>(plan.photons));
+    const double importons = use == ImportanceUse::none ? 0 : static_cast<double>(plan.importons) * maps;
+    const double places = of_place(settings) / kPilotEvery, lookups = static_cast<double>(kForLookups) / kPilotEvery;
+    return static_cast<std::uint64_t>(std::min(memory, 2 * kFixed + photons * (in_stage_three(settings) + lookups) +
+                                                           importons * (kIndexed + kList + places)));
 }
 
 std::size_t memory_for_lookups(const Settings& settings, std::size_t photons, std::size_t places) {

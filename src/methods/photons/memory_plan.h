@@ -21,6 +21,10 @@ bool length_matters(const Settings& settings);
 /// maps with their indices and precomputed irradiance. `maps` importance maps are made (1 or 2).
 MemoryPlan plan_memory(const Settings& settings, ImportanceUse use, int maps);
 
+/// What photons and all that serves them can take at most [bytes]: settings.photon_memory, or less where the work that
+/// the settings ask for can't leave so many.
+std::uint64_t most_photon_bytes(const Settings& settings, ImportanceUse use, int maps);
+
 /// Memory for lookups of precomputed irradiance without a search [bytes], where maps hold so many photons in all and
 /// irradiance is estimated at `places`; 0, no more than is planned, where photons take most of settings.photon_memory.
 std::size_t memory_for_lookups(const Settings& settings, std::size_t photons, std::size_t places);

@@ -11,15 +11,17 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <span>
 #include <type_traits>
 
 namespace keyhole {
 namespace {
 
 constexpr std::array<char, 8> kMagic{'K', 'H', 'P', 'H', 'O', 'T', 'O', 'N'};
-constexpr std::uint32_t kVersion = 10; ///< raised when a map changes; blender/keyhole/photons.py reads it as well
+constexpr std::uint32_t kVersion = 11; ///< raised when a map changes; blender/keyhole/photons.py reads it as well
 constexpr std::uint32_t kByteOrder = 0x01020304;
 
 constexpr std::size_t kParts = 4;
@@ -38,9 +40,10 @@ struct Header {
     std::int64_t coverage = 0;
     std::array<std::uint64_t, kParts> photons{};
     std::uint64_t everywhere = 0; ///< Photons::everywhere, as 0 or 1
-    std::uint64_t checksum = 0;
+    std::int32_t width = 0, height = 0;
+    std::uint64_t checksum = 0; ///< of all that stands before it and behind it
 };
-static_assert(std::is_trivially_copyable_v<Header> && sizeof(Header) == 88);
+static_assert(std::is_trivially_copyable_v<Header> && sizeof(Header) == 96);
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why) {
     throw InputError(fmt::format("{}: {}", path, why));
@@ -60,6 +63,13 @@ Header read_header(std::ifstream& file, const std::string& path) {
     return header;
 }
 
+/// Whether two pictures show the same of a scene, as far as sides can that are whole pixels of the smaller one.
+bool have_one_shape(const Header& a, const PhotonFileKey& b) {
+    const auto product = [](std::int64_t x, std::int64_t y) { return x * y; };
+    const std::int64_t sides = std::max(std::int64_t{a.width} + a.height, std::int64_t{b.width} + b.height);
+    return 2 * std::abs(product(a.width, b.height) - product(b.width, a.height)) <= sides;
+}
+
 void check(const std::string& path, const Header& found, const PhotonFileKey& key) {
     if (found.byte_order != kByteOrder) refuse(path, "found a photon map from a machine of another byte order");
     if (found.version != kVersion)
@@ -76,6 +86,12 @@ void check(const std::string& path, const Header& found, const PhotonFileKey& ke
                      "one with that; set gather_coverage=false to use it"
                    : "found a photon map with light outside the coverage of gather rays, expected the settings "
                      "gather_coverage, plan and importons that it was made with");
+    // Photons outside the coverage of gather rays alone lie where the eye asked for them as well.
+    const bool everywhere = found.everywhere != 0 && found.coverage == 0;
+    if (!everywhere && !have_one_shape(found, key))
+        refuse(path, fmt::format("found the photon map of a picture of {}x{}, whose photons lie where the eye asks for "
+                                 "them; expected one of the shape of {}x{}",
+                                 found.width, found.height, key.width, key.height));
 }
 
 void read(std::ifstream& file, std::span<char> into, const std::string& path) {
@@ -83,10 +99,11 @@ void read(std::ifstream& file, std::span<char> into, const std::string& path) {
     if (!file) refuse(path, "cannot be read");
 }
 
-std::uint64_t checksum(const Photons& photons) {
+std::uint64_t checksum(Header header, const Photons& photons) {
+    header.checksum = 0;
     Hash hash;
+    hash.add(header); // numbers of photons among it: else some of one part may count for the next
     for (const auto* part : parts(photons)) hash.add(*part);
-    hash.add(photons.everywhere);
     return hash.value();
 }
 
@@ -99,7 +116,9 @@ std::vector<Photon> read_photons(std::ifstream& file, const std::string& path, s
 } // namespace
 
 PhotonFileKey photon_file_key(const Scene& scene, const Settings& settings, const GatherCoverage* coverage) {
-    return {scene_hash(scene), settings.max_depth, coverage != nullptr ? coverage_paths(settings) : 0};
+    const ImageWindow& window = scene.camera().window();
+    return {scene_hash(scene), settings.max_depth, coverage != nullptr ? coverage_paths(settings) : 0, window.width,
+            window.height};
 }
 
 void save_photons(const std::string& path, const PhotonFileKey& key, const Photons& photons) {
@@ -107,9 +126,11 @@ void save_photons(const std::string& path, const PhotonFileKey& key, const Photo
     header.scene = key.scene;
     header.max_scatterings = key.max_scatterings;
     header.coverage = key.coverage;
+    header.width = key.width;
+    header.height = key.height;
     for (std::size_t i = 0; i < kParts; ++i) header.photons[i] = parts(photons)[i]->size();
     header.everywhere = photons.everywhere ? 1 : 0;
-    header.checksum = checksum(photons);
+    header.checksum = checksum(header, photons);
     std::vector<std::span<const char>> bytes{bytes_of(&header)};
     for (const auto* part : parts(photons)) bytes.push_back(bytes_of(part->data(), part->size()));
     write_file_atomically(path, bytes); // a copy of them all would go beyond the memory that they may take
@@ -134,7 +155,7 @@ Photons load_photons(const std::string& path, const PhotonFileKey& key) {
     Photons photons;
     photons.everywhere = header.everywhere != 0;
     for (std::size_t i = 0; i < kParts; ++i) *parts(photons)[i] = read_photons(file, path, header.photons[i]);
-    if (checksum(photons) != header.checksum)
+    if (checksum(header, photons) != header.checksum)
         refuse(path, "the photons are not those that were saved: the file is damaged");
     return photons;
 }

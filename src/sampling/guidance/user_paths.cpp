@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 namespace keyhole {
@@ -15,6 +16,24 @@ namespace {
 
 std::string text(const Vec3& p) { return fmt::format("({:.4g}, {:.4g}, {:.4g})", p.x, p.y, p.z); }
 std::string text(double distance) { return fmt::format("{:.3g} m", distance); }
+
+double distance_to_edge(const Imath::V3d& p, const Imath::V3d& corner, const Imath::V3d& edge) {
+    const double t = std::clamp((p - corner).dot(edge) / edge.length2(), 0.0, 1.0);
+    return (p - corner - edge * t).length();
+}
+
+/// What a line from `from` along `w` does that doesn't go through the opening.
+std::string how_it_misses(const Opening& opening, const Vec3& from, const Vec3& w) {
+    const auto& [corner, u, v] = opening;
+    const Imath::V3d normal = u.cross(v).normalized(), start(from), along(w);
+    const double height = (corner - start).dot(normal), slope = along.dot(normal);
+    if (std::abs(height) <= 1e-5 * std::max(u.length(), v.length())) return "begins in the plane of its opening";
+    if (!(height * slope > 0)) return "leads away from its opening";
+    const Imath::V3d p = start + along * (height / slope);
+    const double off = std::min({distance_to_edge(p, corner, u), distance_to_edge(p, corner, v),
+                                 distance_to_edge(p, corner + u, v), distance_to_edge(p, corner + v, u)});
+    return fmt::format("passes beside its opening: it crosses the plane at {}, {} off", text(Vec3(p)), text(off));
+}
 
 /// Finds the points of one path, in order.
 class Binder {
@@ -120,7 +139,8 @@ void Binder::aim(std::size_t i) {
     const Vec3 w = (given(i) - from.point.p).normalized();
     const bool anywhere = spec_.points[i - 1].bounce;
     if (opening && !anywhere && !(opening->density(from.point.p, w) > 0))
-        fail(i, fmt::format("found that the segment from {} passes beside its opening", start(i)));
+        fail(i, fmt::format("found that the segment from {} {}", start(i),
+                            how_it_misses(*spec_.points[i].through, from.point.p, w)));
     if (i == 1 && is_black(scene_.emitter(from.point.emitter).radiance(from.point, w)))
         fail(0, fmt::format("found an emitter that sends no light towards point {}", number(1)));
     const auto hit = next_vertex(scene_, from, w);

@@ -20,23 +20,30 @@ template <class T> std::optional<T> parse_all(std::string_view text) {
     return x;
 }
 
+/// Takes the unit off the end of a number: k, M, G or T, bytes or not; KiB, MiB, GiB or TiB. @returns how much it is
+double take_unit(std::string_view& text) {
+    const auto ends_number = [](char c) { return (c >= '0' && c <= '9') || c == '.'; };
+    for (const auto& [end, step] : {std::pair(std::string_view("iB"), 1024.0), {"B", 1000.0}, {"", 1000.0}}) {
+        if (!text.ends_with(end)) continue;
+        const std::string_view rest = text.substr(0, text.size() - end.size());
+        const std::size_t unit =
+            rest.empty() ? std::string_view::npos : std::string_view(step == 1024 ? "KMGT" : "kMGT").find(rest.back());
+        if (unit != std::string_view::npos) {
+            text = rest.substr(0, rest.size() - 1);
+            return std::pow(step, static_cast<double>(unit + 1));
+        }
+        if (end == "B" && !rest.empty() && ends_number(rest.back())) {
+            text = rest;
+            return 1;
+        }
+    }
+    return 1;
+}
+
 /// A whole number: 1000, 1e3 or 1k. None for anything else, and past 2^53, where doubles skip whole numbers.
 std::optional<std::int64_t> parse_whole(std::string_view text) {
     if (const auto whole = parse_all<std::int64_t>(text)) return whole;
-    double factor = 1;
-    if (!text.empty()) {
-        if (text.back() == 'k') factor = 1e3;
-        if (text.back() == 'M') factor = 1e6;
-        if (text.back() == 'G') factor = 1e9;
-        if (factor > 1) text.remove_suffix(1);
-        // KiB, MiB, GiB
-        if (text.size() > 3 && text.substr(text.size() - 2) == "iB") {
-            const auto unit = std::string_view("KMG").find(text[text.size() - 3]);
-            if (unit == std::string_view::npos) return std::nullopt;
-            factor = std::ldexp(1.0, 10 * (static_cast<int>(unit) + 1));
-            text.remove_suffix(3);
-        }
-    }
+    const double factor = take_unit(text);
     const auto x = parse_all<double>(text);
     if (!x) return std::nullopt;
     // Rounded, because 1.1 M is not whole in doubles.
@@ -78,7 +85,8 @@ struct Setter {
         if (!matches(name)) return;
         const auto x = parse_whole(value);
         if (!x || *x < minimum || *x > maximum)
-            return refuse("expected a whole number from " + bounds_text(minimum, maximum));
+            return refuse(fmt::format("expected a whole number from {}{}", bounds_text(minimum, maximum),
+                                      minimum >= kLeastMemory ? ", as 32MiB or 32MB" : ""));
         member = static_cast<T>(*x);
     }
     void operator()(const char* name, double& member, double minimum, double maximum, const char*) {

@@ -21,7 +21,7 @@ struct SettingError {
 };
 
 /// Sets one setting, checked against visit_settings(). Whole numbers may be written 1e6 or with k, M or G for powers of
-/// a thousand, KiB, MiB or GiB for powers of 1024. Leaves `settings` as they are on an error.
+/// a thousand (kB, MB or GB for bytes), KiB, MiB or GiB for powers of 1024. Leaves `settings` as they are on an error.
 /// @param warning is written where the key is an old name; may be null.
 std::optional<SettingError> set_setting(Settings& settings, const std::string& key, const std::string& value,
                                         std::string* warning = nullptr);
