@@ -68,6 +68,17 @@ std::string joined_lines(const std::string& a, const std::string& b) {
     return all;
 }
 
+void check_same(const NamedPicture& a, const NamedPicture& b, const char* key) {
+    if (attribute(a, key) != attribute(b, key))
+        refuse(b, fmt::format("found another value of '{}' than that of {}: {} and {}", key, a.name, attribute(b, key),
+                              attribute(a, key)));
+}
+
+/// Whatever else they differ in.
+void check_same_scene(const NamedPicture& a, const NamedPicture& b) {
+    for (const char* key : {"scene hash", "program"}) check_same(a, b, key);
+}
+
 /// Pictures of different seeds.
 Picture average(const std::vector<NamedPicture>& pictures) {
     Picture result = pictures.front().picture;
@@ -114,12 +125,8 @@ WorkItemSet units_of(const NamedPicture& p) {
 }
 
 void check_same_render(const NamedPicture& a, const NamedPicture& b, SameRender same) {
-    std::vector<const char*> keys{"scene hash", "program"};
-    if (same == SameRender::seed) keys.push_back("user paths"); // which change no expectation
-    for (const char* key : keys)
-        if (attribute(a, key) != attribute(b, key))
-            refuse(b, fmt::format("found another value of '{}' than that of {}: {} and {}", key, a.name,
-                                  attribute(b, key), attribute(a, key)));
+    check_same_scene(a, b);
+    if (same == SameRender::seed) check_same(a, b, "user paths"); // which change no expectation
     if (a.picture.width != b.picture.width || a.picture.height != b.picture.height)
         refuse(b, fmt::format("found {} x {} pixels, expected {} x {} as in {}", b.picture.width, b.picture.height,
                               a.picture.width, a.picture.height, a.name));
@@ -171,7 +178,10 @@ Picture join_shares(std::span<const NamedPicture> shares) {
 
 Picture join_pictures(std::span<const NamedPicture> pictures) {
     std::map<std::string, std::vector<NamedPicture>> by_seed;
-    for (const NamedPicture& p : pictures) by_seed[attribute(p, "seed")].push_back(p);
+    for (const NamedPicture& p : pictures) {
+        check_same_scene(pictures.front(), p); // before the same seed is taken for a mistake
+        by_seed[attribute(p, "seed")].push_back(p);
+    }
     std::vector<NamedPicture> joined;
     for (const auto& [seed, group] : by_seed) {
         NamedPicture& one = joined.emplace_back(group.front());

@@ -101,6 +101,7 @@ RenderResult render_bdpt(const RenderTask& task) {
     report_samples(pixels.luminances(), scene, result.stats);
     if (!drew) report_black(pixels.luminances(), scene, result.stats);
     report_lost_caustics(scene, result.stats);
+    report_sun_behind_glass(scene, result.stats);
     result.picture = work.finish(result.stats);
     return result;
 }

@@ -136,7 +136,7 @@ RenderResult render_mlt(const RenderTask& task) {
     reports.finish(stats);
     pixels.report(stats);
     report_eye_samples(pixels.luminances(), scene, stats);
-    report_lost_caustics(scene, stats);
+    report_lost_caustics(scene, stats, true);
     result.picture = work.finish(stats);
     return result;
 }

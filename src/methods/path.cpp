@@ -34,7 +34,7 @@ RenderResult render_path(const RenderTask& task) {
     pixels.report(result.stats);
     report_eye_samples(pixels.luminances(), scene, result.stats);
     report_black(pixels.luminances(), scene, result.stats);
-    report_lost_caustics(scene, result.stats);
+    report_lost_caustics(scene, result.stats, true);
     result.picture = work.finish(result.stats);
     return result;
 }

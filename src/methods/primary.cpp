@@ -198,6 +198,7 @@ template <StageOneOf start> RenderResult render_primary(const RenderTask& task) 
     }
     reports.finish(stats);
     report_lost_caustics(scene, stats);
+    report_sun_behind_glass(scene, stats);
     result.picture = work.finish(stats);
     return result;
 }

@@ -24,6 +24,20 @@ struct Image {
     double luminance; ///< what it adds to the mean of the picture, at most [W/(m^2 sr)]
 };
 
+/// The sun is 0.27 degrees wide to either side: 15000 of 1/sr.
+constexpr double kSunDensity = 200;
+
+/// Whether most of an emitter's light comes from a small part of the sky.
+bool is_sun(const Emitter& emitter) {
+    if (emitter.site() != Site::infinite || !(emitter.power() > 0)) return false;
+    if (emitter.is_delta()) return true;
+    constexpr int kPoints = 16;
+    Rng rng(0, StreamPurpose::path_tracing, 0);
+    int narrow = 0;
+    for (int i = 0; i < kPoints; ++i) narrow += emitter.sample_point(rng).pdf > kSunDensity ? 1 : 0;
+    return 2 * narrow >= kPoints;
+}
+
 std::optional<Image> image_of(const Scene& scene, const Emitter& emitter) {
     const auto bounds = emitter.bounds();
     if (!bounds || emitter.is_delta()) return std::nullopt;
@@ -99,16 +113,34 @@ void report_black(const RunningStats& luminance, const Scene& scene, RenderStats
                                       : "it comes where paths from the eye don't find it: try ipm or mps"));
 }
 
-void report_lost_caustics(const Scene& scene, RenderStats& stats) {
+void report_lost_caustics(const Scene& scene, RenderStats& stats, bool looks_through) {
     if (!may_light_specular(scene)) return;
     stats.warn(Doubt::caustics,
-               fmt::format("light from emitters without extent that comes through specular surfaces is missing, or "
-                           "what is seen of it in others: no path that is joined to the eye can carry it. {}",
+               fmt::format("light from emitters without extent that comes through specular surfaces is missing{}, or "
+                           "what is seen of it in others: no path that is {} can carry it. {}",
+                           looks_through ? ", but for what comes straight through clear glass" : "",
+                           looks_through ? "traced from the eye" : "joined to the eye",
                            scene.has_scattering_media()
                                ? "Photons of light paths could, but aren't to be had where a medium scatters: give "
                                  "the emitters some extent"
                                : "Photons of light paths can, such as ipm's; a longer time lets auto choose them "
                                  "where that light is worth it"));
+}
+
+void report_sun_behind_glass(const Scene& scene, RenderStats& stats) {
+    if (!std::ranges::any_of(scene.emitters(), [](const auto& e) { return is_sun(*e); })) return;
+    bool clear = false, glossy = false;
+    for (const Shape& shape : scene.shapes()) {
+        if (shape.material == nullptr) continue;
+        const BsdfTraits traits = shape.material->traits();
+        clear = clear || traits.clear != ClearGlass::none;
+        glossy = glossy || (traits.glossy && !traits.through);
+    }
+    if (!clear || !glossy) return;
+    stats.warn(Doubt::caustics,
+               "where the sun shines in through clear glass, what glossy surfaces show of its light is "
+               "found by rare samples, and mostly missing: this method doesn't look through glass. "
+               "path, ipm and mps do");
 }
 
 } // namespace keyhole

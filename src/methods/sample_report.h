@@ -22,6 +22,12 @@ void report_black(const RunningStats& luminance, const Scene& scene, RenderStats
 
 /// Warns of light that methods can't find whose paths are traced from the eye or joined to it: what comes from emitters
 /// without extent through specular surfaces, if not from everywhere, then onto what is seen in others.
-void report_lost_caustics(const Scene& scene, RenderStats& stats);
+/// @param looks_through whether direct light is looked for through clear glass, too.
+void report_lost_caustics(const Scene& scene, RenderStats& stats, bool looks_through = false);
+
+/// Warns of what methods hardly find that join paths from the eye to the light, and look through no clear glass then:
+/// what gloss shows of a place in the sun, if the sun shines in through a pane. Its light comes along a path from the
+/// sun alone, which the eye sees in a narrow lobe.
+void report_sun_behind_glass(const Scene& scene, RenderStats& stats);
 
 } // namespace keyhole

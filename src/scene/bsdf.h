@@ -25,7 +25,8 @@ struct BlackBsdf {
 };
 
 /// A model in its shading frame. All directions are unit, in world space, and point away from the surface.
-/// To add a model: a file in bsdfs/ with these five members, and its name here. One with a diffuse part has
+/// To add a model: a file in bsdfs/ with these five members, and its name here. One with a
+/// finite part has albedo(). One with a diffuse part has
 /// diffuse_reflectance() and diffuse_weight() besides; if it has a glossy part as well, also glossy_part(),
 /// glossy_albedo() and glossy_probability(). One whose rough lobes may be wider has widened().
 class Bsdf {
@@ -89,6 +90,18 @@ class Bsdf {
         auto d = visit([&](const auto& m) { return m.delta(frame_.to_local(from), event); });
         if (d) d->to = frame_.to_world(d->to);
         return d;
+    }
+
+    /// Directional albedo of the finite part, within some percent: of light that is the same from everywhere, what it
+    /// sends to the eye, reflected or through the surface. Smooth in `to_eye`. A medium's is its scattering
+    /// coefficient.
+    Rgb albedo(const Vec3& to_eye) const {
+        return visit([&]<class M>(const M& m) {
+            if constexpr (requires { m.albedo(to_eye); })
+                return m.albedo(frame_.to_local(to_eye));
+            else
+                return Rgb(0.0);
+        });
     }
 
     // The finite part is f = r(to_eye) w(to_light) + a glossy part. Where light is the same from everywhere, the

@@ -11,6 +11,7 @@ namespace keyhole::test {
 namespace {
 
 double largest(const Rgb& c) { return std::max({c.x, c.y, c.z}); }
+Rgb abs_of(const Rgb& c) { return {std::abs(c.x), std::abs(c.y), std::abs(c.z)}; }
 
 TEST(Bsdf_Eval, IsReciprocalUpToTheSquaredIndex) {
     for (const BsdfCase& c : bsdf_cases()) {
@@ -53,15 +54,21 @@ TEST(Bsdf_Delta, LeadsBackWithTheSameCoefficient) {
     }
 }
 
-/// Green light seen in direction `to_eye` when as much comes from everywhere as a closed room of one temperature holds.
-double furnace(const BsdfCase& c, const Vec3& to_eye) {
+/// Light of one channel that the finite part shows in direction `to_eye` when as much comes from everywhere as a closed
+/// room of one temperature holds.
+double finite_furnace(const BsdfCase& c, const Vec3& to_eye, int channel) {
     const Bsdf bsdf = bsdf_of(c);
-    double sum = integrate_sphere([&](const Vec3& to_light) {
+    return integrate_sphere([&](const Vec3& to_light) {
         const double ratio = index_on_side(c, to_light) / index_on_side(c, to_eye);
-        return bsdf.eval(to_light, to_eye).y * std::abs(to_light.z) * ratio * ratio;
+        return bsdf.eval(to_light, to_eye)[channel] * std::abs(to_light.z) * ratio * ratio;
     });
+}
+
+/// The same of green light, with delta lobes.
+double furnace(const BsdfCase& c, const Vec3& to_eye) {
+    double sum = finite_furnace(c, to_eye, 1);
     for (const Event e : {Event::reflect, Event::transmit})
-        if (const auto d = bsdf.delta(to_eye, e)) sum += d->coefficient.y;
+        if (const auto d = bsdf_of(c).delta(to_eye, e)) sum += d->coefficient.y;
     return sum;
 }
 
@@ -76,6 +83,34 @@ TEST(Bsdf_WhiteFurnace, GivesNothingAwayAndMakesNothing) {
             }
         }
     }
+}
+
+TEST(Bsdf_Albedo, IsWhatTheFinitePartSendsToTheEyeInEvenLight) {
+    for (const BsdfCase& c : bsdf_cases())
+        for (const Vec3& look : looks()) {
+            const Rgb albedo = bsdf_of(c).albedo(look);
+            for (int channel = 0; channel < 3; ++channel) {
+                SCOPED_TRACE(c.name + " from z = " + std::to_string(look.z) + ", channel " + std::to_string(channel));
+                EXPECT_GE(albedo[channel], 0);
+                EXPECT_LE(albedo[channel], 1);
+                EXPECT_NEAR(albedo[channel], finite_furnace(c, look, channel), 0.055);
+            }
+        }
+}
+
+/// So that neither filters nor eyes find edges on a flat surface.
+TEST(Bsdf_Albedo, HasNoStepsAcrossAFlatSurface) {
+    for (const BsdfCase& c : bsdf_cases())
+        for (const double side : {1.0, -1.0}) {
+            SCOPED_TRACE(c.name + (side > 0 ? " from above" : " from below"));
+            constexpr int kSteps = 180; // of half a degree
+            const auto seen = [&](int i) {
+                const double angle = 0.5 * kPi * (i - 0.5) / kSteps, across = 0.7 * angle;
+                return bsdf_of(c).albedo(Vec3(std::sin(angle) * std::cos(across), std::sin(angle) * std::sin(across),
+                                              side * std::cos(angle)));
+            };
+            for (int i = 2; i <= kSteps; ++i) EXPECT_LT(largest(abs_of(seen(i) - seen(i - 1))), 0.1) << i;
+        }
 }
 
 /// The textbook's formulas, in complex numbers.

@@ -321,6 +321,22 @@ TEST_F(GltfScene, WhatIsReferredToHasToBeThere) {
                 HasSubstr("found no entry 5 of 'meshes'"));
 }
 
+/// What exporters hide.
+TEST_F(GltfScene, NodesOfScaleZeroAreLeftOutWithAWord) {
+    for (const char* scale : {"[0, 0, 0]", "[1, 1, 0]"}) {
+        const LoadedScene scene = read(fmt::format(R"("scenes": [{{"nodes": [0, 1]}}], "nodes": [{{"mesh": 0}},
+          {{"mesh": 0, "name": "Ghost", "scale": {}, "children": [2]}}, {{"camera": 0, "mesh": 0,
+           "extensions": {{"KHR_lights_punctual": {{"light": 0}}}}}}], "materials": [{{}}],
+          "cameras": [{{"type": "perspective", "perspective": {{"yfov": 1, "znear": 0.1}}}}],
+          "extensions": {{"KHR_lights_punctual": {{"lights": [{{"type": "directional"}}]}}}})",
+                                                   scale));
+        EXPECT_EQ(scene.description.shapes.size(), 1u);
+        EXPECT_THAT(warnings_, Contains(HasSubstr("the node 1 'Ghost' and 1 more are left out: a scale of 0")));
+        EXPECT_THAT(warnings_, Contains(HasSubstr("found no camera")));
+        EXPECT_THAT(warnings_, Contains(HasSubstr("found no light")));
+    }
+}
+
 TEST_F(GltfScene, MatricesOfNodesAreAffine) {
     const auto nodes = [](const char* last) {
         return fmt::format(R"("scenes": [{{"nodes": [0, 1]}}], "nodes": [{{"mesh": 0}}, {{"mesh": 0,

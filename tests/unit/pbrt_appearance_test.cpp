@@ -126,6 +126,14 @@ TEST(PbrtMaterials, SayThatTheyReflectNoMoreThanAll) {
     EXPECT_THAT(warnings("1 0.5 0.5"), testing::IsEmpty());
 }
 
+TEST(PbrtMaterials, SayThatNothingIsRougherThanAlphaOne) {
+    const auto warnings = [](const std::string& rough) {
+        return PbrtScene("Material \"conductor\" \"float roughness\" " + rough + " " + kPbrtTriangle).warnings;
+    };
+    EXPECT_THAT(warnings("7"), testing::ElementsAre(HasSubstr("rougher than alpha 1: it counts as that")));
+    EXPECT_THAT(warnings("1"), testing::IsEmpty());
+}
+
 TEST(PbrtMaterials, SayWhatIsWrong) {
     EXPECT_THAT(error_of("NamedMaterial \"no\" "), HasSubstr("found the unknown material 'no'"));
     EXPECT_THAT(error_of("Material \"velvet\" "), HasSubstr("found the material 'velvet', expected one of"));

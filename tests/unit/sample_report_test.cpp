@@ -43,6 +43,32 @@ TEST(BlackPictures, AreNotThoseThatLightPathsAloneDraw) {
     EXPECT_THAT(result.stats.warnings, Not(Contains(HasSubstr("picture is black"))));
 }
 
+/// A varnished floor under a pane, in a sun of a width in degrees.
+std::unique_ptr<Scene> varnish_behind_glass(double sun, const MaterialPtr& pane) {
+    SceneMaker m;
+    m.rectangle({-1, 0, 1}, {2, 0, 0}, {0, 0, -2},
+                make_conductor(Rgb(1.5), Rgb(4.0), constant_texture(0.2), constant_texture(0.2)));
+    m.rectangle({-1, 1, 1}, {2, 0, 0}, {0, 0, -2}, pane);
+    m.emitter(make_distant_emitter({0, -1, 0}, Rgb(20.0), sun));
+    return m.camera({0, 0.9f, 0.01f}, {0, 0, 0}, 50).window(8, 6).build();
+}
+
+/// Only path looks through the pane.
+TEST(LostCaustics, AreSaidByWhatTheMethodDoes) {
+    for (const double sun : {0.0, 0.53}) {
+        const auto scene = varnish_behind_glass(sun, make_thin_dielectric(1.5));
+        const auto by_path = rendered(*scene, "path").stats.warnings, by_bdpt = rendered(*scene, "bdpt").stats.warnings;
+        EXPECT_THAT(by_bdpt, Contains(HasSubstr("the sun shines in through clear glass"))) << sun;
+        EXPECT_THAT(by_path, Not(Contains(HasSubstr("the sun shines in")))) << sun;
+        EXPECT_THAT(by_path, Not(Contains(HasSubstr("joined to the eye")))) << sun;
+        if (sun == 0) {
+            EXPECT_THAT(by_path, Contains(HasSubstr("but for what comes straight through clear glass")));
+        }
+    }
+    const auto open = varnish_behind_glass(0.53, make_diffuse(Rgb(0.5)));
+    EXPECT_THAT(rendered(*open, "bdpt").stats.warnings, Not(Contains(HasSubstr("the sun shines in"))));
+}
+
 /// Advice is what can be followed: photons aren't to be had where a medium scatters.
 TEST(LostCaustics, AreSaidToNeedPhotonsWhereThereMayBeSome) {
     for (const bool foggy : {false, true}) {

@@ -301,8 +301,9 @@ class RenderInTime {
             return look_first();
         if (settings_.method != &methods::automatic)
             throw InputError(fmt::format("too little time for {0}: what it does before its first picture takes longer "
-                                         "here; expected more than {1:.2g} s, or another method",
-                                         method_->name, start_));
+                                         "here; expected more than {1}, or another method",
+                                         method_->name,
+                                         start_ > 0 ? fmt::format("{:.2g} s", start_) : "what reading the scene took"));
         remarks_.push_back("paths are traced: " + std::string(method_->name) + " was not done in its time");
         use(methods::path);
         cost_.reset();

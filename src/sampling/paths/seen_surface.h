@@ -13,12 +13,7 @@ namespace keyhole {
 /// split, the probability with which one that is not would have come here; the normals of its parts add up.
 inline void note_seen_surface(PixelSample& pixel, const Vertex& v, const Vec3& back, const Rgb& throughput,
                               double share = 1) {
-    // The reflectance has a simple form where the BSDF is diffuse; others show a typical value. That of a medium is its
-    // albedo.
-    if (const auto* phase = std::get_if<PhaseBsdf>(&v.bsdf.model()))
-        pixel.albedo += throughput * Rgb(phase->scattering);
-    else
-        pixel.albedo += throughput * (v.bsdf.eval(facing(v.bsdf.shading_normal(), back), back) * kPi);
+    pixel.albedo += throughput * v.bsdf.albedo(back);
     pixel.normal += facing(v.point.ng, back) * static_cast<float>(share);
 }
 

@@ -116,6 +116,21 @@ std::optional<DeltaScatter> CoatedConductorBsdf::delta(const Vec3& from, Event e
     return DeltaScatter{mirrored(from), coefficient, probability, 1.0};
 }
 
+Rgb CoatedConductorBsdf::albedo(const Vec3& to_eye) const {
+    if (base_.smooth()) return Rgb(0.0);
+    const LocalVec o = upper(to_eye), in = refract(o);
+    const double eta = interface_->eta();
+    const Ggx ggx{base_.x, base_.y};
+    const Rgb base = mean_over_facets(ggx, in, [&](const LocalVec& h) {
+        const LocalVec below = h * (2 * in.dot(h)) - in;
+        const double z2 = 1 - eta * eta * (1 - below.z * below.z);
+        if (!(below.z > 0) || !(z2 > 0)) return Rgb(0.0);
+        const LocalVec i(below.x * eta, below.y * eta, std::sqrt(z2));
+        return eval_base(i, o) * (eta * eta * below.z / ggx.reflection_pdf(in, below));
+    });
+    return coat_.smooth() ? base : base + Rgb(interface_->reflectance(o.z, alpha()));
+}
+
 CoatedDiffuseBsdf::CoatedDiffuseBsdf(const CoatInterface& interface, const Rgb& reflectance, double alpha_x,
                                      double alpha_y, double thickness)
     : interface_(&interface), alpha_x_(static_cast<float>(alpha_x)), alpha_y_(static_cast<float>(alpha_y)),
@@ -180,6 +195,10 @@ std::optional<DeltaScatter> CoatedDiffuseBsdf::delta(const Vec3& from, Event eve
     const double cosine = std::abs(static_cast<double>(from.z)), coat = coat_probability(cosine);
     if (!(coat > 0)) return std::nullopt;
     return DeltaScatter{mirrored(from), Rgb(interface_->reflectance(cosine, 0)), coat, 1.0};
+}
+
+Rgb CoatedDiffuseBsdf::albedo(const Vec3& to_eye) const {
+    return diffuse_reflectance(to_eye) * kPi + Rgb(glossy_albedo(to_eye));
 }
 
 Rgb CoatedDiffuseBsdf::diffuse_reflectance(const Vec3& to_eye) const {

@@ -36,6 +36,7 @@ class CoatedConductorBsdf {
     double pdf(const Vec3& from, const Vec3& to) const;
     std::optional<BsdfSample> sample(const Vec3& from, double u0, double u1, double u2) const;
     std::optional<DeltaScatter> delta(const Vec3& from, Event event) const;
+    Rgb albedo(const Vec3& to_eye) const;
 
   private:
     double alpha() const { return std::sqrt(coat_.x * coat_.y); }
@@ -73,6 +74,7 @@ class CoatedDiffuseBsdf {
     double pdf(const Vec3& from, const Vec3& to) const;
     std::optional<BsdfSample> sample(const Vec3& from, double u0, double u1, double u2) const;
     std::optional<DeltaScatter> delta(const Vec3& from, Event event) const;
+    Rgb albedo(const Vec3& to_eye) const;
 
     /// What has been through the coat follows from irradiance E alone, but for the weight of each direction in that:
     /// T(o) <T> rho / (pi eta^2 (1 - rho R)) times E, and the weight is T(i) / <T>, with <T> the mean of T over the

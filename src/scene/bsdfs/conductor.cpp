@@ -2,6 +2,9 @@
 
 #include "scene/bsdfs/glossy_albedo.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace keyhole {
 
 Rgb RoughConductorBsdf::eval(const Vec3& to_light, const Vec3& to_eye) const {
@@ -21,6 +24,15 @@ std::optional<BsdfSample> RoughConductorBsdf::sample(const Vec3& from, double u0
     if (!up) return std::nullopt;
     const Vec3 to = on_side_of(from, *up);
     return finite_sample(to, pdf(from, to));
+}
+
+/// The table's lobe with the Fresnel term of the facets' typical cosine: the one that has their mean of Schlick's
+/// weight.
+Rgb RoughConductorBsdf::albedo(const Vec3& to_eye) const {
+    const GgxAlbedo lobe = ggx_albedo(upper(to_eye).z, mean_alpha(alpha_x, alpha_y), 0);
+    if (!(lobe.whole > 0)) return Rgb(0.0);
+    const double cosine = 1 - std::pow(std::min(1.0, lobe.schlick / lobe.whole), 0.2);
+    return fresnel_conductor(cosine, index) * (scale * lobe.whole);
 }
 
 RoughConductorBsdf RoughConductorBsdf::widened(double alpha) const {

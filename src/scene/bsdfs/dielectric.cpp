@@ -89,4 +89,19 @@ std::optional<BsdfSample> RoughDielectricBsdf::sample(const Vec3& from, double u
     return finite_sample(to, pdf(from, to));
 }
 
+Rgb RoughDielectricBsdf::albedo(const Vec3& to_eye) const {
+    const LocalVec w = upper(to_eye);
+    const Ggx ggx{alpha_x, alpha_y};
+    const double relative = to_eye.z > 0 ? eta : 1 / static_cast<double>(eta);
+    return mean_over_facets(ggx, w, [&](const LocalVec& h) {
+        const double c = w.dot(h);
+        const auto [r, cos_t] = fresnel_dielectric(c, relative);
+        const LocalVec back = h * (2 * c) - w, through = h * (c / relative - cos_t) - w / relative;
+        Rgb sum(0.0);
+        if (back.z > 0) sum += Rgb(reflect_tint) * (r * ggx.unmasked(w, back));
+        if (r < 1 && through.z < 0) sum += Rgb(transmit_tint) * ((1 - r) * ggx.unmasked(w, through));
+        return sum;
+    });
+}
+
 } // namespace keyhole

@@ -35,6 +35,7 @@ struct RoughDielectricBsdf {
     double pdf(const Vec3& from, const Vec3& to) const;
     std::optional<BsdfSample> sample(const Vec3& from, double u0, double u1, double u2) const;
     static std::optional<DeltaScatter> delta(const Vec3& /*from*/, Event /*event*/) { return std::nullopt; }
+    Rgb albedo(const Vec3& to_eye) const;
 };
 
 /// No surface at all: light goes straight on.

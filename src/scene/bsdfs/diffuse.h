@@ -24,6 +24,7 @@ struct DiffuseBsdf {
     }
     static std::optional<DeltaScatter> delta(const Vec3& /*from*/, Event /*event*/) { return std::nullopt; }
 
+    Rgb albedo(const Vec3& /*to_eye*/) const { return reflectance; }
     Rgb diffuse_reflectance(const Vec3& /*to_eye*/) const { return Rgb(reflectance) * kInvPi; }
     static double diffuse_weight(const Vec3& /*to_light*/) { return 1; }
 };
@@ -52,6 +53,7 @@ struct DiffuseTransmissionBsdf {
         return finite_sample(to, pdf(from, to));
     }
     static std::optional<DeltaScatter> delta(const Vec3& /*from*/, Event /*event*/) { return std::nullopt; }
+    Rgb albedo(const Vec3& /*to_eye*/) const { return Rgb(reflectance) + Rgb(transmittance); }
 
   private:
     /// The same from both sides and for all directions, so that it is cheap.

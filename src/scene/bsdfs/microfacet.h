@@ -37,6 +37,8 @@ struct Ggx {
     double lambda(const LocalVec& w) const;
     /// Masking and shadowing, correlated by height, of two directions on any sides.
     double masking(const LocalVec& a, const LocalVec& b) const { return 1 / (1 + lambda(a) + lambda(b)); }
+    /// What masking leaves of light that a facet visible from `from` sends along `to`.
+    double unmasked(const LocalVec& from, const LocalVec& to) const { return (1 + lambda(from)) * masking(from, to); }
     /// Density per solid angle of the normals visible from `w`.
     double visible_density(const LocalVec& w, const LocalVec& h) const;
     /// Draws a normal visible from `w` (Heitz 2018).
@@ -49,6 +51,21 @@ struct Ggx {
     /// The factor D G / (4 cos cos) of a BRDF.
     double reflection(const LocalVec& a, const LocalVec& b, const LocalVec& h) const;
 };
+
+/// Directional albedo of microfacets seen from `w`: the mean of `of(h)` over normals h visible from there, by a few
+/// that are always the same. `of` is to be what a facet sends on, masking of the direction it goes to included; as that
+/// ends at zero along the horizon, the sum is a smooth function of `w`. Within some percent.
+template <class Of> Rgb mean_over_facets(const Ggx& ggx, const LocalVec& w, const Of& of) {
+    constexpr int kRings = 6, kAngles = 5;
+    Rgb sum(0.0);
+    if (!(w.z > 0)) return sum;
+    for (int i = 0; i < kRings; ++i) {
+        // Narrow near 1, where the distribution's tail is; each is turned against the one before.
+        const double t = (i + 0.5) / kRings, share = 2 * t / (kRings * kAngles);
+        for (int j = 0; j < kAngles; ++j) sum += of(ggx.sample_visible(w, 1 - t * t, (j + t) / kAngles)) * share;
+    }
+    return sum;
+}
 
 /// The roughness of a lobe that is to be at least so wide; a smooth one stays smooth.
 inline float widened_alpha(float alpha, double least) {

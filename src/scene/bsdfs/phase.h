@@ -34,6 +34,7 @@ struct PhaseBsdf {
         return finite_sample(to, pdf(from, to));
     }
     static std::optional<DeltaScatter> delta(const Vec3& /*from*/, Event /*event*/) { return std::nullopt; }
+    Rgb albedo(const Vec3& /*to_eye*/) const { return scattering; }
 };
 
 } // namespace keyhole

@@ -150,6 +150,16 @@ double PrincipledBsdf::glossy_probability(const Vec3& from) const {
     return glossy + base > 0 ? glossy / (glossy + base) : 1;
 }
 
+Rgb PrincipledBsdf::albedo(const Vec3& to_eye) const {
+    const double cosine = upper(to_eye).z;
+    const Layers at = layers(cosine);
+    Rgb sum = diffuse_albedo(at);
+    if (!smooth_coat()) sum += Rgb((1 - at.sheen) * at.coat);
+    if (!smooth()) sum += gloss_albedo(at.gloss) * ((1 - at.sheen) * (1 - at.coat));
+    if (at.sheen > 0) sum += rgb(sheen_) * sheen_albedo(cosine);
+    return {std::min(sum.x, 1.0), std::min(sum.y, 1.0), std::min(sum.z, 1.0)}; // numbers of 16 bits are rounded
+}
+
 Rgb PrincipledBsdf::sheen_part(double cosine_to_half) const { return rgb(sheen_) * schlick_weight(cosine_to_half); }
 
 Rgb PrincipledBsdf::glossy_value(const LocalVec& i, const LocalVec& o, const Layers& at_i, const Layers& at_o) const {

@@ -48,6 +48,7 @@ class PrincipledBsdf {
     double pdf(const Vec3& from, const Vec3& to) const;
     std::optional<BsdfSample> sample(const Vec3& from, double u0, double u1, double u2) const;
     std::optional<DeltaScatter> delta(const Vec3& from, Event event) const;
+    Rgb albedo(const Vec3& to_eye) const;
 
     /// The diffuse base follows from irradiance alone, but for the weight of each direction: what is left to it there
     /// over the mean of that. Metal's later reflections and the sheen count as glossy.

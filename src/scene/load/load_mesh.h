@@ -27,9 +27,9 @@ constexpr std::size_t kMaxTriangles = std::size_t{1} << 27;
 // Files: mesh/import.cpp and mesh/ply.cpp.
 
 /// Reads all triangles of an OBJ, PLY (packed with gzip or not), glTF or GLB file as one mesh, with the placements that
-/// the file gives its parts. Materials, cameras, lights, lines and points in the file are left out; so are triangles
-/// without area, of which a mesh may consist. Normals are those of the file, unit; if only some of its parts have
-/// normals, the others get smooth ones.
+/// the file gives its parts. Materials, cameras, lights, lines and points in the file are left out; so is what
+/// a placement flattens, which hides it in glTF, and triangles without area, of which a mesh may consist. Normals are
+/// those of the file, unit; if only some of its parts have normals, the others get smooth ones.
 /// @throws InputError "path: ..." for a missing, unknown, broken or empty file, positions that are not finite or beyond
 /// 1e12, indices out of range, and more than kMaxMeshTriangles triangles.
 TriangleMesh import_mesh(const std::string& path);

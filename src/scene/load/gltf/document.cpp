@@ -162,7 +162,13 @@ std::string Document::uri_path(const std::string& uri) const {
 }
 
 std::string Document::uri_bytes(const std::string& uri) const {
-    if (!is_data(uri)) return read_bytes(uri_path(uri), "one that glTF names");
+    if (!is_data(uri)) {
+        try {
+            return read_bytes(uri_path(uri), "one that glTF names");
+        } catch (const InputError& e) {
+            fail(e.what()); // whose file that is
+        }
+    }
     const auto comma = uri.find(',');
     if (comma == std::string::npos) fail("found a data URI without data");
     return from_base64(std::string_view(uri).substr(comma + 1));

@@ -15,6 +15,7 @@ namespace keyhole::gltf {
 namespace {
 
 constexpr std::size_t kMostDepth = 256;
+constexpr const char* kLights = "KHR_lights_punctual";
 constexpr int kPlainWidth = 640, kPlainHeight = 480;
 
 /// From the node to its parent.
@@ -49,10 +50,19 @@ class Walker {
             const Json& scene = document_.entry("scenes", value_or<std::size_t>(root, "scene", 0));
             visit_all(value_or(scene, "nodes", std::vector<std::size_t>{}), Transform());
         }
+        tell_of_flattened();
         return std::move(things_);
     }
 
   private:
+    /// Exporters hide objects by a scale of 0, as the specification has it.
+    void tell_of_flattened() const {
+        if (flattened_.empty()) return;
+        const std::size_t more = flattened_.size() - 1;
+        document_.warn(fmt::format("{}{} left out: a scale of 0 flattens what is there", flattened_.front(),
+                                   more == 0 ? " is" : fmt::format(" and {} more are", more)));
+    }
+
     void visit_all(const std::vector<std::size_t>& nodes, const Transform& parent) {
         if (above_.size() > kMostDepth) document_.fail(fmt::format("found nodes nested more than {} deep", kMostDepth));
         for (const std::size_t index : nodes) {
@@ -60,7 +70,7 @@ class Walker {
                 document_.fail(fmt::format("found node {} below itself, expected no recursive nodes", index));
             const Json& node = document_.entry("nodes", index);
             const Transform to_world =
-                document_.within(called("node", index, node), [&] { return read_node(node, parent); });
+                document_.within(called("node", index, node), [&] { return read_node(index, parent); });
             above_.push_back(index);
             visit_all(value_or(node, "children", std::vector<std::size_t>{}), to_world);
             above_.pop_back();
@@ -68,19 +78,24 @@ class Walker {
     }
 
     /// What hangs on a node. Returns where that is.
-    Transform read_node(const Json& node, const Transform& parent) {
+    Transform read_node(std::size_t index, const Transform& parent) {
+        const Json& node = document_.entry("nodes", index);
         const Transform to_world = transform_of(node) * parent;
-        if (node.contains("mesh")) {
-            left_out_.note(value_of<std::size_t>(node["mesh"], "mesh"));
-            if (!is_regular(to_world))
-                document_.fail("found a placement that flattens its mesh, expected a regular one");
-        }
+        const bool holds = node.contains("mesh") || node.contains("camera") || extension(node, kLights) != nullptr;
+        if (!holds || is_regular(to_world))
+            read_things(node, to_world);
+        else
+            flattened_.push_back(called("node", index, node));
+        return to_world;
+    }
+
+    void read_things(const Json& node, const Transform& to_world) {
+        if (node.contains("mesh")) left_out_.note(value_of<std::size_t>(node["mesh"], "mesh"));
         if (node.contains("camera") && !things_.view)
             read_camera(value_of<std::size_t>(node["camera"], "camera"), to_world);
-        if (const Json* light = extension(node, "KHR_lights_punctual"))
+        if (const Json* light = extension(node, kLights))
             read_light(value_of<std::size_t>(light->at("light"), "light"), to_world);
         if (node.contains("skin")) document_.warn("skins are left out: meshes stand as they are bound");
-        return to_world;
     }
 
     void read_camera(std::size_t index, const Transform& to_world) {
@@ -105,7 +120,7 @@ class Walker {
     }
 
     void read_light(std::size_t index, const Transform& to_world) {
-        const Json* all = extension(document_.root(), "KHR_lights_punctual");
+        const Json* all = extension(document_.root(), kLights);
         if (all == nullptr || !all->contains("lights") || index >= (*all)["lights"].size())
             document_.fail(fmt::format("found no light {}, which is referred to", index));
         const Json& light = (*all)["lights"][index];
@@ -144,7 +159,8 @@ class Walker {
     const Document& document_;
     LightsAndCamera things_;
     LeftOutParts left_out_;
-    std::vector<std::size_t> above_; ///< nodes that hold the one that is read
+    std::vector<std::string> flattened_; ///< nodes with something on them
+    std::vector<std::size_t> above_;     ///< nodes that hold the one that is read
 };
 
 } // namespace

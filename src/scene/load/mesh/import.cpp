@@ -132,8 +132,9 @@ class Collector {
     void visit(const aiNode& node, const Transform& parent, int depth) {
         if (depth > kMostDepth) fail(path_, "found parts nested more than 256 deep, expected fewer levels");
         const Transform to_world = to_transform(node.mTransformation) * parent;
-        std::shared_ptr<const ObjectToWorld> copy; // of what hangs on the node
-        for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+        std::shared_ptr<const ObjectToWorld> copy;                          // of what hangs on the node
+        const unsigned meshes = is_regular(to_world) ? node.mNumMeshes : 0; // none of what is hidden by a scale of 0
+        for (unsigned i = 0; i < meshes; ++i) {
             const unsigned number = node.mMeshes[i];
             const aiMesh& source = *scene_.mMeshes[number];
             // Colours of vertices are known by where the mesh stands.
@@ -141,16 +142,10 @@ class Collector {
                 place(source, to_world, node.mName.C_Str());
                 continue;
             }
-            check_regular(to_world, node.mName.C_Str());
             if (copy == nullptr) copy = std::make_shared<const ObjectToWorld>(to_world);
             place_copy(number, copy, node.mName.C_Str());
         }
         for (unsigned i = 0; i < node.mNumChildren; ++i) visit(*node.mChildren[i], to_world, depth + 1);
-    }
-
-    void check_regular(const Transform& to_world, const std::string& name) const {
-        if (!is_regular(to_world))
-            fail(path_, fmt::format("found a placement that flattens the mesh '{}', expected a regular one", name));
     }
 
     void hold(std::size_t triangles, std::size_t positions) {
@@ -163,7 +158,6 @@ class Collector {
     void place(const aiMesh& source, const Transform& to_world, const char* name) {
         hold(source.mNumFaces, source.mNumVertices);
         TriangleMesh part = convert(source);
-        check_regular(to_world, name);
         any_ = any_ || !part.triangles.empty();
         transform_mesh(part, to_world);
         mend(part, name);

@@ -95,8 +95,14 @@ class PbrtProperties final : public Properties {
         FloatTexture y = find_number(prefix + "vroughness", kRoughness);
         if (!x) x = both;
         if (!y) y = both;
-        if (p_.boolean("remaproughness", true)) return {alpha_texture(x, scale), alpha_texture(y, scale)};
-        return {x, y};
+        const Roughness rough = p_.boolean("remaproughness", true)
+                                    ? Roughness{alpha_texture(x, scale), alpha_texture(y, scale)}
+                                    : Roughness{x, y};
+        for (const FloatTexture& alpha : {rough.x, rough.y})
+            if (alpha->is_constant() && alpha->value({}) > 1)
+                warn("roughness",
+                     fmt::format("found a '{}' of a surface rougher than alpha 1: it counts as that", name));
+        return rough;
     }
     std::vector<MaterialPtr> materials(Key key) override {
         std::vector<MaterialPtr> all;
