@@ -3,6 +3,7 @@
 #include "core/shared_work.h"
 #include "sampling/guidance/guided_light.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -12,6 +13,9 @@ namespace keyhole {
 namespace {
 
 constexpr std::int64_t kLightPaths = 2048, kPathsOfPart = 64;
+/// Half of the paths are free. What comes to pass in fewer than one of them, such as light beside an opening that is
+/// drawn too small, isn't among them, and could be all that a larger gain would be measured against.
+constexpr double kMostGain = kLightPaths / 2.0;
 constexpr int kMostScatterings = 12;
 /// Cells along the diagonal of the scene.
 constexpr float kCells = 24;
@@ -99,7 +103,7 @@ double gain_by_guides(const Scene& scene, const LightGuides& guides, const std::
         sum += weight * std::log(found->second.free / found->second.led);
         weights += weight;
     }
-    return weights > 0 && std::isfinite(sum) ? std::exp(sum / weights) : 1;
+    return weights > 0 && std::isfinite(sum) ? std::min(std::exp(sum / weights), kMostGain) : 1;
 }
 
 } // namespace keyhole
