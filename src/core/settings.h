@@ -151,8 +151,7 @@ template <class S, class Visitor> void visit_settings(S& s, Visitor&& visit) {
           "bytes for photons, their index and importance maps");
     visit("power", s.power, "how mps takes the camera sub-path out of a photon's power");
     visit("paths", s.paths, "paths that mps samples: those that store a photon, or all");
-    visit("find_openings", s.find_openings,
-          "lead light through narrow openings that are found, where there are no user paths");
+    visit("find_openings", s.find_openings, "lead light through narrow openings that are found");
     visit("equalise", s.equalise, "photons for dark pixels as for bright ones: evens out relative errors");
     visit("passes", s.passes, I{0}, I{1} << 40, "passes of photons and gather; 0: until time or target_error is up");
     visit("target_error", s.target_error, 0.0, 1.0, "relative error at which passes end; 0: none");

@@ -6,13 +6,15 @@
 #include "core/settings.h"
 #include "sampling/guidance/user_paths.h"
 
+#include <string>
+
 namespace keyhole {
 
 class RenderPaths {
   public:
-    /// Binds what `given` says, and where that has openings finds out what they bring. Where that is nothing, and the
-    /// method that the settings name follows user paths, looks for openings that light has to pass, for a small share
-    /// of the time if that is limited.
+    /// Binds what `given` says, and where that has openings finds out what they bring. If the method that the settings
+    /// name follows user paths, looks for openings besides that light has to pass, for a small share of the time if
+    /// that is limited, and adds paths through those that it finds.
     /// @throws InputError as bind_user_paths(), and Interrupted
     RenderPaths(const Scene& scene, const Settings& settings, const UserPathFile& given, const RunContext& context);
 
@@ -23,6 +25,8 @@ class RenderPaths {
     void report(RenderStats& stats) const { stats.begin_with(own_); }
 
   private:
+    void say_led(const std::string& where, double gain);
+
     UserPaths paths_;
     double gain_ = 1;
     RenderStats own_;

@@ -7,10 +7,12 @@
 #include "support/test_scenes.h"
 #include "support/user_paths.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <tuple>
 
 namespace keyhole {
@@ -193,9 +195,65 @@ TEST(PathsOfUsers, ThatGainNothingAreNotPraised) {
     UserPathSpec path = test::user_path("to the floor", {{0, 1.99f, -1.2f}, {0, 0, -1.2f}}, 0.1);
     path.points[1].through = Opening{{-0.5, 1, -1.5}, {1, 0, 0}, {0, 0, 0.6}};
     const RenderResult result = render(scene, settings, {}, {{path}});
-    EXPECT_EQ(result.stats.values.at("gain by openings"), 1);
+    EXPECT_EQ(result.stats.values.at("gain by user paths"), 1);
     for (const std::string& remark : result.stats.remarks)
         EXPECT_EQ(remark.find("user paths"), std::string::npos) << remark;
+}
+
+/// Of keyhole.yaml, by ipm, with one path to the floor that is of no use; what leads there passes `through`.
+RenderStats stats_beside(const std::optional<Opening>& through) {
+    auto loaded = load_scene(KEYHOLE_SOURCE_DIR "/scenes/failures/keyhole.yaml");
+    Scene scene(std::move(loaded.description));
+    UserPathSpec path = test::user_path("to the floor", {{0, 1.99f, -1.2f}, {0, 0, -1.2f}}, 0.1);
+    path.points[1].through = through;
+    return render(scene, quick(loaded.settings), {}, {{path}}).stats;
+}
+
+TEST(PathsOfUsers, ThatGainNothingLeaveTheSearchForOpeningsOn) {
+    for (const auto& through :
+         {std::optional<Opening>(), std::optional<Opening>({{-0.5, 1, -1.5}, {1, 0, 0}, {0, 0, 0.6}})}) {
+        const RenderStats stats = stats_beside(through);
+        EXPECT_EQ(stats.values.at("openings found"), 1);
+        EXPECT_GT(stats.values.at("gain by openings"), 10);
+        EXPECT_THAT(stats.remarks, testing::Contains(testing::HasSubstr("beside the paths that are given")));
+    }
+}
+
+TEST(Openings, ThatAreKnownAreNotFoundAgain) {
+    const auto scene = test::two_rooms(0.02f, true);
+    const auto found_beside = [&](const Opening& known) {
+        OpeningSearch beside = search();
+        beside.known.push_back(known);
+        return found_in(*scene, beside).openings;
+    };
+    EXPECT_EQ(found_beside({{1.19, 0, -0.0625}, {0.04, 0, 0}, {0, 2.5, 0}}), 0);
+    EXPECT_EQ(found_beside({{1.21, 1, -0.0625}, {0.001, 0, 0}, {0, 0.001, 0}}), 1) << "a pinhole is not all of it";
+}
+
+// Whatever light comes beside a pinhole within a slit, so few paths don't show it.
+TEST(GainByGuides, IsNoMoreThanItsPathsCanTell) {
+    const auto scene = test::two_rooms(0.02f, true);
+    OpeningsFound found = found_in(*scene, search());
+    for (UserPathSpec& spec : found.paths.paths)
+        for (UserPathPoint& point : spec.points)
+            if (point.through) point.through = Opening{{1.2095, 1, -0.0625}, {0.001, 0, 0}, {0, 0.001, 0}};
+    std::erase_if(found.paths.paths, [&](const UserPathSpec& spec) { return !binds(*scene, spec); });
+    ASSERT_FALSE(found.paths.paths.empty());
+    const LightGuides guides(*scene, bind_user_paths(*scene, found.paths));
+    const TransportEnds ends = trace_transport_ends(*scene, 1024, 3, {});
+    const double gain = gain_by_guides(*scene, guides, ends.eye, 3, {});
+    EXPECT_GT(gain, 1);
+    EXPECT_LE(gain, 1024) << "of 2048 paths half are free";
+}
+
+// Pairs don't get fewer with the light paths of the render.
+TEST(FoundOpenings, AreFoundWithLittleWork) {
+    auto loaded = load_scene(KEYHOLE_SOURCE_DIR "/scenes/failures/keyhole.yaml");
+    Scene scene(std::move(loaded.description));
+    Settings settings = quick(loaded.settings);
+    settings.light_paths = 2000;
+    for (settings.seed = 1; settings.seed <= 4; ++settings.seed)
+        EXPECT_TRUE(render(scene, settings, {}).stats.values.contains("openings found")) << settings.seed;
 }
 
 } // namespace

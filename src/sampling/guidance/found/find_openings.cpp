@@ -100,12 +100,26 @@ class Paths {
     int openings_ = 0;
 };
 
+/// Whether the line of a passage leads through an opening.
+bool leads_through(const Passage& passage, const Opening& opening) {
+    const Imath::V3d a(passage.light.point.p), b(passage.eye.point.p), n = opening.u.cross(opening.v);
+    const double from = (a - opening.corner).dot(n), to = (b - opening.corner).dot(n);
+    if (!(from * to < 0)) return false;
+    const Imath::V3d offset = a + (b - a) * (from / (from - to)) - opening.corner;
+    const double along = offset.cross(opening.v).dot(n) / n.length2(),
+                 across = opening.u.cross(offset).dot(n) / n.length2();
+    return std::min(along, across) >= 0 && std::max(along, across) <= 1;
+}
+
 } // namespace
 
 OpeningsFound find_openings(const Scene& scene, const TransportEnds& ends, const OpeningSearch& search,
                             const RunContext& context) {
     std::vector<Passage> passages =
         find_passages(scene, ends, {.pairs = search.pairs, .seconds = search.seconds, .seed = search.seed}, context);
+    std::erase_if(passages, [&](const Passage& passage) {
+        return std::ranges::any_of(search.known, [&](const Opening& o) { return leads_through(passage, o); });
+    });
     Paths paths(scene, search);
     for (std::size_t i = 0; i < search.most; ++i) {
         const auto found = take_opening(scene, passages);

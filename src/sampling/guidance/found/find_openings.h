@@ -7,6 +7,7 @@
 #include "scene/scene.h"
 
 #include <limits>
+#include <vector>
 
 namespace keyhole {
 
@@ -16,6 +17,7 @@ struct OpeningSearch {
     int max_scatterings = 24;                                 ///< of light, on its way through an opening
     std::size_t most = 4;                                     ///< openings
     double least_gain = 1.5;                  ///< as gain_by_guides(), with which paths are worth having
+    std::vector<Opening> known{};             ///< that light is led through already: passages through them don't count
     const LearnedEmission* learned = nullptr; ///< where light paths would begin else; null: by power
     std::uint64_t seed = 1;
 };
@@ -28,8 +30,8 @@ struct OpeningsFound {
 
 /// Paths from the emitters through openings: rectangles that narrow lines of sight between lit places and places that
 /// matter to the eye lead through. For each opening and emitter one for each number of bounces, the straight one among
-/// them where light takes it. None where light comes from infinity only. Each works: it was bound to the
-/// scene. The same on any number of threads. @throws Interrupted
+/// them where light takes it. None through what is known, and none where light comes from infinity only. Each works: it
+/// was bound to the scene. The same on any number of threads. @throws Interrupted
 OpeningsFound find_openings(const Scene& scene, const TransportEnds& ends, const OpeningSearch& search,
                             const RunContext& context);
 
