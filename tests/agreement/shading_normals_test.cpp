@@ -41,8 +41,8 @@ TEST_P(ShadingNormals_ClosedRoom, IsBlackUnderASun) {
     Settings s = test::settings_from("max_depth=4 spp=4 brightness_samples=5k importons=5k mutations=10k "
                                      "light_paths=20k photons=10k chains=50");
     s.method = &method_named(GetParam());
-
-    for (const float v : render(*scene, s, {}).picture.layers.at("beauty").data) ASSERT_EQ(v, 0);
+    const RenderResult result = render(*scene, s, {});
+    for (const float v : result.picture.layers.at("beauty").data) ASSERT_EQ(v, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, ShadingNormals_ClosedRoom,
