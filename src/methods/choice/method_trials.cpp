@@ -381,7 +381,7 @@ std::string describe_choice(const TrialContext& c, std::span<const TriedMethod> 
         text += words + names;
     };
     add("; there was too little time to try", too_slow);
-    add("; the error is too small to try", needless);
+    add(too_slow.empty() ? "; the error is too small to try" : ", and the error is too small to try", needless);
     return text;
 }
 
