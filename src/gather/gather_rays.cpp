@@ -54,6 +54,13 @@ constexpr float kBent = 0.97f;
 
 bool is_bent(const Vertex& v) { return std::abs(v.bsdf.shading_normal().dot(v.point.ng)) < kBent; }
 
+/// The diffuse part of `v` alone, as it is seen from `back`.
+Vertex painted(const Vertex& v, const Vec3& back) {
+    Vertex paint = v;
+    paint.bsdf = Bsdf(Frame(v.bsdf.shading_normal()), DiffuseBsdf{v.bsdf.diffuse_reflectance(back) * kPi});
+    return paint;
+}
+
 /// Photons of a caustic that are tested for sight, and photons that a lobe at the end of a gather ray is asked about.
 /// The error that a few more would save is one of this sample alone, and small beside its others.
 constexpr int kSights = 8, kPhotonsOfLobe = 16;
@@ -148,7 +155,9 @@ Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSou
     const double share = place && !on ? maps_.irradiance->share_that_reaches(*place, leg.longer()) : 1;
     Rgb sum(0.0), direct_here(0.0);
     if (is_bent(v)) {
-        sum = by_shading_normal(v, back, place, leg, source, end);
+        const Vertex paint = painted(v, back);
+        sum = end.direct = direct_light(scene_, paint, back, at_end(leg), source);
+        if (place && !on) sum += photons({false, leg.longer()}, *place, paint, here.normal, back, source);
     } else {
         const Rgb f = v.bsdf.diffuse_reflectance(back);
         direct_here = direct(place, v, here, leg, source);
@@ -165,17 +174,6 @@ Rgb GatherRays::reflected(Vertex& v, const Vec3& back, const Leg& leg, SampleSou
     // What is traced on brings the indirect light of all parts.
     if (place && !on) shine += photons({false, leg.longer()}, *place, glossy.v, here.normal, back, source);
     return sum + shine * (glossy.scale / p);
-}
-
-Rgb GatherRays::by_shading_normal(const Vertex& v, const Vec3& back, const std::optional<std::uint32_t>& place,
-                                  const Leg& leg, SampleSource& source, End& end) const {
-    Vertex paint = v;
-    paint.bsdf = Bsdf(Frame(v.bsdf.shading_normal()), DiffuseBsdf{v.bsdf.diffuse_reflectance(back) * kPi});
-    const SurfaceRegion here{v.point.p, facing(v.point.ng, back)};
-    Rgb sum = end.direct = direct_light(scene_, paint, back, at_end(leg), source);
-    if (place && !goes_on(leg, place, here))
-        sum += photons({false, leg.longer()}, *place, paint, here.normal, back, source);
-    return sum;
 }
 
 Rgb GatherRays::direct(const std::optional<std::uint32_t>& place, const Vertex& v, const SurfaceRegion& here,

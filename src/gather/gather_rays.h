@@ -133,10 +133,6 @@ class GatherRays {
         double scale; ///< of what it reflects
     };
     Widened widened(const Vertex& v, const Bsdf& part, const Vec3& back) const;
-    /// What the diffuse part of `v` reflects where its shading normal is far from the surface's own: of light from each
-    /// direction, not of irradiance.
-    Rgb by_shading_normal(const Vertex& v, const Vec3& back, const std::optional<std::uint32_t>& place, const Leg& leg,
-                          SampleSource& source, End& end) const;
     /// What `v`, without a diffuse part, reflects, by the technique that is the better one there.
     Rgb lobe(const Vertex& v, const Vec3& back, const std::optional<std::uint32_t>& place, const Leg& leg,
              SampleSource& source) const;

@@ -33,14 +33,6 @@ bool has_emitters_with_a_place(const Scene& scene) {
     return std::ranges::any_of(scene.emitters(), [](const auto& e) { return e->site() != Site::infinite; });
 }
 
-std::vector<Opening> openings_of(const UserPathFile& file) {
-    std::vector<Opening> openings;
-    for (const UserPathSpec& path : file.paths)
-        for (const UserPathPoint& point : path.points)
-            if (point.through) openings.push_back(*point.through);
-    return openings;
-}
-
 double sum_of_weights(const UserPathFile& file) {
     double sum = 0;
     for (const UserPathSpec& path : file.paths) sum += path.weight;

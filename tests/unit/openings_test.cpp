@@ -24,15 +24,6 @@ OpeningsFound found_in(const Scene& scene, const OpeningSearch& search) {
     return find_openings(scene, trace_transport_ends(scene, 2048, search.seed, {}), search, {});
 }
 
-/// What the paths lead through.
-std::vector<Opening> openings_of(const UserPathFile& file) {
-    std::vector<Opening> openings;
-    for (const UserPathSpec& path : file.paths)
-        for (const UserPathPoint& point : path.points)
-            if (point.through) openings.push_back(*point.through);
-    return openings;
-}
-
 /// Where p lies in an opening along its edges, 0 to 1, and how far from its plane [m].
 std::tuple<double, double, double> within(const Opening& o, const Imath::V3d& p) {
     const Imath::V3d offset = p - o.corner;

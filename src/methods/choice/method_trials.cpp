@@ -255,11 +255,9 @@ RankLimits limits_in_time(const TrialContext& c) {
     return {.passes = fills_passes(c.settings) ? static_cast<double>(kPassesInTime) : 1};
 }
 
-/// Whether those that were tried promise so little error that another trial isn't worth its time.
-bool is_needless(const Method& method, std::vector<TriedMethod>& tried, const TrialContext& c) {
-    if (!(method.trial.needless_below > 0) || share_lit(tried) < kLittleLight) return false;
-    rank_methods(tried, c, c.context.stop->seconds_left(), limits_in_time(c));
-    return tried.front().predicted < method.trial.needless_below;
+/// Whether those that were tried, the best first, promise so little error that another trial isn't worth its time.
+bool is_needless(const Method& method, std::span<const TriedMethod> tried) {
+    return share_lit(tried) >= kLittleLight && tried.front().predicted < method.trial.needless_below;
 }
 
 /// Whether each pixel gets a sample in the time that is left. Paths are traced where none has time for that.
@@ -306,7 +304,9 @@ std::vector<TriedMethod> try_methods(const TrialContext& c, double most) {
         if (!may_try(c, *method)) continue;
         const double before = start - c.context.stop->seconds_left();
         if (c.context.stopped() || before - beyond + part > budget || before > kMostWithPhotons * start) break;
-        if (is_needless(*method, tried, c)) continue;
+        if (method->trial.needless_below > 0 && !tried.empty())
+            rank_methods(tried, c, c.context.stop->seconds_left(), limits_in_time(c));
+        if (is_needless(*method, tried)) continue;
         if (method->keeps_photons && !plan(c, std::min(kPlan * start, most))) continue;
         if (auto t = try_method(c, *method, small, part); t && has_time_for_a_sample(*t, c))
             tried.push_back(std::move(*t));
@@ -372,8 +372,7 @@ std::string describe_choice(const TrialContext& c, std::span<const TriedMethod> 
         if (!std::isfinite(c.context.seconds_left()) || !may_try(c, *method) ||
             std::ranges::find(tried, method, &TriedMethod::method) != tried.end())
             continue;
-        const bool gains_nothing = lit >= kLittleLight && tried.front().predicted < method->trial.needless_below;
-        (gains_nothing ? needless : too_slow) += fmt::format(" {},", method->name);
+        (is_needless(*method, tried) ? needless : too_slow) += fmt::format(" {},", method->name);
     }
     const auto add = [&](const char* words, std::string& names) {
         if (names.empty()) return;

@@ -39,10 +39,8 @@ inline ScatterValue scatter(const SurfacePoint& point, const Bsdf& bsdf, Event e
     const Bsdf::Finite f = bsdf.finite(to_light, to_eye);
     if (point.site != Site::surface) return {f.value, f.pdf_to_light, f.pdf_to_eye};
     const Vec3& ns = bsdf.shading_normal();
-    constexpr double kRightAngle = 1e-6; // nearer to one a BSDF may see it from the other side, by rounding
-    const double ns_light = std::abs(static_cast<double>(ns.dot(to_light)));
-    const bool none = ns_light < kRightAngle || changes_sides(point.ng, ns, to_light, to_eye);
-    const double shading = none ? 0 : ns_light / ng_light;
+    const bool through = changes_sides(point.ng, ns, to_light, to_eye);
+    const double shading = through ? 0 : std::abs(static_cast<double>(ns.dot(to_light))) / ng_light;
     return {f.value * shading, f.pdf_to_light, f.pdf_to_eye};
 }
 

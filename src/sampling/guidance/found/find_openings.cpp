@@ -113,6 +113,14 @@ bool leads_through(const Passage& passage, const Opening& opening) {
 
 } // namespace
 
+std::vector<Opening> openings_of(const UserPathFile& file) {
+    std::vector<Opening> openings;
+    for (const UserPathSpec& path : file.paths)
+        for (const UserPathPoint& point : path.points)
+            if (point.through) openings.push_back(*point.through);
+    return openings;
+}
+
 OpeningsFound find_openings(const Scene& scene, const TransportEnds& ends, const OpeningSearch& search,
                             const RunContext& context) {
     std::vector<Passage> passages =

@@ -22,6 +22,9 @@ struct OpeningSearch {
     std::uint64_t seed = 1;
 };
 
+/// What the paths of a file lead through.
+std::vector<Opening> openings_of(const UserPathFile& file);
+
 struct OpeningsFound {
     UserPathFile paths; ///< none where there are none that bring anything
     int openings = 0;   ///< that they lead through
